@@ -11,7 +11,7 @@ from setuptools.command.build_py import build_py
 from setuptools.command.sdist import sdist
 
 HERE = pathlib.Path(__file__).resolve().parent
-# The proto folder is next to the sources in an sdist, and in the repository otherwise.
+# The proto folder is next to this file in a source distribution (sdist), and one folder above in the repository.
 PROTO = next(path for path in (HERE / "proto", HERE.parent / "proto") if path.is_dir())
 
 

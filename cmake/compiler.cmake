@@ -3,7 +3,8 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 
-# Every x86 server since 2015 supports x86-64-v3 (AVX2, FMA, F16C). Half-float conversion is fast only with it.
+# Every x86 server since 2015 supports x86-64-v3 (AVX2, FMA, F16C). Conversion of half floats is fast only with these
+# instructions.
 option(THUNDERHEAD_X86_64_V3 "Compile for x86-64-v3 processors" OFF)
 
 find_program(CCACHE_PROGRAM ccache)
@@ -15,12 +16,12 @@ if(MOLD_PROGRAM)
   add_link_options(-fuse-ld=mold)
 endif()
 
-# Tests compute little, and are a third of the compiled code. Only their own files are unoptimised: the libraries are
-# optimised.
+# The tests' own files are compiled without optimisation, because they compute little and are a third of the compiled
+# code. The libraries that they test are optimised.
 set(THUNDERHEAD_TEST_OPTIONS $<$<CONFIG:Release>:-O0>)
 
-# GCC 12 reports overlaps and overruns inside std::string's own code (GCC bug 105651). In code from precompiled headers
-# it cannot distinguish these from ours.
+# GCC 12 reports overlaps and overruns inside std::string's own code (GCC bug 105651). In code from precompiled headers,
+# GCC cannot distinguish these false warnings from warnings about our code.
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   add_compile_options(-Wno-restrict -Wno-array-bounds -Wno-stringop-overread)
   # The same false warnings appear for literals joined to strings, in tests and where sanitizers change the inlining.
@@ -30,8 +31,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
   endif()
 endif()
 
-# Targets can share a precompiled header only if they are compiled with the same flags. ccache needs the second flag to
-# see its files.
+# Targets can share a precompiled header only if they are compiled with the same flags. The second flag lets ccache find
+# the files of a precompiled header.
 add_compile_options(-pthread)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)

@@ -2,8 +2,8 @@
 # Every file still includes what it uses, because the builds of ./dev lint and builds without GCC have no precompiled
 # headers.
 
-# thunderhead_headers(NAME DEPENDS libraries... [OPTIONS options...] HEADERS headers...) makes the set thunderhead_NAME,
-# for targets that have the same options.
+# thunderhead_headers(NAME DEPENDS libraries... [OPTIONS options...] HEADERS headers...) makes the set of precompiled
+# headers thunderhead_NAME, for targets that have the same options.
 function(thunderhead_headers name)
   cmake_parse_arguments(SET "" "" "DEPENDS;OPTIONS;HEADERS" ${ARGN})
   set(source ${CMAKE_BINARY_DIR}/headers/${name}.cc)

@@ -1,6 +1,6 @@
-# Debian packages by CPack: `thunderhead` (the server with its page and units), `thunderhead-desktop`,
-# `python3-thunderhead`. ./dev package runs CPack in the release build for the first and the last. It runs CPack in the
-# desktop build for the second.
+# CPack makes three Debian packages. `thunderhead` is the server with its page and units. The others are
+# `thunderhead-desktop` and `python3-thunderhead`. `./dev package` runs CPack in the release build for `thunderhead` and
+# `python3-thunderhead`, and in the desktop build for `thunderhead-desktop`.
 set(CPACK_GENERATOR DEB)
 set(CPACK_SET_DESTDIR ON)  # needed for /etc
 set(CPACK_INSTALL_PREFIX /usr)
@@ -16,7 +16,7 @@ set(CPACK_COMPONENTS_ALL "")
 
 if(THUNDERHEAD_SERVER AND THUNDERHEAD_SERVICE)
   set(packaging ${CMAKE_BINARY_DIR}/packaging)
-  # In a package the program has the path of system programs.
+  # In a package the program is installed in the folder of system programs, so the units get this path.
   foreach(unit thunderhead.service thunderhead-watch@.service)
     file(READ ${CMAKE_SOURCE_DIR}/deploy/systemd/${unit} text)
     string(REPLACE "/opt/thunderhead/bin/" "/usr/bin/" text "${text}")
@@ -40,7 +40,7 @@ if(THUNDERHEAD_SERVER AND THUNDERHEAD_SERVICE)
   # user.
   set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS
     "ca-certificates, fontconfig, fonts-dejavu-core, libegl1, libegl-mesa0, libgdal32, libgl1-mesa-dri, libopengl0, systemd | systemd-standalone-sysusers")
-  # These packages have the coasts and borders.
+  # These packages contain the data of coasts and borders.
   set(CPACK_DEBIAN_SERVER_PACKAGE_RECOMMENDS "gmt-gshhg-high, gmt-gshhg-low")
   set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
     ${CMAKE_SOURCE_DIR}/deploy/debian/postinst ${CMAKE_SOURCE_DIR}/deploy/debian/prerm ${CMAKE_SOURCE_DIR}/deploy/debian/conffiles)

@@ -1,7 +1,7 @@
-# A room is one folder of server/ that is built as one static library, `thunderhead::NAME`.
-# thunderhead_room(NAME [HEADERS set] [FILES files...] [DEPENDS rooms and libraries...]) makes it from FILES. Without
-# FILES it takes every .cc file of the folder that is not yet in another library. HEADERS is the set of precompiled
-# headers (cmake/headers.cmake), by default `headers`.
+# A room is one folder of server/ that is built as one static library, `thunderhead::NAME`. thunderhead_room(NAME
+# [HEADERS set] [FILES files...] [DEPENDS rooms and libraries...]) makes this library from FILES. Without FILES it takes
+# every .cc file of the folder that is not yet in another library. HEADERS is the set of precompiled headers
+# (cmake/headers.cmake), by default `headers`.
 function(thunderhead_room name)
   cmake_parse_arguments(ROOM "" "HEADERS" "DEPENDS;SOURCES;FILES" ${ARGN})
   if(NOT ROOM_HEADERS)
@@ -30,13 +30,14 @@ function(thunderhead_room name)
 endfunction()
 
 # Environment of tests that open a context, or that start a program that opens one. When Mesa unloads its driver, the
-# driver still holds memory, which LeakSanitizer cannot distinguish from our leaks by name.
+# driver has not freed all its memory. LeakSanitizer then cannot name the driver, so this memory looks like a leak of
+# our code.
 set(THUNDERHEAD_GL_ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 
 # thunderhead_test(NAME DEPENDS libraries...) builds the .cc files of the current folder, or SOURCES, into one
-# GoogleTest program. It registers each of the suites with ctest under LABEL. Suites of GL programs get the GL
-# environment and strict programs. Programs that WAIT, and suites that are WAITING, leave a processor to others. HEADERS
-# is the set of precompiled headers, by default `test_headers`.
+# GoogleTest program. It registers each of the suites with ctest under LABEL. The suites of a program with the option GL
+# get the GL environment and strict shader programs. A program with the option WAITS, and the suites in WAITING, mostly
+# wait, so they occupy only one place of ctest. HEADERS is the set of precompiled headers, by default `test_headers`.
 function(thunderhead_test name)
   cmake_parse_arguments(TEST "GL;WAITS" "LABEL;HEADERS" "DEPENDS;SOURCES;WAITING;PROPERTIES" ${ARGN})
   if(NOT TEST_SOURCES)

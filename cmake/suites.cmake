@@ -1,7 +1,7 @@
 # Settings for running the tests with ctest. `./dev test` gives ctest two places per processor and one more (ctest -j).
-# A test that keeps a processor busy takes two places, so on two processors at most two such tests run at once. A test
-# that mostly waits takes one place. The classes follow from measured processor time (docs/testing.md). COST only sets
-# the order: the longest tests begin first.
+# Places are units of ctest -j. A test that keeps a processor busy takes two places, so on two processors at most two
+# such tests run at once. A test that mostly waits takes one place. The classes follow from measured processor time
+# (docs/testing.md). COST only sets the order: the longest tests begin first.
 #
 # TIMEOUT is a limit against hangs, in seconds. It is not a performance requirement: the slowest test takes three
 # minutes on an idle machine.

@@ -22,8 +22,8 @@ constexpr int kUnavailable = 69;
 constexpr int kCannotCreate = 73;
 constexpr std::chrono::minutes kPatience{10};
 
-// Returns true for a frame in full quality. On a slow machine the first resting frame has fewer
-// rays.
+// Returns true for a frame in full quality. On a slow machine the first frame after the camera
+// stops has fewer rays, and its image_scale is below 1.
 bool IsFull(const v1::Frame& frame) {
   return frame.refined() && (!frame.has_accuracy() || frame.accuracy().image_scale() >= 1.0F);
 }
@@ -74,8 +74,8 @@ int main(int argc, char** argv) {
   options.name = "save_picture";
   options.scene.mutable_output()->set_width_px(640);
   options.scene.mutable_output()->set_height_px(400);
-  // Traced paths would otherwise correct the resting frame, and even the first resting frame may
-  // include some of them.
+  // Path-traced correction is off. It would otherwise change the refined frame, and even the first
+  // refined frame could contain a part of it.
   options.scene.mutable_rendering()->mutable_light_volume()->set_traced_light(v1::TRACED_LIGHT_OFF);
   FirstPicture picture;
   client::Session session(*connection, options, picture);  // joins on a separate thread

@@ -33,19 +33,19 @@ class FakeService final : public v1::ThunderheadService::Service {
   void Stop();
   void Start();
 
-  // Await() waits until `wanted` returns true for all requests of all calls so far. All() returns
-  // these requests.
+  // Await() waits until `wanted`, which gets the list of all requests of all calls so far, returns
+  // true. All() returns this list.
   bool Await(const std::function<bool(const Requests&)>& wanted);
   Requests All();
   // Returns the metadata "authorization" of the last call.
   std::string authorization();
-  int opened();  // number of sessions
-  int joined();  // number of calls
+  int opened();  // number of sessions that clients have opened
+  int joined();  // number of Interact calls that have joined
 
   // Sends a response to the newest call.
   void Send(v1::InteractResponse response);
-  // Sends a presence that contains the client and others, all of them presenters. The given viewer
-  // steers.
+  // Sends a presence message that lists the client and `others`, all of them presenters. The viewer
+  // `steering_viewer_id` steers; 0 means that no viewer steers.
   void SendPresence(std::uint64_t steering_viewer_id,
                     const std::vector<std::uint64_t>& others = {});
   void SendScene(const v1::Scene& scene, std::uint64_t revision);
@@ -58,7 +58,8 @@ class FakeService final : public v1::ThunderheadService::Service {
   bool answers_scenes = true;
   // Makes the response to the first scene of a session. The default accepts it.
   std::function<grpc::Status(const v1::Scene&)> answer_opening;
-  std::optional<bool> durable;    // of the opened sessions
+  // The response's `durable` for the opened sessions; no value leaves the field unset.
+  std::optional<bool> durable;
   bool forgets_sessions = false;  // joins fail with NOT_FOUND until another session is opened
 
   static constexpr char kPresenterKey[] = "presenter-key";

@@ -19,7 +19,7 @@ if(NOT status EQUAL 64 OR NOT said MATCHES "usage:")
   message(FATAL_ERROR "the example ends with ${status}: ${said}")
 endif()
 
-# No installed file may name the source tree in which the library was built.
+# No installed file may contain the path of the source tree in which the library was built.
 get_filename_component(source ${EXAMPLES}/../.. REALPATH)
 file(GLOB_RECURSE texts ${WORK}/prefix/*.cmake ${WORK}/prefix/*.h)
 foreach(text IN LISTS texts)

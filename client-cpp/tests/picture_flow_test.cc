@@ -1,5 +1,6 @@
 // Tests of PictureFlow, which decodes frames in parallel with the drawing thread. The newest frame
-// is shown, and video survives frames that are not shown.
+// is shown. Video frames that are not shown are still decoded, so later video frames stay
+// decodable.
 #include "thunderhead_client/picture_flow.h"
 
 #include <turbojpeg.h>
@@ -20,7 +21,7 @@ constexpr int kWidth = 64;
 constexpr int kHeight = 48;
 using thunderhead::testing::WaitFor;
 
-// Returns a JPEG of uniform grey at that level.
+// Returns a JPEG with the same grey level (0 to 255) at every pixel.
 std::string JpegOf(std::uint8_t level, int width = kWidth, int height = kHeight) {
   const std::vector<std::uint8_t> rgb(
       3U * static_cast<std::size_t>(width) * static_cast<std::size_t>(height), level);
@@ -82,7 +83,7 @@ class Encoder {
 
 class PictureFlowTest : public ::testing::Test {
  protected:
-  // Waits for a picture with at least that sequence number. Drops the earlier pictures.
+  // Waits for a picture whose sequence number is at least `sequence`. Drops earlier pictures.
   std::unique_ptr<Picture> Await(std::uint64_t sequence) {
     std::unique_ptr<Picture> picture;
     const bool came = WaitFor([&] {
@@ -98,8 +99,8 @@ class PictureFlowTest : public ::testing::Test {
   std::atomic<int> readies{0};
   std::atomic<int> lost{0};
   std::atomic<int> failures{0};
-  std::mutex
-      decoding;  // while it is locked, the decoder waits after the picture that it has finished
+  std::mutex decoding;  // while the test holds this mutex, the decoding thread stops after the
+                        // picture that it has just finished
   PictureFlow flow{{[this] {
                       ++readies;
                       const std::lock_guard waits(decoding);

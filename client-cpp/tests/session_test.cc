@@ -146,7 +146,8 @@ TEST_F(SessionTest, WhileAnswersAreLateTheNewestEditWins) {
   for (int i = 0; i < 500; ++i) session->Edit(SunTo(static_cast<float>(i % 360)));
   EXPECT_EQ(session->State().scene.sun().azimuth_deg(), 139.0F);
   ASSERT_TRUE(AwaitCount(v1::InteractRequest::kUpdateScene, 1));
-  // If the client sends another scene, it does so before the second of these messages arrives.
+  // If the client wrongly sent another scene, that scene would arrive before the second of these
+  // requests.
   for (const long later : {1, 2}) {
     session->SetName("A later request");
     ASSERT_TRUE(AwaitCount(v1::InteractRequest::kSetName, later));
@@ -219,7 +220,7 @@ class ResumptionTest : public SessionTest {
     ASSERT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
     service.SendScene({}, 1);
   }
-  // Sends who steers, and waits until the client has processed it.
+  // Sends a presence message that says who steers, and waits until the client has processed it.
   void Tell(std::uint64_t steering, const std::vector<std::uint64_t>& others = {}) {
     service.SendPresence(steering, others);
     ASSERT_TRUE(listener.Await([&] {
@@ -228,8 +229,8 @@ class ResumptionTest : public SessionTest {
              state.presence.steering_viewer_id() == steering;
     }));
   }
-  // Checks that the client takes control once, and not again after a presence that was already in
-  // flight.
+  // Checks that the client takes control once, and not again after a presence message that the
+  // server sent before the request.
   void TakesControlAgainFrom(std::uint64_t steering) {
     Tell(steering, {FakeService::kClient});
     Tell(steering, {FakeService::kClient, kColleague});

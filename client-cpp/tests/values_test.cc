@@ -82,7 +82,8 @@ v1::Mark AMark(const std::vector<std::array<float, 3>>& corners_m) {
 }
 
 TEST(Projection, OfALineIsCutOffBehindTheEye) {
-  // The line comes from behind the eye, goes back behind it, and comes forward again.
+  // The line begins behind the camera, comes to the front, goes behind the camera, and comes to the
+  // front again.
   const v1::Mark mark = AMark({{0.0F, -9.0F, 1000.0F},
                                {8.0F, 11.0F, 1000.0F},
                                {8.0F, 21.0F, 1000.0F},
@@ -119,8 +120,8 @@ TEST(BackOff, DelaysGrowAreSpreadAndKeepWhatTheServerAsks) {
     least = std::min(least, delay);
     sum_ms += static_cast<double>(delay.count());
   }
-  // The delays are uniform below the bound. The mean of 200 is within four of its standard errors
-  // of 163 ms.
+  // The delays are uniformly distributed below the bound. The standard error of the mean of 200
+  // delays is 163 ms, and the mean may be off by four standard errors.
   EXPECT_NEAR(sum_ms / 200.0, 4500.0, 4.0 * 163.0);
   EXPECT_LT(least, milliseconds(1500));
 }

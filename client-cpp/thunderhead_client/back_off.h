@@ -1,5 +1,6 @@
-// Exponential back-off with full jitter: each delay is random below a bound that doubles. A class
-// of clients therefore does not reconnect all at once.
+// Exponential back-off with full jitter. Each delay is random below a bound, and the bound doubles
+// after each attempt. Many clients that lose their server together therefore do not reconnect all
+// at once.
 #pragma once
 
 #include <chrono>
@@ -14,7 +15,8 @@ class BackOff {
 
   explicit BackOff(unsigned seed = std::random_device{}()) : random_(seed) {}
 
-  // Returns the delay before the next attempt. It is not below `least`, which the server asked for.
+  // Returns the delay before the next attempt. The delay is at least `least`, the minimum delay
+  // that the server asked for.
   std::chrono::milliseconds Next(std::chrono::milliseconds least = {});
   // Starts again with short delays after an attempt that succeeded.
   void Reset() { attempts_ = 0; }

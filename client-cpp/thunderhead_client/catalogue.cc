@@ -85,8 +85,8 @@ void Catalogue::Learn() {
   ++state_.version;
 }
 
-// Keeps the last description of a storm that is no longer available, and requests it again when the
-// catalogue changes.
+// Requests a storm's description. If the storm is not available, the last description stays, and
+// the request is repeated when the catalogue changes.
 void Catalogue::LearnStorm(const StormTime& wanted) {
   v1::DescribeStormRequest request;
   request.set_storm_id(wanted.first);

@@ -18,15 +18,15 @@
 namespace thunderhead::client {
 
 struct CatalogueState {
-  std::uint64_t version = 0;  // counts the changes
+  std::uint64_t version = 0;  // increases with every change of this state
   v1::ListStormsResponse storms;
-  v1::StormDescription storm;  // the storm described last, at one time
+  v1::StormDescription storm;  // answer to the last Describe(): one storm at one of its times
   v1::GetServerInfoResponse server;
 };
 
 class Catalogue {
  public:
-  // The catalogue's thread calls `changed`.
+  // `changed` is called on the catalogue's thread after every change of the state.
   Catalogue(std::shared_ptr<const Connection> connection, std::function<void()> changed);
   ~Catalogue();
   Catalogue(const Catalogue&) = delete;
@@ -35,7 +35,8 @@ class Catalogue {
   // Requests the list of storms and the server's information again. Refresh() and Describe() return
   // at once.
   void Refresh();
-  // Requests the description of a storm at one time, unless it is the one described last.
+  // Requests the description of a storm at one of its times. Does nothing if State() already has
+  // this description.
   void Describe(const std::string& storm_id, std::uint32_t time_index);
 
   CatalogueState State() const;

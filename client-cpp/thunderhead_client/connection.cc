@@ -19,7 +19,7 @@
 namespace thunderhead::client {
 namespace {
 
-// Images of 8192 x 8192 pixels fit into one message.
+// Maximum size of a received message. An image of 8192 x 8192 pixels fits into one message.
 constexpr int kMaxMessage_bytes = 256 << 20;
 // The session's back-off decides when to reconnect. The channel's own back-off would wait up to two
 // minutes.
@@ -93,7 +93,7 @@ Canceller::Running::Running(Canceller& canceller, grpc::ClientContext& context)
     : canceller_(canceller), context_(context) {
   const std::lock_guard lock(canceller_.mutex_);
   canceller_.running_.insert(&context_);
-  // If the call has not begun yet, this ends it as soon as it begins.
+  // TryCancel() before the call's beginning ends the call as soon as it begins.
   if (canceller_.cancelled_) context_.TryCancel();
 }
 
@@ -149,7 +149,8 @@ void Connection::AwaitReconnection(const std::function<bool()>& gives_up) const 
 }
 
 std::string Connection::Explain(const grpc::Status& status) const {
-  // Errors that Thunderhead itself reports have details.
+  // An UNAVAILABLE error without details comes from gRPC, because Thunderhead's own errors have
+  // details.
   if (status.error_code() != grpc::StatusCode::UNAVAILABLE || !status.error_details().empty()) {
     return status.error_message();
   }

@@ -18,11 +18,12 @@ namespace thunderhead::client {
 
 struct ServerAccess {
   std::string address;  // HOST:PORT of the server's gRPC port
-  std::string
-      tls_ca_file;  // PEM file of the authority that signed its certificate; empty: no encryption
-  std::string token_file;  // a bearer token, read again for each call; empty: none
-  // Sends the token without encryption to other machines, too. Anyone on the network path can then
-  // read it.
+  // PEM file of the authority that signed the server's certificate; empty: no encryption.
+  std::string tls_ca_file;
+  // File with a bearer token, read again for each call; empty: sends no token.
+  std::string token_file;
+  // If true, the token is also sent to other machines without encryption. Anyone on the network
+  // path can then read it.
   bool allow_plaintext_token = false;
 };
 
@@ -57,27 +58,28 @@ class Canceller::Running {
 
 class Connection {
  public:
-  // Makes a connection, which connects at its first call. The error names a file that is unreadable
-  // or not PEM, or an invalid address.
+  // Makes a connection object, which connects to the server at its first call. The error names a
+  // file that is unreadable or not PEM, or an invalid address.
   static absl::StatusOr<std::shared_ptr<Connection>> Open(ServerAccess access);
 
   v1::ThunderheadService::Stub& stub() const { return *stub_; }
   const std::string& address() const { return access_.address; }
 
   // Waits until the server is connected, for at most a few seconds or until `gives_up` returns
-  // true. `gives_up` is called ten times a second. This is needed before a retry, because an
-  // immediate call would fail with the channel's last error. While no caller waits on a channel,
-  // gRPC works on it only every five seconds.
+  // true. `gives_up` is called ten times a second. A retry needs this wait, because an immediate
+  // call would fail with the channel's last error. Without a caller that waits, gRPC would try to
+  // reconnect the channel only every five seconds.
   void AwaitReconnection(const std::function<bool()>& gives_up) const;
 
-  // Returns the reason why a call failed, as text for people. The text is the server's own message.
-  // If no server answered, it is a likely cause with a suggestion.
+  // Returns the reason why a call failed, as text for people. If the server answered, the text is
+  // its own message. If no server answered, the text names a likely cause and suggests what to do.
   std::string Explain(const grpc::Status& status) const;
 
-  // Adds the token. Returns an error if the token file cannot be read.
+  // Adds the token to the call's metadata. Returns an error if the token file cannot be read.
   absl::Status Authorize(grpc::ClientContext& context) const;
 
-  // Makes one unary call: Call(&Stub::ListStorms, request, &response, patience, canceller).
+  // Makes one unary call with the timeout `patience`, such as Call(&Stub::ListStorms, request,
+  // &response, patience, canceller).
   template <typename Method, typename Request, typename Response>
   grpc::Status Call(Method method, const Request& request, Response* response,
                     std::chrono::milliseconds patience, Canceller& canceller) const {
@@ -98,7 +100,8 @@ class Connection {
   const std::unique_ptr<v1::ThunderheadService::Stub> stub_;
 };
 
-// Returns the delay that the server asks for in the details of an error; 0 if it names none.
+// Returns the delay before a retry that the server asks for in the details of an error; 0 if the
+// error names no delay.
 std::chrono::milliseconds RetryAfter(const grpc::Status& status);
 
 }  // namespace thunderhead::client

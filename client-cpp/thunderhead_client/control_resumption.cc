@@ -21,15 +21,16 @@ ControlResumption::Outcome ControlResumption::Of(const v1::Presence& presence, b
     End();
     return Outcome::kLost;
   }
-  // Takes control only once. The request may cross with an older presence, and a second request
-  // could take control from a colleague who got it afterwards.
+  // The client takes control only once. An older presence message may arrive after the request was
+  // sent. A second request could then take control from a colleague who got it meanwhile.
   const bool takes = std::exchange(takes_, false);
   return presents && takes ? Outcome::kTakes : Outcome::kWaits;
 }
 
-// Returns true if no viewer steers, or if this person's lost connection still steers. Also returns
-// true if a new presenter got control because that presenter reached a restarted server first. A
-// colleague who was present before and took control keeps it.
+// Returns true if this person may still get control back. This is so if no viewer steers, or if
+// this person's lost connection still steers. It is also so if a presenter who was not present
+// before steers, because that presenter reached a restarted server first. A colleague who was
+// present before and took control keeps it.
 bool ControlResumption::Awaits(const v1::Presence& presence, bool presents) const {
   const std::uint64_t steering = presence.steering_viewer_id();
   if (steering == 0 || own_ids_.contains(steering)) return true;

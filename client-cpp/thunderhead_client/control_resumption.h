@@ -1,6 +1,6 @@
-// Restores control to a person who steered when the connection was lost. Each presence after the
-// client has joined again decides. The server may not have noticed the loss yet, so the old
-// connection may appear to steer for some seconds.
+// Restores control to a person who steered when the connection was lost. After the client has
+// joined again, it decides at each presence message (the list of people and who steers). The server
+// may notice the loss late, so the old connection may appear to steer for some seconds.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,23 @@ class ControlResumption {
  public:
   enum class Outcome {
     kTakes,  // the client should take control again
-    kWaits,  // control is expected back; edits are kept until then
+    kWaits,  // the client may still get control back, so it keeps its unsent edits
     kLost,   // another viewer steers
   };
 
   // Reports that the client has joined again. The arguments describe the lost connection: the
   // person's id and its last presence.
   void Rejoined(std::uint64_t viewer_id, const v1::Presence& presence);
-  // Returns what to do after a presence in which this person does not steer.
+  // Returns what the client should do after a presence message in which this person does not steer.
   Outcome Of(const v1::Presence& presence, bool presents);
-  // Ends the resumption because this person steers, or no longer expects to.
+  // Ends the resumption, because this person steers again or no longer expects to steer.
   void End() { own_ids_.clear(); }
 
  private:
   bool Awaits(const v1::Presence& presence, bool presents) const;
 
-  // This person's ids in the connections since it steered. The set is empty unless control is
-  // expected back.
+  // This person's viewer ids in all connections since this person last steered. The set is empty if
+  // this person does not expect to get control back.
   std::set<std::uint64_t> own_ids_;
   // The people who were present when the connection was lost.
   std::set<std::uint64_t> known_;

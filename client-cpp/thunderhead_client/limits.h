@@ -14,10 +14,10 @@ struct Limits {
   std::optional<double> default_value;
   std::string unit;  // in UCUM notation, "1" for a pure number
   bool logarithmic = false;
-  bool whole = false;  // an integer field
+  bool whole = false;  // true for an integer field
 };
 
-// Returns a field's limits; all zero for a field that declares none.
+// Returns a field's limits. A field that declares no limits has a minimum and a maximum of 0.
 Limits LimitsOf(const google::protobuf::FieldDescriptor& field);
 
 // Returns the limits of a field by name, such as LimitsOf<v1::OrbitCamera>("azimuth_deg"). The

@@ -7,7 +7,8 @@ namespace thunderhead::client {
 namespace {
 
 constexpr std::size_t kMaxOrdered = 256;
-// The server accepts 30 pointers a second.
+// Interval between two cameras and between two pointers, because the server accepts 30 of each a
+// second.
 constexpr std::chrono::milliseconds kPace{34};
 
 }  // namespace

@@ -1,5 +1,6 @@
-// The messages that wait to be written to a session. Some messages are sent in order. For the
-// others only the newest message is kept. This is a plain value: its owner must lock it.
+// The messages that wait to be written to a session's stream. Requests are sent in order. Of
+// camera, pointer, acknowledgement and window only the newest waits. The class has no lock, so its
+// owner must synchronize access.
 #pragma once
 
 #include <chrono>
@@ -15,20 +16,22 @@ class Outbox {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  // Appends a message, and keeps the order. Drops the message and returns false if too many wait.
+  // Appends a message to the queue. Drops the message and returns false if too many messages wait.
   bool Send(v1::InteractRequest request);
-  // Replaces the waiting camera or pointer. These are sent at most 30 times a second.
+  // MoveCamera() and PointTo() replace the waiting camera or pointer. Each of the two is sent at
+  // most 30 times a second.
   void MoveCamera(const v1::Camera& camera) { camera_ = camera; }
   void PointTo(const v1::Point& point) { point_ = point; }
-  // Replaces the waiting acknowledgement or window.
+  // Acknowledge() and Resize() replace the waiting acknowledgement or window.
   void Acknowledge(const v1::Acknowledgement& acknowledgement);
   void Resize(const v1::Window& window) { window_ = window; }
   void DropCamera() { camera_.reset(); }
-  // Drops all messages before a new call, which must not send those of the old call.
+  // Drops all messages. This is needed before a new call, which must not send the messages of the
+  // old call.
   void Clear() { *this = Outbox(); }
 
   std::optional<v1::InteractRequest> Next(TimePoint now);
-  // Returns when a paced message may be sent; nothing if none waits.
+  // Returns when a waiting camera or pointer may be sent; nothing if neither waits.
   std::optional<TimePoint> WakeAt() const;
 
  private:

@@ -49,7 +49,8 @@ std::string OptionName(const google::protobuf::EnumValueDescriptor& value) {
   return words;
 }
 
-// Returns what enumerator 0 stands for, if the schema says so.
+// Returns the name of the option that enumerator 0 stands for, if the schema declares a
+// default_choice.
 std::string DefaultName(const FieldDescriptor& field) {
   const std::string& choice = field.options().GetExtension(v1::default_choice);
   const auto* const value = field.enum_type()->FindValueByName(choice);
@@ -134,8 +135,8 @@ class Walk {
   std::string group_;
 };
 
-// Returns the message that holds the parameter; null if it, or a message on the path to it, is
-// absent.
+// Returns the message that contains the parameter's field. Returns null if a message on the path,
+// or the value itself, is absent.
 const Message* Holder(const v1::Scene& scene, const Steps& steps) {
   const Message* at = &scene;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {

@@ -58,7 +58,7 @@ struct PictureDecoder::State {
   vpx_codec_ctx_t video{};
   bool video_open = false;
   bool has_key_frame = false;
-  std::vector<std::uint16_t> deep;  // 10 bits a channel, for AVIF
+  std::vector<std::uint16_t> deep;  // decoded AVIF pixels with 10 bits a channel
 
   State() = default;
   ~State() {

@@ -12,8 +12,8 @@
 
 namespace thunderhead::client {
 
-// Pixels with 8 bits a channel in sRGB. The rows go from top to bottom. A pixel has red, green,
-// blue and one unused byte.
+// An image in sRGB with 8 bits a channel. The rows go from top to bottom. Each pixel has red,
+// green, blue and one unused byte.
 struct Pixels {
   int width_px = 0;
   int height_px = 0;
@@ -27,12 +27,13 @@ class PictureDecoder {
   PictureDecoder(const PictureDecoder&) = delete;
   PictureDecoder& operator=(const PictureDecoder&) = delete;
 
-  // Returns the encodings in addition to JPEG, for Join.codecs.
+  // Returns the encodings that this class can decode in addition to JPEG, for the message field
+  // Join.codecs.
   static std::vector<v1::Codec> Codecs() { return {v1::CODEC_VP9, v1::CODEC_AVIF}; }
 
-  // Decodes a frame into `pixels`, and reuses their memory. If a video frame is not `wanted`,
-  // `pixels` stay unchanged, but later frames may need the decoded frame. The error says what could
-  // not be decoded.
+  // Decodes a frame into `pixels`, whose memory is reused. A video frame that is not `wanted` is
+  // decoded, because later frames depend on it, but `pixels` stay unchanged. The error says what
+  // could not be decoded.
   absl::Status Decode(const v1::Frame& frame, bool wanted, Pixels& pixels);
   // Resets the video decoder for a new stream.
   void Restart();

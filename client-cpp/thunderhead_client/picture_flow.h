@@ -1,7 +1,8 @@
-// Frames between the network and the screen. A separate thread decodes them, and the newest picture
-// waits to be shown. A newer frame replaces a waiting frame. A picture is therefore shown at most
-// one frame late, however slow decoding or drawing is. Every video frame is decoded, because later
-// frames depend on it, but only the newest is converted to pixels.
+// The queue of frames between the network and the screen. A separate thread decodes the frames, and
+// the newest decoded picture waits to be shown. A newer frame replaces a waiting frame. A picture
+// is therefore shown at most one frame late, however slow decoding or drawing is. Every video frame
+// is decoded, because later frames depend on it, but only the newest video frame is converted to
+// pixels.
 #pragma once
 
 #include <chrono>
@@ -19,11 +20,12 @@
 namespace thunderhead::client {
 
 struct Picture {
-  v1::Frame frame;  // without its encoded bytes
+  v1::Frame frame;  // the frame's message without the encoded picture
   Pixels pixels;
-  std::size_t bytes = 0;   // size of the message
-  double decode_ms = 0.0;  // decode time of this frame alone, without skipped frames
-  std::string encoding;    // "JPEG", "VP9" or "AVIF"
+  std::size_t bytes = 0;  // size of the message that contained the frame
+  // Decode time of this frame, without the time of earlier frames that were not shown.
+  double decode_ms = 0.0;
+  std::string encoding;  // "JPEG", "VP9" or "AVIF"
   std::chrono::steady_clock::time_point received_at;
 };
 
@@ -31,12 +33,12 @@ class PictureFlow {
  public:
   struct Steps {
     std::function<void()> ready;  // a picture is ready to be taken
-    std::function<void(const v1::Frame&)>
-        video_lost;  // video is undecodable until the next key frame
+    // Video is undecodable until the next key frame.
+    std::function<void(const v1::Frame&)> video_lost;
     std::function<void(const std::string&)> failed;  // a picture could not be decoded
   };
 
-  // The decoding thread calls the steps without holding a lock.
+  // The decoding thread calls the functions in `steps` and holds no lock meanwhile.
   explicit PictureFlow(Steps steps);
   ~PictureFlow();
   PictureFlow(const PictureFlow&) = delete;
@@ -47,11 +49,11 @@ class PictureFlow {
   void Stop();
   // Adds a frame to decode. Any thread may call this.
   void Offer(v1::Frame frame, std::size_t bytes);
-  // Begins a new stream: the next message belongs to another call.
+  // Begins a new stream, because the next frame comes from another Interact call.
   void StartStream();
   // Returns the newest decoded picture; null if it was already taken.
   std::unique_ptr<Picture> Take();
-  // Returns a picture's memory so that it can be reused.
+  // Gives a picture back, so that its memory can be reused.
   void Return(std::unique_ptr<Picture> picture);
   // Returns the number of frames that were replaced by newer frames before they were taken.
   std::uint64_t dropped() const;
@@ -71,7 +73,7 @@ class PictureFlow {
   PictureDecoder decoder_;  // used only by the decoding thread
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Waiting> waiting_;  // one frame, or several video frames
+  std::deque<Waiting> waiting_;  // one JPEG or AVIF frame, or several video frames
   std::unique_ptr<Picture> ready_;
   std::unique_ptr<Picture> spare_;
   std::uint64_t stream_ = 0;

@@ -1,5 +1,5 @@
-// Plays a storm's times at a chosen rate. It waits for the picture of one time before it continues
-// with the next. This is a plain value.
+// Plays a storm's times at a chosen rate. The playback waits for the picture of one time before it
+// continues with the next. This class has no thread and no clock; the caller passes the time.
 #pragma once
 
 #include <array>
@@ -15,16 +15,17 @@ class Playback {
   static constexpr std::array<float, 6> kRates{0.5F, 1.0F, 2.0F, 4.0F, 8.0F, 15.0F};
 
   float times_per_second = 2.0F;
-  bool loops = true;  // false: stops at the last time
+  bool loops = true;  // if false, playback stops at the last time
 
   bool playing() const { return playing_; }
   void Pause() { playing_ = false; }
-  // Starts or stops playback. Returns the time to show at once, if any.
+  // Starts or stops playback. Returns the index of a time to show at once, if any.
   std::optional<int> Toggle(int index, int count);
-  // Returns the time `by` steps later. It wraps around at both ends.
+  // Returns the index of the time that is `by` steps after `index`. The index wraps around at both
+  // ends.
   static int Step(int index, int by, int count);
-  // Returns the next time to show, if it is due. `shown` is true once the picture of `index` is on
-  // the screen.
+  // Returns the index of the next time to show, if it is due. `shown` is true once the picture of
+  // `index` is on the screen.
   std::optional<int> Advance(int index, int count, bool shown, TimePoint now);
 
  private:

@@ -14,7 +14,7 @@ constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr double kDegreesPerHeight = 180.0;
 // Distance that a spotter walks for a drag across the picture's whole height.
 constexpr double kWalkPerHeight_m = 20'000.0;
-// Height of the image frame behind a spotter's lens.
+// Height of the film frame of 36 x 24 mm to which a spotter's focal length refers.
 constexpr double kFrameHeight_mm = 24.0;
 
 template <typename Message>

@@ -1,6 +1,6 @@
 // Camera motions: how a drag in pixels moves and turns each kind of camera. The world axes are
-// those of thunderhead/v1/scene.proto: x east, y north, z up, azimuth clockwise from north. Pixels
-// count right and down.
+// those of thunderhead/v1/scene.proto. The x axis points east, y north and z up; the azimuth is
+// clockwise from north. Pixel distances are positive to the right and down.
 #pragma once
 
 #include <array>
@@ -46,7 +46,8 @@ struct PictureSize {
 std::optional<Pose> PoseOf(const v1::Camera& camera);
 // Returns the camera of a pose, with every value clamped to its limits.
 v1::Camera CameraOf(const Pose& pose);
-// Returns a camera of that kind with no values set, so that the server frames the whole storm.
+// Returns a camera of that kind with no values set. The server then chooses values that show the
+// whole storm.
 v1::Camera HomeCamera(v1::Camera::KindCase kind);
 
 // Turns or moves the camera so that the scene follows the pointer. An orbit camera turns around its
@@ -55,9 +56,9 @@ Pose Drag(Pose pose, double right_px, double down_px, const PictureSize& picture
 // Turns an orbit camera around its target, clockwise as seen from above, and up. Turns a spotter's
 // head to the right and up. A map cannot turn.
 Pose Turn(Pose pose, double azimuth_deg, double elevation_deg);
-// Moves the camera perpendicular to the line of sight, so that points at the target's distance
-// follow the pointer. A spotter walks instead: left for a drag to the right, backwards for a drag
-// up.
+// Moves an orbit camera or a map perpendicular to the line of sight, so that points at the target's
+// distance follow the pointer. A spotter walks instead: to the left for a drag to the right, and
+// backwards for a drag up.
 Pose Pan(Pose pose, double right_px, double down_px, const PictureSize& picture);
 // Zooms in if the factor is below 1. An orbit camera moves nearer, a spotter uses a longer lens,
 // and a map shows a smaller area.

@@ -5,7 +5,7 @@ namespace {
 
 using Vector3 = std::array<double, 3>;
 
-// Minimum depth in front of a perspective eye. Nearer points have no position in the picture.
+// Minimum depth in front of a perspective camera. Nearer points have no position in the picture.
 constexpr double kNear_m = 1.0;
 
 Vector3 Of(const v1::Vector& vector) { return {vector.x(), vector.y(), vector.z()}; }

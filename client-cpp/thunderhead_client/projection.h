@@ -1,5 +1,6 @@
-// Projects world points into a picture by Frame.view. The coordinate x is -1 at the picture's left
-// edge and 1 at the right edge. The coordinate y is -1 at the bottom and 1 at the top.
+// Projects world points into a picture. The projection uses Frame.view, the camera of the shown
+// frame. Picture coordinates: x is -1 at the left edge and 1 at the right edge; y is -1 at the
+// bottom and 1 at the top.
 #pragma once
 
 #include <array>
@@ -16,11 +17,11 @@ struct PicturePoint {
   double y = 0.0;
 };
 
-// Returns the position in the picture; nothing if the point is behind the eye or the view is
-// incomplete.
+// Returns a point's position in the picture; nothing if the point is behind the camera or the view
+// is incomplete.
 std::optional<PicturePoint> Project(const v1::View& view, const v1::Position& position);
 
-// Returns the visible parts of a line, without those behind the eye; none if the view is
+// Returns the parts of a line that are in front of the camera. Returns no parts if the view is
 // incomplete.
 std::vector<std::vector<PicturePoint>> ProjectLine(
     const v1::View& view, const google::protobuf::RepeatedPtrField<v1::Position>& positions);

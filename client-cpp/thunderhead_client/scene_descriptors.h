@@ -1,5 +1,5 @@
-// The description of scene.proto by protoc, comments included: a serialized
-// google.protobuf.FileDescriptorSet.
+// The descriptors of scene.proto as protoc writes them: a serialized
+// google.protobuf.FileDescriptorSet, which includes the comments.
 #pragma once
 
 #include <string_view>

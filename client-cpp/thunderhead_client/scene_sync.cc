@@ -8,8 +8,8 @@ namespace {
 // Several scenes may be in flight, so that a drag over a slow link need not wait for each response.
 // At a round trip of 150 ms the client sends 26 scenes a second.
 constexpr std::size_t kMaxInFlight = 4;
-// Above this number edits are merged into one. They would otherwise accumulate while the server
-// does not answer.
+// If there are more edits than this, they are merged into one edit. They would otherwise accumulate
+// while the server does not answer.
 constexpr std::size_t kMaxEdits = 256;
 constexpr std::chrono::milliseconds kBusyRest{500};
 constexpr std::chrono::milliseconds kStaleRest{1000};
@@ -102,7 +102,8 @@ void SceneSync::Refused(std::uint64_t ticket, Refusal refusal, TimePoint now) {
   const std::uint64_t last_edit = found->second.last_edit;
   sent_.erase(found);
   const bool follows =
-      drains_ && refusal == Refusal::kStale;  // an earlier refusal already gave the reason
+      drains_ &&
+      refusal == Refusal::kStale;  // this scene was stale only because an earlier scene was refused
   drains_ = true;
   if (!follows) {
     if (refusal == Refusal::kRefused) {
@@ -111,8 +112,9 @@ void SceneSync::Refused(std::uint64_t ticket, Refusal refusal, TimePoint now) {
     } else if (refusal == Refusal::kBusy) {
       rests_until_ = now + kBusyRest;
     } else if (!told_ || !revision_ || told_->revision <= *revision_) {
-      // The server will send the newer scene soon. If it does not, the scene that was in flight
-      // cannot be drawn.
+      // The server normally sends the newer scene soon, and the edits are then applied to that
+      // scene. If the newer scene does not arrive, the client sends its own scene again after
+      // kStaleRest.
       rests_until_ = now + kStaleRest;
     }
   }

@@ -1,7 +1,7 @@
 // Synchronizes the client's scene with the session's. Edits are functions of a scene. They are
-// applied to the client's scene at once. They are then sent as whole scenes, a few at a time, and
-// the newest wins. If another viewer has changed the session's scene meanwhile, the edits are
-// applied again to that scene. This is a plain value without threads or a clock.
+// applied to the client's scene at once. They are then sent as whole scenes, of which at most a few
+// are unanswered at a time. If another viewer has changed the session's scene meanwhile, the edits
+// are applied again to that scene. This class has no lock, no thread and no clock.
 #pragma once
 
 #include <chrono>
@@ -24,29 +24,29 @@ class SceneSync {
 
   // The reason why a scene was refused.
   enum class Refusal {
-    kStale,    // the edits were made to another scene than the session's current one
+    kStale,    // the scene is based on an older revision than the session's current scene
     kBusy,     // the server may accept the same scene later
     kRefused,  // the server will never accept this scene
   };
 
   struct Outgoing {
-    std::uint64_t ticket = 0;  // identifies the scene in its response
+    std::uint64_t ticket = 0;  // identifies this scene in Taken() or Refused()
     v1::Scene scene;
     std::uint64_t expected_revision = 0;
   };
 
-  // Returns the client's scene, with every edit.
+  // Returns the client's scene, which includes every edit.
   const v1::Scene& scene() const { return scene_; }
-  // Returns the revision that the edits are based on; 0 before any is known.
+  // Returns the revision that the edits are based on; 0 before the server has sent a revision.
   std::uint64_t revision() const { return revision_.value_or(0); }
   // Returns true once the server has accepted every edit.
   bool Settled() const { return edits_.empty(); }
 
   void Edited(Edit edit);
-  // Updates the session's scene from the server.
+  // Reports the session's scene and its revision, as the server sent them.
   void Told(const v1::Scene& scene, std::uint64_t revision);
-  // Reports that a session was joined. The next scene from the server is adopted regardless of its
-  // revision.
+  // Reports that the client has joined a session. The next scene from the server is adopted,
+  // whatever its revision.
   void Rejoined();
   // Discards the edits that the server has not accepted, because another viewer steers. Returns
   // true if there were any.
@@ -54,8 +54,8 @@ class SceneSync {
 
   // Returns the next scene to send, if one is due now.
   std::optional<Outgoing> Next(TimePoint now);
-  // Returns the earliest time at which Next() may return a scene that it does not return now.
-  // Returns nothing if only an event can cause that.
+  // Returns the earliest time at which Next() may return a scene although no other method was
+  // called. Returns nothing if Next() needs such a call first.
   std::optional<TimePoint> WakeAt() const;
 
   void Taken(std::uint64_t ticket, std::uint64_t revision);
@@ -90,8 +90,10 @@ class SceneSync {
   bool unsent_ = false;                 // edits were made after the last scene was sent
   std::map<std::uint64_t, Sent> sent_;  // unanswered scenes, by ticket
   std::uint64_t last_ticket_ = 0;
-  std::uint64_t awaited_ = 0;  // the revision that the last sent scene will get
-  bool drains_ = false;        // one scene was refused, so those in flight will be refused, too
+  // Revision that the last sent scene will get if the server accepts it.
+  std::uint64_t awaited_ = 0;
+  bool drains_ = false;  // a scene was refused or got an unexpected revision, so nothing is sent
+                         // until all responses are in
   std::optional<TimePoint> rests_until_;
 };
 

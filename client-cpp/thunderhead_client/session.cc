@@ -10,8 +10,8 @@ namespace {
 
 using Stub = v1::ThunderheadService::Stub;
 
-// A call that lasted this long counts as healthy, so the back-off after its loss begins with a
-// short delay.
+// A call that lasted at least this long counts as healthy. If it is lost, the back-off begins again
+// with a short delay.
 constexpr std::chrono::seconds kSound{5};
 
 bool IsLocked(grpc::StatusCode code) {

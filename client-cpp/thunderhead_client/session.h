@@ -25,11 +25,12 @@
 namespace thunderhead::client {
 
 struct SessionOptions {
-  std::string key;   // the presenter's or the viewers' key; empty: opens a new session
+  // Presenter's or viewers' key of the session to join; empty: opens a new session.
+  std::string key;
   std::string name;  // shown to others, at most 40 characters
   v1::Scene scene;   // the first scene of a new session
   v1::SessionRules rules;
-  std::vector<v1::Codec> codecs;  // in addition to JPEG
+  std::vector<v1::Codec> codecs;  // accepted encodings in addition to JPEG
   v1::Window window;
   // Opens a new session if a joined session no longer exists, and never stops retrying.
   bool never_gives_up = false;
@@ -37,17 +38,19 @@ struct SessionOptions {
   std::chrono::seconds patience{20};
 };
 
-// The session's thread makes these calls, one at a time.
+// Receives a session's events. The session's thread makes these calls, one at a time.
 class SessionListener {
  public:
   virtual ~SessionListener() = default;
   // Reports that SessionState has changed.
   virtual void Changed() = 0;
-  // Reports that a call has joined. Frames of an earlier call can no longer be used.
+  // Reports that a new Interact call has joined the session. Video frames of an earlier call cannot
+  // be continued.
   virtual void StreamBegan() = 0;
   // Reports a received frame. `bytes` is the message's size.
   virtual void Received(v1::Frame frame, std::size_t bytes) = 0;
-  // Reports that the server accepted a scene with this client's edits under that revision.
+  // Reports that the server accepted a scene with this client's edits as `revision`. The scene was
+  // sent at `sent_at`.
   virtual void SceneTaken(std::uint64_t revision,
                           std::chrono::steady_clock::time_point sent_at) = 0;
 };
@@ -63,20 +66,21 @@ class Session {
   Session& operator=(const Session&) = delete;
 
   SessionState State() const;
-  // Returns State() if it is newer than that version.
+  // Returns State() if its version is greater than `version`; otherwise nothing.
   std::optional<SessionState> StateAfter(std::uint64_t version) const;
 
   // Changes the scene. Does nothing and returns false if this client does not steer.
   bool Edit(SceneSync::Edit edit);
   // Moves the session's camera if this client steers. Otherwise moves the camera of the client's
-  // own view, and begins that view if needed. Returns false if neither is allowed.
+  // own view, and begins that view if needed. Returns false if this person may neither steer nor
+  // have an own view.
   bool ShowCamera(const v1::Camera& camera);
-  // Ends the client's own view.
+  // Ends the client's own view, so that the client sees the session's view again.
   void Follow();
 
   // Acknowledges a frame that is on the screen.
   void Shown(const v1::Frame& frame);
-  // Reports that the frame could not be decoded.
+  // Reports that this video frame could not be decoded.
   void VideoLost(const v1::Frame& frame);
 
   void SetWindow(const v1::Window& window);
@@ -91,7 +95,7 @@ class Session {
   void RefuseControl(std::uint64_t viewer_id);
   void TakeControl();
   void SetRules(const v1::SessionRules& rules);
-  // Ends the delay before the next attempt.
+  // Ends the delay before the next attempt to connect, so that the attempt begins at once.
   void RetryNow();
   // Opens a new session with the same scene after the old one has ended.
   void OpenAnother();

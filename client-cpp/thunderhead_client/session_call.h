@@ -28,8 +28,9 @@ struct Session::Call {
   Clock::time_point heard_at = Clock::now();
   std::optional<Outcome> farewell;
   std::uint64_t last_request = 0;
-  std::map<std::uint64_t, SentScene> scenes;                           // by request_id
-  std::map<std::uint64_t, v1::InteractRequest::MessageCase> requests;  // the newest requests
+  std::map<std::uint64_t, SentScene> scenes;  // sent scenes without a response, by request_id
+  // Kinds of the newest kMaxRemembered requests, by request_id.
+  std::map<std::uint64_t, v1::InteractRequest::MessageCase> requests;
 };
 
 }  // namespace thunderhead::client

@@ -1,4 +1,4 @@
-// Handles the messages of a session, one after another.
+// The methods of Session that handle the messages from the server.
 #include <utility>
 
 #include "google/rpc/status.pb.h"
@@ -158,7 +158,8 @@ void Session::TakeRefusal(Call& call, const v1::Refused& refused) {
   const auto found = call.requests.find(id);
   if (found == call.requests.end()) return;
   switch (found->second) {
-    case v1::InteractRequest::kPoint:  // came too late or too often; ignored
+    case v1::InteractRequest::kPoint:  // a pointer or acknowledgement came too late or too often;
+                                       // no reaction is needed
     case v1::InteractRequest::kAcknowledge:
       return;
     case v1::InteractRequest::kMoveCamera:

@@ -14,14 +14,14 @@
 namespace thunderhead::desktop {
 namespace {
 
-// After an event the interface needs several drawings to settle: windows find their sizes, and
-// controls are highlighted. Both the time and the number are minimums, so a slow machine draws this
-// often, too.
+// After an event ImGui needs several drawings until panels have their final sizes and controls are
+// highlighted. The window is drawn for at least kSettles and at least kSettlingDraws times, so a
+// slow machine also draws often enough.
 constexpr std::chrono::milliseconds kSettles{200};
 constexpr int kSettlingDraws = 6;
 constexpr std::chrono::milliseconds kFrame{16};
-// ImGui handles a press in one drawing, and reports only in a later one which item has the
-// keyboard.
+// Number of drawings after which ImGui reports the keyboard focus that a press has caused. ImGui
+// handles the press in one drawing, and reports the focus only in a later drawing.
 constexpr int kFocusDraws = 3;
 constexpr std::chrono::milliseconds kResizeSettles{250};
 
@@ -49,7 +49,7 @@ bool Differs(const v1::Window& a, const v1::Window& b) {
   return a.width_px() != b.width_px() || a.height_px() != b.height_px() || a.hidden() != b.hidden();
 }
 
-// Returns the keyboard focus as the last drawing left it.
+// Returns the keyboard focus after the last drawing.
 KeyFocus FocusNow() {
   const ImGuiIO& io = ImGui::GetIO();
   return {io.WantTextInput, io.WantCaptureKeyboard && (io.NavVisible || ImGui::IsAnyItemActive())};
@@ -172,7 +172,7 @@ void App::Run() {
     if (std::exchange(ui_.texts_changed, false)) Unsettle(now);
     Advance(now);
     stale |= TakePicture();
-    // The window is drawn at least once a second, because times and figures change.
+    // The window is drawn at least once a second, because the shown times and statistics change.
     stale |= now < redraw_until_ || redraws_ > 0 || now - drawn_at > std::chrono::seconds(1);
     if (window_->minimized()) settling_draws_ = redraws_ = 0;
     if (settling_draws_ > 0) {

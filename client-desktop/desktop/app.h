@@ -1,4 +1,4 @@
-// The program after its flags were read: the window, the session, and the loop that connects them.
+// The running program: the window, the session, and the event loop that connects them.
 #pragma once
 
 #include <atomic>
@@ -32,7 +32,7 @@ class App final : private client::SessionListener {
       std::shared_ptr<const client::Connection> connection);
   ~App() override;
 
-  // Runs until the window is closed or the requested time is over.
+  // Runs until the window is closed or the time of the flag --seconds is over.
   void Run();
 
  private:
@@ -49,7 +49,8 @@ class App final : private client::SessionListener {
   bool TakeEvents(int timeout_ms);
   bool TakeEvent(const SDL_Event& event);
   bool TakePicture();
-  // Requests the drawings that the interface needs to settle after an event or new texts.
+  // Schedules the drawings that ImGui needs after an event or new texts, until layout and focus no
+  // longer change.
   void Unsettle(Clock::time_point now);
   void Advance(Clock::time_point now);
   void Turn(Clock::time_point now);
@@ -85,9 +86,9 @@ class App final : private client::SessionListener {
   Clock::time_point last_live_ = Clock::now();
   InputTally input_;
   Clock::time_point redraw_until_{};
-  int redraws_ = 0;  // minimum number of drawings left, however long they take
-  // Drawings required before more input is handled. Only a drawing shows whether a text field has
-  // the keyboard.
+  int redraws_ = 0;  // minimum number of drawings that must still follow, however long they take
+  // Number of drawings required before more input is handled. Only after a drawing does ImGui
+  // report whether a text field has the keyboard.
   int settling_draws_ = 0;
   Clock::time_point resized_at_{};
   Clock::time_point turned_at_{};

@@ -1,4 +1,5 @@
-// The open panels and the choices of the window. None of them is part of the scene.
+// What this window shows: its open tool and panel, and its user's choices. None of this is part of
+// the scene.
 #pragma once
 
 #include <string>
@@ -13,9 +14,9 @@ struct Choices {
   Tool tool = Tool::kNone;
   Panel panel = Panel::kNone;
   Hand hand = Hand::kCamera;
-  bool focuses_panel = false;  // the panel gets the keyboard in the next frame
+  bool focuses_panel = false;  // the open panel gets the keyboard focus in the next drawing
   std::string query;           // search text of the drawer
-  std::string name;            // typed but not sent yet
+  std::string name;            // person's name that was typed but not sent yet
 
   // Opens a tool in place of the open tool, or closes it. Closing the marks tool also puts the pen
   // down.
@@ -24,8 +25,7 @@ struct Choices {
     if (tool != Tool::kMarks) hand = Hand::kCamera;
   }
   void Toggle(Panel chosen) { panel = panel == chosen ? Panel::kNone : chosen; }
-  // Closes the uppermost panel or tool, in the web page's order. Returns false if there was nothing
-  // to close.
+  // Closes one panel or tool, in the same order as the web page. Returns false if none was open.
   bool Close();
 };
 

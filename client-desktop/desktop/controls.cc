@@ -63,8 +63,8 @@ void ChoiceSetting(Ui& ui, const Parameter& parameter, const char* label) {
 }
 
 // Draws a field to type in. Returns true when its value is entered, or when the field is left by
-// Tab or a click. ImGui keeps no value between frames, so this function keeps what was typed so far
-// in the field that has the keyboard.
+// Tab or a click. ImGui keeps no value between drawings. This function therefore keeps the
+// unfinished value of the field that has the keyboard.
 template <typename Value, typename Draw>
 bool TypeInto(const char* id, Value& value, const Draw& draw) {
   static ImGuiID field = 0;
@@ -149,7 +149,8 @@ bool Slider(const char* label, const Limits& limits, double& value) {
   const ImGuiSliderFlags flags = limits.logarithmic && limits.minimum >= 0.0
                                      ? ImGuiSliderFlags_Logarithmic
                                      : ImGuiSliderFlags_None;
-  // The number is next to the slider, where the grab does not hide it and where it can be typed.
+  // The number is next to the slider, where the slider's grab does not hide it. It is a field, so
+  // that it can also be typed.
   const float number_width = 6.4F * ImGui::GetFontSize();
   ImGui::SetNextItemWidth(-number_width - ImGui::GetStyle().ItemSpacing.x);
   bool changed = ImGui::SliderScalar("##slider", ImGuiDataType_Double, &shown, &minimum, &maximum,

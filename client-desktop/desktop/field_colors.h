@@ -1,5 +1,5 @@
-// The fields' false colours in the encodings of the screen and the scene, and whether the picture
-// shows them.
+// Converts the fields' false colours between the screen's encoding (sRGB) and the scene's (linear),
+// and says whether the picture shows false colours.
 #pragma once
 
 #include <array>

@@ -17,28 +17,29 @@ struct Flags {
   std::string storm;  // storm of a new session; empty: the server's first
   bool full_screen = false;
   bool kiosk = false;
-  std::vector<std::string> views;  // scene files, shown in turn
+  std::vector<std::string> views;  // scene files that a kiosk shows in turn
   double view_seconds = 20.0;
-  int width = 1280;  // size of the window, in the desktop's units
+  int width = 1280;  // size of the window in the desktop's units, which may be several pixels each
   int height = 800;
-  double scale = 0.0;  // scale of texts and controls; 0: chosen for the monitor
+  // Scale factor of texts and controls; 0: the program chooses it for the monitor.
+  double scale = 0.0;
   bool saves_bytes = false;
-  std::string status_file;     // file for one line of JSON a second; empty: none
-  bool status_always = false;  // writes a line after every turn of the loop instead
-  double seconds = 0.0;        // run time; 0: until the window is closed
+  std::string status_file;     // file that gets one line of JSON a second; empty: writes no file
+  bool status_always = false;  // writes a line after every turn of the event loop instead
+  double seconds = 0.0;        // run time in seconds; 0: runs until the window is closed
   double turn_deg_per_s = 0.0;
 };
 
-// The flags, or the exit status if the program must end at once. It ends after --help, or after a
-// message about a wrong flag.
+// The parsed flags, or an exit status if the program must end at once. This happens after --help
+// and after an error in the flags.
 struct ParsedFlags {
   std::optional<Flags> flags;
   int exit_status = 0;
 };
 ParsedFlags ParseFlags(int argc, char** argv);
 
-// Reads a scene from a file in protobuf's JSON, like `thunderhead render --scene`. The error names
-// the file and the fault.
+// Reads a scene from a Protobuf JSON file, the format of `thunderhead render --scene`. The error
+// names the file and what is wrong.
 absl::StatusOr<v1::Scene> ReadScene(const std::string& path);
 
 }  // namespace thunderhead::desktop

@@ -1,6 +1,6 @@
-// Undo and redo of this window's own changes. A step contains what it changed, and leaves the rest
-// of the scene as it is by then, because other viewers may have changed it. Successive changes of
-// one subject within a short time, such as those of a drag, are one step.
+// Undo and redo of this window's own changes. Undoing a step restores only the values that the step
+// changed, because other viewers may have changed the rest of the scene meanwhile. Successive
+// changes of one subject within a short time, such as those of a drag, form one step.
 #pragma once
 
 #include <chrono>
@@ -18,15 +18,17 @@ class History {
   using TimePoint = std::chrono::steady_clock::time_point;
   using Edit = client::SceneSync::Edit;
 
-  // Records a change of the scene. `subject` names the part that was changed.
+  // Records a change of the scene. `subject` is a name for the part that was changed; changes with
+  // the same subject may form one step.
   void Record(const v1::Scene& before, const v1::Scene& after, const std::string& subject,
               TimePoint now);
-  // Returns true if another change of the last subject would join the last step.
+  // Returns true if a change of the last subject at time `now` would still become part of the last
+  // step.
   bool IsOpen(TimePoint now) const;
   // Returns the edit that undoes or redoes a step; nothing if there is no such step.
   std::optional<Edit> Undo();
   std::optional<Edit> Redo();
-  // Forgets the steps, because they belong to another storm's scene.
+  // Forgets all steps. This is needed when another storm is shown.
   void Clear();
 
  private:

@@ -1,5 +1,6 @@
-// Counts the user's input that the window has handled, and the drawings since then. Tests send real
-// input, and read in the status file when the window has handled and drawn it.
+// Counts the user's input events that the window has handled, and the drawings since the last
+// event. Tests send real input. They read these counts in the status file to learn when the input
+// was handled and its effect drawn.
 #pragma once
 
 #include <SDL.h>
@@ -13,11 +14,13 @@ struct InputTally {
   void Take(const SDL_Event& event);
 
   std::int64_t keys = 0;     // keys released, except Shift, Ctrl, Alt and the like
-  std::int64_t buttons = 0;  // mouse buttons pressed or released
-  std::int64_t notches = 0;  // notches of the wheel
-  int pointer_x = -1;        // position at the last motion, in the window's units
+  std::int64_t buttons = 0;  // number of presses and releases of mouse buttons
+  std::int64_t notches = 0;  // number of notches that the mouse wheel was turned
+  // Pointer position at its last motion, in the window's units; -1 before the first motion.
+  int pointer_x = -1;
   int pointer_y = -1;
-  int drawings = 0;  // number since the last event of the window, or since texts changed
+  // Number of drawings since the last event of the window, or since texts changed.
+  int drawings = 0;
 };
 
 }  // namespace thunderhead::desktop

@@ -9,7 +9,8 @@ namespace {
 using client::Pose;
 
 constexpr double kTurn_deg = 3.0;
-// Pan distance of one key press, as a percentage of the picture.
+// Pan distance of one key press in pixels of kPicture, which is 100 x 100 pixels: 5 % of the
+// picture.
 constexpr double kPan_px = 5.0;
 constexpr client::PictureSize kPicture{100.0, 100.0};
 constexpr double kZoomFactor = 0.88;

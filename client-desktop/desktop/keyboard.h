@@ -29,17 +29,18 @@ struct KeyActions {
   std::function<void()> escape;  // closes the uppermost panel or tool
 };
 
-// Says which kind of control has the keyboard focus.
+// The kind of control that has the keyboard focus, if any.
 struct KeyFocus {
-  bool text = false;      // a text field has the focus: it uses all keys
-  bool controls = false;  // another control has the focus: it uses arrows, space and Enter
+  bool text = false;      // a text field has the focus and uses all keys
+  bool controls = false;  // another control has the focus and uses arrows, space and Enter
 };
 
-// Handles a key. Letters follow the keyboard's layout, digits also their position. Returns true if
-// the key had an effect.
+// Handles a key press. A letter is recognized by the keyboard's layout, a digit also by the key's
+// position. Returns true if the key had an effect.
 bool TakeKey(const SDL_KeyboardEvent& event, const KeyFocus& focus, const KeyActions& actions);
-// Handles punctuation and digits as the keyboard's layout produces them, with or without Shift
-// (SDL_TEXTINPUT). `modifiers` are those held now. Returns true if the text had an effect.
+// Handles the text of an SDL_TEXTINPUT event: punctuation and digits as the keyboard's layout
+// produces them, with or without Shift. `modifiers` are the modifier keys that are held now.
+// Returns true if the text had an effect.
 bool TakeText(std::string_view text, Uint16 modifiers, const KeyFocus& focus,
               const KeyActions& actions);
 

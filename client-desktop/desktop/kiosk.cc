@@ -7,10 +7,10 @@
 namespace thunderhead::desktop {
 namespace {
 
-// A shorter connection loss is not worth a warning on a wall display.
+// A connection loss shorter than this shows no warning.
 constexpr std::chrono::seconds kQuietLoss{10};
-// A view whose picture never arrives, for example because its storm is unreadable, is left after
-// this time.
+// If the picture of a view never arrives, for example because its storm is unreadable, the kiosk
+// shows the next view after this time.
 constexpr std::chrono::minutes kMostWait{2};
 
 }  // namespace

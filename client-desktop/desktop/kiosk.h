@@ -1,5 +1,5 @@
-// A wall display. It shows views in turn, without controls, and warns when its picture is old. This
-// is a plain value; the caller passes the time.
+// The logic of a kiosk, which is a display without controls, for example on a wall. It shows views
+// in turn, and warns when its picture is old. The class has no clock; the caller passes the time.
 #pragma once
 
 #include <chrono>
@@ -11,8 +11,9 @@
 
 namespace thunderhead::desktop {
 
-// Replaces the scene by the view, like `render --scene`: the server chooses what the view leaves
-// out. The scene keeps its picture size, and also its storm and time if the view names none.
+// Replaces the scene by the view. As in `thunderhead render --scene`, the server chooses every
+// value that the view does not set. The scene keeps its picture size. It also keeps its storm and
+// time, unless the view names another storm or a time.
 void LayView(const v1::Scene& view, v1::Scene& scene);
 
 class Kiosk {
@@ -21,19 +22,20 @@ class Kiosk {
 
   Kiosk(std::vector<v1::Scene> views, double view_seconds);
 
-  // Shows the next view if it is due. If this window steers, it applies the whole view, otherwise
-  // only the view's camera as an own view. A view is due after the previous picture was shown for
-  // its time, or did not arrive for two minutes. If another session or another viewer has undone a
-  // view, it is shown again at once.
+  // Shows the next view if it is due. If this window steers, the whole view becomes the session's
+  // scene. Otherwise this window shows the view's camera as its own view. A view is due after the
+  // previous view's picture was shown for `view_seconds`, or has not arrived for two minutes. A
+  // view that was undone by another viewer or by a new session is shown again at once.
   void Advance(Ui& ui, TimePoint now);
-  // Returns the index of the view shown; -1 before the first.
+  // Returns the index of the view that is shown; -1 before the first view.
   int shown() const { return shown_; }
-  // Returns a warning if the picture is old because the connection was lost for a while. Also warns
-  // if the view was refused or cannot be drawn. Otherwise returns an empty string.
+  // Returns a warning text if the connection has been lost for a while, or if the server refused
+  // the view or cannot draw it. Otherwise returns an empty string.
   std::string Warning(const Ui& ui, TimePoint last_live, TimePoint now) const;
 
  private:
-  // Returns true if the view shown has a camera. It is an own view if this window does not steer.
+  // Returns true if the view that is shown has a camera, which a window that does not steer shows
+  // as its own view.
   bool ShowsOwnView() const;
 
   const std::vector<v1::Scene> views_;
@@ -41,9 +43,9 @@ class Kiosk {
   int shown_ = -1;
   TimePoint asked_at_{};
   TimePoint shown_at_{};
-  int shown_in_ = 0;  // the state's joined_count at that time
+  int shown_in_ = 0;  // SessionState::joined_count when the view was shown
   bool steered_ = false;
-  int notices_ = 0;  // the state's notice_count at that time
+  int notices_ = 0;  // SessionState::notice_count when the view was shown
 };
 
 }  // namespace thunderhead::desktop

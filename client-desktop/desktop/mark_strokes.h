@@ -1,6 +1,6 @@
-// Splits marks in a picture into strokes. The page joins all strokes of a mark to one line. In this
-// line a repeated corner means that the pen is lifted to the next corner
-// (client-web/src/core/lettering.ts).
+// Splits a mark, which people draw over the picture, into its strokes. The web page joins all
+// strokes of a mark to one line. A corner that occurs twice in succession means that the pen is
+// lifted and moves to the next corner (client-web/src/core/lettering.ts).
 #pragma once
 
 #include <vector>

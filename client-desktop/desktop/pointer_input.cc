@@ -8,7 +8,7 @@ namespace {
 
 // One notch of a common wheel changes the distance by 14 %, as on the page.
 constexpr double kZoomPerNotch = 0.13;
-// Fingers that move apart by the window's diagonal bring the camera about five times nearer.
+// Two fingers that move apart by the window's diagonal divide the camera's distance by about five.
 constexpr double kZoomPerPinch = 1.6;
 
 ScreenPoint PointOf(int x, int y) { return {static_cast<float>(x), static_cast<float>(y)}; }
@@ -99,7 +99,7 @@ bool PointerInput::MoveTo(const SDL_MouseMotionEvent& motion, bool over_picture)
   return true;
 }
 
-// Touch pads scroll by fractions of a notch.
+// Zooms by the wheel. Touch pads report fractions of a notch.
 bool PointerInput::Wheel(const SDL_MouseWheelEvent& wheel) {
   const double notches =
       wheel.preciseY != 0.0F ? static_cast<double>(wheel.preciseY) : static_cast<double>(wheel.y);

@@ -15,7 +15,7 @@ namespace thunderhead::desktop {
 
 struct ScreenPoint {
   float x = 0.0F;  // from the left, in the window's units
-  float y = 0.0F;  // from the top
+  float y = 0.0F;  // distance from the window's top edge
 };
 
 // Callbacks of the active tool for presses, moves and releases.
@@ -23,7 +23,8 @@ struct ToolSteps {
   std::function<void(ScreenPoint)> press;
   std::function<void(ScreenPoint)> drag;
   std::function<void(bool cancelled)> release;
-  std::function<void(std::optional<ScreenPoint>)> hover;  // absent: the pointer left
+  // No point: the pointer has left the picture.
+  std::function<void(std::optional<ScreenPoint>)> hover;
 };
 
 class PointerInput {
@@ -33,12 +34,13 @@ class PointerInput {
 
   explicit PointerInput(Move move) : move_(std::move(move)) {}
 
-  // Sets the window's size in the units of its events.
+  // Sets the window's size, in the same units as the positions in its events.
   void SetSize(float width, float height) { size_ = {width, height}; }
-  // Sets the active tool; null for the camera.
+  // Sets the active tool; null if the left button moves the camera.
   void SetTool(const ToolSteps* tool);
-  // Returns true if the event was one over the picture. The argument `over_picture` is false over a
-  // panel, where only a drag or gesture that has already begun continues.
+  // Handles an event. Returns true if the event belonged to the picture. Pass `over_picture` as
+  // false if the pointer is over a panel; only a drag or gesture that has already begun then
+  // continues.
   bool Take(const SDL_Event& event, bool over_picture);
   bool dragging() const { return held_button_ != 0; }
 
@@ -53,13 +55,15 @@ class PointerInput {
   const Move move_;
   client::PictureSize size_{1.0, 1.0};
   const ToolSteps* tool_ = nullptr;
-  int held_button_ = 0;  // button of a drag that began over the picture
-  bool draws_ = false;   // the drag uses the tool
+  // Mouse button of a drag that began over the picture; 0 without such a drag.
+  int held_button_ = 0;
+  bool draws_ = false;  // true if the drag uses the active tool
   bool pans_ = false;
   bool hovers_ = false;
   int fingers_ = 0;
-  bool two_fingers_ = false;               // true until all fingers are lifted
-  std::optional<ScreenPoint> gesture_at_;  // coordinates from 0 to 1
+  bool two_fingers_ = false;  // a two-finger gesture has begun; true until all fingers are lifted
+  // Last midpoint of the fingers, as fractions of the window from 0 to 1.
+  std::optional<ScreenPoint> gesture_at_;
 };
 
 }  // namespace thunderhead::desktop

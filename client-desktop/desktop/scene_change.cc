@@ -17,7 +17,7 @@ using google::protobuf::util::MessageDifferencer;
 
 using Fields = std::vector<const FieldDescriptor*>;
 
-// Returns a message that contains only those fields.
+// Returns a copy of `whole` that contains only the given fields.
 std::unique_ptr<Message> PartOf(const Message& whole, const Fields& fields) {
   std::unique_ptr<Message> part(whole.New());
   part->CopyFrom(whole);
@@ -54,7 +54,8 @@ void ChangeItems(const Message& from, const Message& to, const FieldDescriptor& 
                  Message& present) {
   const Reflection& reflection = *present.GetReflection();
   const int count = reflection.FieldSize(to, &field);
-  // A list with a different length was changed by another viewer.
+  // If the list in `present` has a different length, another viewer has changed it. It then stays
+  // unchanged.
   if (reflection.FieldSize(present, &field) != count) return;
   for (int i = 0; i < count; ++i) {
     MakeChange(reflection.GetRepeatedMessage(from, &field, i),

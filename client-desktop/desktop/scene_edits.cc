@@ -7,8 +7,8 @@
 namespace thunderhead::desktop {
 namespace {
 
-// First values of the goals: an error that every view can reach, and a time per frame that still
-// gives smooth motion.
+// Initial values of the two goals: a relative error (0.5 is 50 %) that every view can reach, and a
+// time per frame that still gives smooth motion.
 constexpr float kFirstError = 0.5F;
 constexpr float kFirst_ms = 100.0F;
 

@@ -1,5 +1,5 @@
-// Edits of a scene that concern several of its parts. Most of them follow the page
-// (client-web/src/core/scene.ts). They do not depend on the window.
+// Edits that change several parts of a scene at once. Most of them do the same as the web page's
+// edits (client-web/src/core/scene.ts).
 #pragma once
 
 #include <string>
@@ -9,26 +9,29 @@
 
 namespace thunderhead::desktop {
 
-// Shows another storm's last time. Clears what belongs to the old storm, so that the server chooses
-// it anew: camera, fields and the sun's clock. Keeps light, rendering and picture.
+// Shows another storm at its last time. Clears the camera, the fields and the sun's clock, because
+// they belong to the old storm; the server chooses new values. Keeps light, rendering and picture
+// settings.
 void ChooseStorm(v1::Scene& scene, const std::string& storm_id);
 
-// Replaces technique and settings by a preset, which also determines the source of the particle
-// sizes. Drops an accuracy goal, for which the server would choose other settings.
+// Replaces the rendering technique and its settings by a preset. The preset also determines where
+// the particle sizes come from. Removes a goal (a required accuracy or speed), because the server
+// would choose other settings to reach the goal.
 void ChoosePreset(v1::Scene& scene, v1::Preset preset);
 
-// Sets the source of all fields' particle sizes, and clears the source of each single field.
+// Sets the source of the particle sizes for all fields, and clears the sources that were set for
+// single fields.
 void ChooseParticleSizes(v1::Scene& scene, v1::ParticleSizes sizes);
 
-// Sets the accuracy or the speed that the server must reach instead of a quality. The first value
-// is the page's. LIMIT_NOT_SET removes the goal.
+// Sets a goal: an error or a time per frame that the server must keep by choosing the quality
+// itself. The goal's first value is the same as on the web page. LIMIT_NOT_SET removes the goal.
 void ChooseGoal(v1::Scene& scene, v1::Accuracy::LimitCase goal);
-// Returns true for presets that trade speed for accuracy. The other presets are the papers'
-// settings.
+// Returns true for the quality presets, which trade speed for accuracy. The other presets reproduce
+// the settings of papers.
 bool IsQuality(v1::Preset preset);
-// Returns the preset that equals the scene's rendering. This is needed because the server replaces
-// a preset by its settings. Returns PRESET_UNSPECIFIED if there is none, or while an accuracy goal
-// overrides it.
+// Returns the preset whose settings equal the scene's rendering settings. The scene itself does not
+// name its preset, because the server replaces a preset by its settings. Returns PRESET_UNSPECIFIED
+// if no preset matches, or if the scene has a goal.
 v1::Preset PresetOf(const v1::Scene& scene, const v1::GetServerInfoResponse& server);
 
 }  // namespace thunderhead::desktop

@@ -13,7 +13,8 @@
 namespace thunderhead::desktop {
 namespace {
 
-// A corner of a line is left out if it is nearer than this to the last corner.
+// A corner of a hand-drawn line is left out if its distance to the last corner is less than this
+// many units of the window.
 constexpr float kNear = 3.0F;
 constexpr std::size_t kMaxCorners = 256;
 

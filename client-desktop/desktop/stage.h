@@ -1,5 +1,5 @@
-// The picture in the window, with all people's pointers and marks over it, and the tools that make
-// them.
+// The picture in the window with the pointers and marks of all people over it. Also the tools with
+// which this person points and draws.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ class Stage {
 
   // Draws the picture centred, as large as fits into the area that the panels leave free.
   void Draw(const PictureTexture& picture);
-  // Returns the active tool; null for the camera.
+  // Returns the active tool; null if the pointer moves the camera.
   const ToolSteps* HandTool() const;
 
  private:

@@ -1,5 +1,6 @@
-// Writes one line of JSON a second, for monitoring and the soak test. At kMaxBytes the file is
-// renamed to FILE.1, which replaces an older one, and a new file begins.
+// Writes one line of JSON a second about the client's state, for monitoring and the soak test. A
+// file that reaches kMaxBytes is renamed to FILE.1, which replaces an older FILE.1, and a new file
+// begins.
 #pragma once
 
 #include <chrono>
@@ -16,7 +17,7 @@ namespace thunderhead::desktop {
 // A writer of lines to a file of limited size.
 class RotatedFile {
  public:
-  // Truncates the file. An empty path writes nothing.
+  // Truncates the file. With an empty path the object writes nothing.
   RotatedFile(std::string path, std::int64_t max_bytes);
 
   bool is_open() const { return file_.is_open(); }
@@ -36,8 +37,8 @@ class StatusLog {
 
   // Returns INVALID_ARGUMENT with the path and the reason if the file is not writable.
   static absl::Status CheckWritable(const std::string& path);
-  // Opens the log. An empty path writes nothing. Write() does nothing within `interval` of the last
-  // line.
+  // Opens the log. With an empty path it writes nothing. Write() does nothing until `interval` has
+  // passed since the last line.
   StatusLog(const std::string& path, std::chrono::milliseconds interval)
       : file_(path, kMaxBytes), interval_(interval) {}
 

@@ -1,5 +1,6 @@
-// The state that the panels show and act on. It has copies of the session's and the catalogue's
-// state, taken once a frame, and the choices made in this window.
+// The state that the panels show, and the actions that they call. It holds copies of the session's
+// and the catalogue's state, which are updated before each drawing, and the choices made in this
+// window.
 #pragma once
 
 #include <functional>
@@ -28,16 +29,16 @@ struct Ui {
 
   client::SessionState state;
   client::CatalogueState storms;
-  std::vector<client::Parameter> parameters;  // parameters of the state's scene
+  std::vector<client::Parameter> parameters;  // parameters of state.scene
   client::Statistics::Figures figures;
   std::uint64_t dropped = 0;
-  v1::Frame frame;       // the frame shown, without its bytes
+  v1::Frame frame;       // the frame that is shown, without its encoded picture
   std::string encoding;  // encoding of the frame's picture
-  std::string failure;   // why the last picture could not be decoded
+  std::string failure;   // why the last picture could not be decoded; empty if it could
 
   Choices choices;
   bool typing = false;  // a text field has the keyboard
-  int edits = 0;        // how often this window has changed the scene or its own view
+  int edits = 0;        // number of times that this window has changed the scene or its own view
   client::Playback playback;
   History history;
   std::function<void()> toggle_full_screen;
@@ -45,13 +46,13 @@ struct Ui {
   float width = 0.0F;  // size of the window, in its units
   float height = 0.0F;
 
-  // Says whether a change can be undone.
+  // Whether a change is recorded in the history, so that it can be undone.
   enum class Recording { kRecorded, kUnrecorded };
 
-  // Changes the scene if this window steers. `subject` names what is changed, for undo.
+  // Changes the scene if this window steers. `subject` names the changed part for History.
   void Edit(const std::string& subject, client::SceneSync::Edit edit,
             Recording recording = Recording::kRecorded);
-  // Moves the camera of the view shown.
+  // Applies a motion to the camera of the view that this window shows.
   void Move(const std::function<client::Pose(const client::Pose&)>& motion);
   void ShowCamera(const v1::Camera& camera);
   void ShowTime(int index, Recording recording = Recording::kRecorded);
@@ -64,12 +65,14 @@ struct Ui {
   void Undo();
   void Redo();
 
-  // These belong to the storm shown. They are 0 before it is described.
+  // Number of times of the storm that is shown, and the index of the time that is shown. Both are 0
+  // until the server has described the storm.
   int time_count() const;
   int time_index() const;
   // Returns true once the picture of the newest scene is on the screen.
   bool IsShown() const;
-  // Copies what has changed. Returns true if anything has changed.
+  // Copies the state of the session and the catalogue if it has changed. Returns true if anything
+  // has changed.
   bool Refresh();
   // True after texts appeared or vanished. The interface needs more than one drawing to lay them
   // out.

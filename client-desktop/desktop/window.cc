@@ -22,7 +22,7 @@ absl::Status SdlError(const char* what) {
                    "; it needs a display (DISPLAY or WAYLAND_DISPLAY) and OpenGL 3"));
 }
 
-// Returns the DPI; 0 if it is unknown.
+// Returns the monitor's dots per inch; 0 if the number is unknown.
 float DpiOfMonitor(SDL_Window* window) {
   float dpi = 0.0F;
   const int display = SDL_GetWindowDisplayIndex(window);
@@ -51,8 +51,8 @@ absl::StatusOr<std::unique_ptr<Window>> Window::Open(const WindowOptions& option
   SDL_GL_SetAttribute(SDL_GL_DEPTH_SIZE, 0);
   Uint32 flags = SDL_WINDOW_OPENGL | SDL_WINDOW_RESIZABLE | SDL_WINDOW_ALLOW_HIGHDPI;
   if (options.full_screen) flags |= SDL_WINDOW_FULLSCREEN_DESKTOP;
-  // Without a window manager, as on a bare wall display, nothing else gives a window the display's
-  // size.
+  // A full-screen window is opened at the display's size here. Without a window manager, as on a
+  // kiosk, no other program would enlarge the window.
   SDL_Rect place{SDL_WINDOWPOS_UNDEFINED, SDL_WINDOWPOS_UNDEFINED, options.width, options.height};
   if (options.full_screen) SDL_GetDisplayBounds(0, &place);
   SDL_Window* const window =

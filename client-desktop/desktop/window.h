@@ -1,5 +1,4 @@
-// A window with OpenGL and Dear ImGui. It opens, scales with its monitor, and shows a frame of the
-// interface.
+// A window with OpenGL and Dear ImGui, whose texts and controls scale with its monitor.
 #pragma once
 
 #include <SDL.h>
@@ -16,18 +15,19 @@ struct WindowOptions {
   int height = 800;
   bool full_screen = false;
   bool hides_cursor = false;
-  double scale = 0.0;  // scale of texts and controls; 0: chosen for the monitor
+  // Scale factor of texts and controls; 0: the window chooses it for the monitor.
+  double scale = 0.0;
 };
 
-// Returns the scale of texts and controls, in the window's units. It is 1 if the monitor's reported
-// size is implausible, as is common for projectors. `dpi` counts the monitor's pixels. If a unit
-// has several pixels, as under Wayland, the desktop has already scaled the window, and the scale is
-// also 1.
+// Returns the scale factor of texts and controls in the window's units. `dpi` is the monitor's
+// number of physical pixels per inch. The factor is 1 if `dpi` is implausible, as is common for
+// projectors. It is also 1 if a unit has several pixels, as under Wayland, because the desktop has
+// then already scaled the window.
 float ScaleOfMonitor(float dpi, float pixels_per_unit);
 
 class Window {
  public:
-  // Opens a window. The error says what SDL or OpenGL lacks.
+  // Opens a window. The error says why SDL or OpenGL could not be started.
   static absl::StatusOr<std::unique_ptr<Window>> Open(const WindowOptions& options);
   ~Window();
   Window(const Window&) = delete;
@@ -35,15 +35,16 @@ class Window {
 
   // Passes an event to the interface.
   void Take(const SDL_Event& event);
-  // Draws the interface that `build` makes, and shows it.
+  // Calls `build`, which makes the interface by ImGui calls, then draws the interface and shows it.
   void Draw(const std::function<void()>& build);
-  // Returns true if a panel of the last frame covers this point, in the window's units. ImGui knows
-  // this only after the next drawing, which is too late for a press that follows a quick motion.
+  // Returns true if a panel of the last drawing covers this point, given in the window's units.
+  // ImGui itself reports this only after the next drawing, which is too late for a press that
+  // follows a quick motion.
   bool IsOverPanel(float x, float y) const;
   void ToggleFullScreen();
   bool full_screen() const;
   bool minimized() const;
-  // Returns the scale of texts and controls, in the window's units.
+  // Returns the scale factor of texts and controls, in the window's units.
   float scale() const { return scale_; }
   // These sizes are in physical pixels.
   int width_px() const;

@@ -35,18 +35,18 @@ function lastLine(path) {
   }
 }
 
-// Returns true if the effects of the last input and of changed texts are on the screen.
+// Returns true if the effects of the last input, and of texts that changed, have been drawn.
 export const drawn = (status) => status.drawings >= SETTLING_DRAWINGS;
 
-// Returns true if a full picture of the newest scene is on the screen.
+// Returns true if a refined picture of the newest scene is on the screen.
 export const rests = (status) =>
   status.link === "live" && status.refined && status.revision > 0 && status.shown_revision >= status.revision;
 
-// Returns true if `rests` does and no finer picture will follow. This holds if no light is traced: the last picture
-// arrives in full quality as AVIF.
+// Returns true if rests() returns true and no better picture will follow. Use it only without path-traced correction:
+// the last picture then arrives in full quality as AVIF.
 export const complete = (status) => rests(status) && status.image_scale >= 1 && status.encoding === "AVIF" && drawn(status);
 
-// Returns true if `rests` does and the controls know the storm's fields and times, which arrive separately.
+// Returns true if rests() returns true and the controls know the storm's fields and times, which arrive separately.
 export const ready = (status) => rests(status) && status.times > 0 && status.people > 0 && drawn(status);
 
 export function startDesktop(display, port, flags = []) {
@@ -110,7 +110,7 @@ export function startDesktop(display, port, flags = []) {
       const path = Array.from({ length: steps }, (_, i) => ["mousemove", at(from.x, to.x, i + 1), at(from.y, to.y, i + 1)]);
       return this.input({ at: to, buttons: 1 }, () => display.xdotool(...path.flat(), "mouseup", 1));
     },
-    // Turns the wheel up by one notch.
+    // Turns the mouse wheel up by one notch.
     wheel() {
       return this.input({ notches: 1 }, () => display.xdotool("click", 4));
     },

@@ -197,7 +197,7 @@ TEST(Keyboard, HasThePagesKeys) {
   EXPECT_EQ(keys.undone, 1);
 }
 
-// The page uses these keys to save, compare and probe. Here they have no meaning.
+// The web page uses these keys to save, compare and probe. In this client they have no effect.
 TEST(Keyboard, KeysOfThePageAloneDoNothing) {
   Keys keys;
   for (const SDL_Keycode key : {SDLK_s, SDLK_c, SDLK_p, SDLK_RETURN}) EXPECT_FALSE(keys.Press(key));
@@ -255,18 +255,18 @@ TEST(Keyboard, ATextUsesAllKeysAndAControlItsOwn) {
 
 double DistanceOf(const Keys& keys) { return std::get<OrbitPose>(keys.pose).distance_m; }
 
-// A key event contains the key's position and its character without Shift. Its text follows as
-// another event.
+// An SDL key event contains the key's position and its character without Shift. The text that the
+// key produces follows in another event.
 TEST(Keyboard, OnAGermanOneDigitsAndQuestionMarkWork) {
   Keys keys;
   keys.Press(SDL_SCANCODE_7, SDLK_7);
   keys.Type("7");
   EXPECT_EQ(keys.choices.tool, Tool::kMarks);
-  // These are Shift and the key of the sharp s.
+  // Shift and the key of the letter "ß" produce a question mark.
   keys.Press(SDL_SCANCODE_MINUS, 0xDF, KMOD_LSHIFT);
   keys.Type("?", KMOD_LSHIFT);
   EXPECT_EQ(keys.choices.panel, Panel::kHelp);
-  // These are Shift and 7.
+  // Shift and 7 produce a slash.
   keys.Press(SDL_SCANCODE_7, SDLK_7, KMOD_LSHIFT);
   keys.Type("/", KMOD_LSHIFT);
   EXPECT_EQ(keys.choices.tool, Tool::kMarks);
@@ -280,11 +280,12 @@ TEST(Keyboard, OnAFrenchOneDigitsWorkWithShiftAndWithout) {
   keys.Press(SDL_SCANCODE_1, SDLK_AMPERSAND, KMOD_LSHIFT);
   keys.Type("1", KMOD_LSHIFT);
   EXPECT_EQ(keys.choices.tool, Tool::kCamera);
-  // Caps Lock is on.
+  // With Caps Lock, the key of "&" produces the digit 1.
   keys.Press(SDL_SCANCODE_1, SDLK_AMPERSAND, KMOD_CAPS);
   keys.Type("1", KMOD_CAPS);
   EXPECT_EQ(keys.choices.tool, Tool::kNone);
-  // These are Shift and the semicolon's key. The comma's key has the question mark above.
+  // Shift and the semicolon's key produce a full stop. The comma's key produces the question mark
+  // with Shift.
   keys.Press(SDL_SCANCODE_COMMA, SDLK_SEMICOLON, KMOD_LSHIFT);
   keys.Type(".", KMOD_LSHIFT);
   EXPECT_EQ(keys.stepped, 1);
@@ -296,7 +297,8 @@ TEST(Keyboard, OnAFrenchOneDigitsWorkWithShiftAndWithout) {
 
 TEST(Keyboard, PlusWithinTheDigitsZoomsAndOpensNoTool) {
   Keys keys;
-  // On a Czech keyboard this is the key of 1 without Shift. On a Swiss keyboard it is with Shift.
+  // A Czech keyboard produces "+" by the key of the digit 1 without Shift, a Swiss keyboard by this
+  // key with Shift.
   keys.Press(SDL_SCANCODE_1, SDLK_PLUS);
   keys.Type("+");
   EXPECT_NEAR(DistanceOf(keys), 50'000.0 * 0.88, 1.0);
@@ -388,7 +390,7 @@ TEST(Texts, AMeasuredErrorHasItsIntervalAndBias) {
   report.set_error_low(0.081F);
   report.set_error_high(0.094F);
   report.set_bias(-0.02F);
-  // The report keeps the parts from the table.
+  // A report of a measured error still has the parts of the estimate from the table.
   report.set_model_error(0.128F);
   report.set_discretisation_error(0.007F);
   EXPECT_EQ(ErrorSource(report), "measured: 8.1 to 9.4 %");

@@ -51,10 +51,10 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-// Returns true if that view's camera is in the picture.
+// Returns a condition on the status: the picture shows the view with index `at`, with this view's kind of camera.
 const shows = (at) => (now) => now.view === at && now.camera === ["orbit", "top_down"][at] && now.shown_revision === now.revision;
 
-// The lower edge shows a warning.
+// The area at the lower edge in which the kiosk shows a warning.
 const CORNER = { x: 0, y: SIZE.height - 60, width: SIZE.width, height: 60 };
 const warns = () => pixelsLike(region(display.pixels(), CORNER), BAD) > 100;
 
@@ -120,7 +120,7 @@ test("with the viewers' key it shows its views' cameras to itself, without views
     const own = await kiosk.until("the view", (now) => now.camera === "orbit" && Math.abs(now.azimuth_deg - 45) < 0.5);
     assert.deepEqual({ role: own.role, looks_around: own.looks_around }, { role: "viewer", looks_around: true });
     await kiosk.stop();
-    // The presenter learns that the kiosk has left only after everything that the kiosk did.
+    // The server reports that the kiosk has left after all of the kiosk's changes, so a change would be visible here.
     const { camera, revision: later } = await presenter.until("alone again", (now) => now.people === 1);
     assert.deepEqual({ camera, revision: later }, { camera: "top_down", revision }, "it has changed the presenter's scene");
     kiosk = startDesktop(display, serverFlags.grpcPort, key);

@@ -30,7 +30,7 @@ let failures = 0;
 let restarts = 0;
 try {
   await kiosk.until("the first picture", (now) => now.frames > 0);
-  const lines = []; // the status file keeps the last half hour
+  const lines = []; // all status lines so far, because the status file keeps only the last half hour
   const start = Date.now();
   let restartedAt = start;
   while (Date.now() - start < seconds * 1000) {

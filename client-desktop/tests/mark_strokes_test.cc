@@ -1,4 +1,5 @@
-// Tests of marks as the page makes them: lines, arrows and words of several strokes.
+// Tests that marks are split into strokes. The web page makes such marks: lines, arrows and words
+// of several strokes.
 #include "desktop/mark_strokes.h"
 
 #include <utility>
@@ -8,7 +9,7 @@
 namespace thunderhead::desktop {
 namespace {
 
-// Returns a view from above in which one metre is half the picture.
+// Returns a view from above in which one metre is half the picture's width.
 v1::View FromAbove() {
   v1::View view;
   view.mutable_forward()->set_z(-1.0F);

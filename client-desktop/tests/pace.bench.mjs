@@ -33,8 +33,8 @@ try {
     from = await desktop.until("more pictures", (now) => now.frames >= frames + PICTURES);
     costsMs.push((1000 * (from.processor_s - processor_s)) / (from.frames - frames));
   }
-  // Cache use by other programs can only increase the measured time. Up to 33 ms, one core is enough for 30 pictures a
-  // second.
+  // The least measured time is the best estimate, because other programs can only increase it. If a picture costs at
+  // most 33 ms, one core is enough for 30 pictures a second.
   console.log(`figure: processor time of a picture in the window, least of ${STRETCHES}: ${Math.min(...costsMs).toFixed(1)} ms`);
   console.log(`figure: processor time of a picture in the window, most of ${STRETCHES}: ${Math.max(...costsMs).toFixed(1)} ms`);
 } finally {

@@ -6,7 +6,7 @@ import { HANG_LIMIT_MS } from "./desktop_process.mjs";
 const POLL_MS = 50;
 
 export const brightness = ({ rgb }) => rgb.reduce((sum, value) => sum + value, 0) / rgb.length;
-// Returns the share of pixels that differ clearly.
+// Returns the fraction, from 0 to 1, of the pixels that differ clearly between two pictures.
 export function difference(a, b) {
   let count = 0;
   for (let i = 0; i < a.rgb.length; i += 3) if (Math.abs(a.rgb[i] - b.rgb[i]) > 12) count += 1;
@@ -49,7 +49,7 @@ export function meanColor({ rgb }) {
   return sums.map((sum) => (3 * sum) / rgb.length);
 }
 
-// Returns the number of pixels that have nearly that red, green and blue.
+// Returns the number of pixels whose red, green and blue differ from `color` by at most `tolerance`.
 export function pixelsLike({ rgb }, color, tolerance = 16) {
   let count = 0;
   for (let i = 0; i < rgb.length; i += 3) if (color.every((value, at) => Math.abs(rgb[i + at] - value) <= tolerance)) count += 1;

@@ -184,7 +184,7 @@ TEST_F(HistoryTest, ChangesOfOthersDuringAGestureStay) {
 
 TEST_F(HistoryTest, AnotherStormAndBack) {
   Change([](v1::Scene& changed) { ChooseStorm(changed, "supercell"); });
-  // The server completes the scene in this way.
+  // These are values that the server fills in when it completes the scene.
   scene.set_time_index(0);
   scene.mutable_sun()->mutable_clock()->set_latitude_deg(40.0);
   scene.add_fields()->set_hydrometeor(v1::HYDROMETEOR_CLOUD);

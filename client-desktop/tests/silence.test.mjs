@@ -39,7 +39,7 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-// The lower edge shows a warning.
+// The area at the lower edge in which the kiosk shows a warning.
 const CORNER = { x: 0, y: SIZE.height - 60, width: SIZE.width, height: 60 };
 const warns = () => pixelsLike(region(display.pixels(), CORNER), BAD) > 100;
 

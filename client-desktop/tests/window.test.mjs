@@ -32,7 +32,7 @@ before(async () => {
   serverFlags = { httpPort: await freePort(), grpcPort: await freePort(), state };
   server = await startServer(serverFlags);
   desktop = startDesktop(display, serverFlags.grpcPort, [...WINDOW, "--name", "Wall"]);
-  // The first picture may be smaller.
+  // The first picture may be smaller than the window.
   const fills = (now) => ready(now) && now.width_px === SIZE.width && now.height_px === SIZE.height;
   await desktop.until("a picture of the window's size", fills);
 });
@@ -57,7 +57,7 @@ test("a drag turns the camera, the wheel comes nearer, keys do the same", async 
   const before = desktop.status().azimuth_deg;
   const pictureBefore = display.pixels();
   await desktop.drag(MIDDLE, { x: MIDDLE.x + 200, y: MIDDLE.y });
-  // A drag of 200 of 800 pixels turns by a quarter of 180 degrees.
+  // A drag over 200 pixels, a quarter of the window's height, turns the camera by a quarter of 180 degrees.
   const dragged = await desktop.until("a turned picture", (now) => rests(now) && apart(now.azimuth_deg, before + 45) < 1);
   assert.ok(difference(pictureBefore, display.pixels()) > 0.05, "the picture is the same");
   // Edits that follow one another within a short time would be undone together.
@@ -78,7 +78,7 @@ test("times are stepped and played by keys", async () => {
   await desktop.key("space");
   await desktop.until("another time", (now) => now.time_index !== last - 1);
   await desktop.key("space");
-  // Times that playback shows are not steps of the history.
+  // Times that playback shows are not recorded as steps of the undo history.
   await desktop.key("ctrl+z");
   await desktop.until("the time before the step", (now) => rests(now) && now.time_index === last);
 });

@@ -5,7 +5,7 @@ import sys
 from thunderhead import Client
 
 address, folder = sys.argv[1:]
-# The camera is fixed, because the default would frame each time anew.
+# The scene sets a camera. Otherwise the server would choose a different camera for each time.
 scene = {"camera": {"orbit": {"target": {"zM": 7000}, "azimuthDeg": 200, "elevationDeg": 6, "distanceM": 140000}}}
 with Client(address) as client:
     storm = client.storms()[0].id

@@ -14,7 +14,7 @@ session = client.session(client.storms()[0].id, {"camera": {"orbit": {}}}, size=
 session.set_all({"camera.orbit.azimuth_deg": 270, "sun.elevation_deg": 6})
 session
 
-# %% The scene has all parameters of the picture.
+# %% A value of the scene can be read by its path.
 print("the camera stands", session.get("camera.orbit.distance_m"), "m away")
 
 # %% Go through the storm's times.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs the packages of folder $1 in a clean Debian root, as root, and starts each program. The server is first
-# tested alone, so that it cannot use libraries of another package. It draws a picture for the Python client. The
-# desktop client shows a picture on a virtual display.
+# Installs the packages of folder $1 in a clean Debian root, as root, and starts each program. The server's package is
+# first tested alone, so that the server cannot use libraries that another package installs. It draws a picture for the
+# Python client. The desktop client shows a picture on a virtual display.
 set -euo pipefail
 export DEBIAN_FRONTEND=noninteractive
 packages=$(realpath "$1")

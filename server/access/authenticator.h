@@ -1,4 +1,5 @@
-// Identifies the caller: by the client's address alone, by a file of tokens, or by JWT.
+// Identifies the caller of a call. There are three implementations: by the client's address alone,
+// by a file of tokens, or by JSON Web Tokens (JWT).
 #pragma once
 
 #include <memory>
@@ -22,7 +23,8 @@ class Authenticator {
 std::unique_ptr<Authenticator> TrustEverybody();
 
 // Identifies callers by the tokens in the file at `path` (token_list.h). The file is read again
-// when it changes. `time` measures the wait for its storage and must outlive the authenticator.
+// when it changes. `time` measures the timeout for reading the file, and must outlive the
+// authenticator.
 absl::StatusOr<std::unique_ptr<Authenticator>> TrustTokens(
     const std::string& path, const base::TimeSource& time = base::SteadyTime());
 

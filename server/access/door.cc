@@ -53,7 +53,7 @@ absl::StatusOr<std::shared_ptr<const void>> Caller::TakeAnswer() const {
 }
 
 absl::Status Caller::StillKnown(std::optional<std::chrono::steady_clock::time_point> at) const {
-  // The authenticator is null for this process itself.
+  // The authenticator is null if the caller is this process itself.
   if (authenticator_ == nullptr) return absl::OkStatus();
   const auto now = at.value_or(time_->Now());
   if (now < known_at_.load() + kKnownFor) return absl::OkStatus();

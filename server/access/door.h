@@ -1,6 +1,6 @@
-// Access control: the single place where calls enter. It checks who calls, whether their role may,
-// and whether they have reached their limits. It writes each refusal to the audit. It does not
-// depend on HTTP or on the API's messages.
+// Access control: every call passes through Door::Admit. Admit identifies the caller, and checks
+// whether the caller's role may make the call and whether the caller has reached a limit. Each
+// refusal is written to the audit log. It does not depend on HTTP or on the API's messages.
 #pragma once
 
 #include <atomic>
@@ -26,17 +26,19 @@ namespace thunderhead::access {
 class Caller {
  public:
   const Identity& identity() const { return identity_; }
-  // Writes a privileged act of the caller, or a refusal, to the audit.
+  // Writes an act of the caller and its outcome to the audit log.
   void Report(std::string_view act, const absl::Status& outcome) const;
-  // Writes a refusal to the audit: PERMISSION_DENIED, RESOURCE_EXHAUSTED, or NOT_FOUND, which is
-  // the error for a wrong key. Other outcomes are not written. `act` is by default the rpc.
+  // Writes `outcome` to the audit log if it is a refusal: PERMISSION_DENIED, RESOURCE_EXHAUSTED, or
+  // NOT_FOUND, which is the error for a wrong key. Other outcomes are not written. By default, the
+  // act is the name of the rpc.
   void ReportRefusal(const absl::Status& outcome) const { ReportRefusal(method_, outcome); }
   void ReportRefusal(std::string_view act, const absl::Status& outcome) const;
-  // Reserves a place for an answer to this caller that is ready, until the caller has taken it.
-  // Returns null for this process itself.
+  // Reserves a place for a finished response that waits for this caller to receive it. The place is
+  // released when the last copy of the result is destroyed. Returns null if the caller is this
+  // process itself.
   absl::StatusOr<std::shared_ptr<const void>> TakeAnswer() const;
-  // Checks the caller's token again, at most once a second. Returns UNAUTHENTICATED, and writes it
-  // to the audit, if the token has expired or was removed.
+  // Checks the caller's token again, at most once a second. Returns UNAUTHENTICATED, and writes
+  // this to the audit log, if the token has expired or was removed.
   absl::Status StillKnown(
       std::optional<std::chrono::steady_clock::time_point> at = std::nullopt) const;
 
@@ -51,30 +53,30 @@ class Caller {
   Authenticator* authenticator_ = nullptr;
   Audit* audit_ = nullptr;
   const base::TimeSource* time_ = &base::SteadyTime();
-  Quotas* quotas_ = nullptr;  // null: no quotas apply
+  Quotas* quotas_ = nullptr;  // null if no quotas apply to the caller
   std::shared_ptr<const void> place_;
   mutable std::atomic<std::chrono::steady_clock::time_point> known_at_ = {};
 };
 
-// Whether a call counts as a request only, or also as an open stream.
+// The kind of a call: kUnary counts as a request only, kStream also as an open stream.
 enum class CallKind { kUnary, kStream };
 
 class Door {
  public:
-  // `time` must outlive the door. It measures quotas and when tokens are checked again.
+  // `time` must outlive the door. It is the clock for quotas and for repeated checks of tokens.
   Door(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> audit,
        const QuotaLimits& limits, base::TrustedProxies proxies = {},
        const base::TimeSource& time = base::SteadyTime());
 
-  // Admits a call, or returns UNAUTHENTICATED, PERMISSION_DENIED or RESOURCE_EXHAUSTED. The caller
-  // must not outlive this object.
+  // Admits a call, or returns UNAUTHENTICATED, PERMISSION_DENIED or RESOURCE_EXHAUSTED. The
+  // returned Caller must not outlive this object.
   absl::StatusOr<std::shared_ptr<const Caller>> Admit(std::string_view method, CallKind kind,
                                                       Credentials credentials);
 
-  // Writes to the audit that the gateway refused a request before there was a call.
+  // Writes to the audit log that the gateway refused a request before it became a call.
   void ReportBeforeCall(const std::string& peer, std::string_view act, const absl::Status& refusal);
 
-  // Waits up to `time` until the audit is written. Safe from any thread.
+  // Waits up to `time` until all lines of the audit log are written. Safe from any thread.
   void FlushAudit(std::chrono::milliseconds time) const { audit_->Flush(time); }
 
   // Returns the token with which this process calls itself as an operator.

@@ -1,4 +1,4 @@
-// The caller and the caller's role. These are plain values.
+// The identity, role and credentials of a caller.
 #pragma once
 
 #include <chrono>
@@ -10,28 +10,29 @@
 
 namespace thunderhead::access {
 
-// The rights of a caller. The table is in docs/operating.md, and the rules are in MayCall.
+// The rights of a caller. docs/operating.md has a table of the rights, and MayCall implements them.
 enum class Role {
-  kViewer,     // watches sessions that others opened
-  kPresenter,  // also opens sessions, makes clouds and single images
-  kPipeline,   // a program: single images, no sessions
-  kOperator,   // everything
+  kViewer,     // may watch sessions that others opened
+  kPresenter,  // may also open sessions, generate clouds and request single images
+  kPipeline,   // a program that may request single images, but not open sessions
+  kOperator,   // may call everything
 };
 
-// Parses "viewer", "presenter", "pipeline" or "operator". INVALID_ARGUMENT lists them.
+// Parses "viewer", "presenter", "pipeline" or "operator". For any other text, returns
+// INVALID_ARGUMENT with a list of the roles.
 absl::StatusOr<Role> ParseRole(std::string_view text);
 const char* NameOf(Role role);
 
 struct Identity {
-  std::string name;  // for --auth none the client's network; empty: this process itself
+  std::string name;  // with --auth none the client's network; empty for this process itself
   Role role = Role::kViewer;
   std::optional<std::chrono::system_clock::time_point> expires_at = {};
 };
 
 // The credentials that a caller presents.
 struct Credentials {
-  std::string token;  // empty: none
-  std::string peer;   // the client's address with its port; empty: this machine's local socket
+  std::string token;  // empty if the caller presents no token
+  std::string peer;   // the client's address with its port; empty for this machine's local socket
 };
 
 }  // namespace thunderhead::access

@@ -57,9 +57,9 @@ std::string TextClaim(jwt_t* token, const char* name) {
   return text == nullptr ? "" : text;
 }
 
-// Returns the time in a claim. A missing claim, or one that is not a number, becomes the epoch,
-// because libjwt then returns -1 or 0. The time is limited to a day before the last time that the
-// clock can represent, in the year 2262.
+// Returns the time in a claim. For a missing claim, or a claim that is not a number, the result is
+// the epoch (1970), because libjwt then returns -1 or 0. The time is limited to a day before the
+// last time that the clock can represent, in the year 2262.
 Time TimeClaim(jwt_t* token, const char* name) {
   constexpr long kLast_s =
       std::chrono::floor<std::chrono::seconds>(Time::max() - std::chrono::hours(24))
@@ -82,9 +82,9 @@ bool IsFor(jwt_t* token, const std::string& audience) {
          std::ranges::any_of(list, [&](const nlohmann::json& each) { return each == audience; });
 }
 
-// Checks what libjwt overlooks. It accepts a signature that is followed by characters outside the
-// alphabet. It also accepts a header that names extensions which every reader must understand
-// (crit, RFC 7515, 4.1.11). This reader understands none.
+// Rejects two kinds of invalid tokens that libjwt accepts. The first has characters outside the
+// base64url alphabet after its signature. The second has a header that requires the reader to
+// support extensions (crit, RFC 7515, 4.1.11), because this reader supports none.
 absl::Status CheckForm(const std::string& token) {
   constexpr std::string_view kBase64Url =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
@@ -105,9 +105,9 @@ absl::Status CheckForm(const std::string& token) {
   return absl::OkStatus();
 }
 
-// Returns false if `now` is before the token's start of validity (nbf, RFC 7519, 4.1.5), or if that
-// is not a number. That time may have fractions. The claim is parsed here, because libjwt returns 0
-// for anything but a whole number.
+// Returns whether the token is already valid at `now` (claim nbf, RFC 7519, 4.1.5). Returns false
+// if the claim is not a number. The claim is parsed here, because it may have fractions, and libjwt
+// returns 0 for anything but a whole number.
 bool HasBegun(jwt_t* token, Time now) {
   const std::unique_ptr<char, decltype(&std::free)> json(jwt_get_grants_json(token, nullptr),
                                                          &std::free);
@@ -159,7 +159,8 @@ absl::StatusOr<Identity> JwtKey::Verify(const std::string& token, const JwtClaim
       jwt_decode(&decoded, token.c_str(), reinterpret_cast<const unsigned char*>(key_.data()),
                  static_cast<int>(key_.size()));
   const Token owned(decoded, &jwt_free);
-  // A public key is no secret, so a token that is signed with its text by HS256 must be rejected.
+  // The token's algorithm must be that of the key. Otherwise anyone could sign a token by HS256
+  // with the text of the public key as the secret.
   if (error != 0 || jwt_get_alg(decoded) != (is_public_ ? JWT_ALG_RS256 : JWT_ALG_HS256)) {
     return Wrong("is not signed as this server demands");
   }

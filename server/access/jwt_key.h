@@ -1,5 +1,6 @@
-// Verifies JSON Web Tokens (RFC 7519) that another system issues. They are signed by HS256 with a
-// shared secret, or by RS256. The key decides which algorithm applies, never the token.
+// Verifies JSON Web Tokens (RFC 7519) that another system issues. The tokens are signed by HS256
+// with a shared secret, or by RS256. The server's key determines the algorithm; the algorithm in
+// the token's header is not trusted.
 #pragma once
 
 #include <chrono>
@@ -12,8 +13,8 @@ namespace thunderhead::access {
 
 // Claims that a token must have in addition to sub, exp and the role.
 struct JwtClaims {
-  std::string issuer;    // empty: any
-  std::string audience;  // empty: any
+  std::string issuer;    // empty if any value is accepted
+  std::string audience;  // empty if any value is accepted
 };
 
 class JwtKey {

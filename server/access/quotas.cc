@@ -8,7 +8,8 @@
 namespace thunderhead::access {
 namespace {
 
-// Retry delay: streams end one after another as people leave.
+// The retry delay for too many streams. It is short, because streams end one after another when
+// viewers leave.
 constexpr std::chrono::seconds kStreamRetry{10};
 
 absl::Status TooMany(std::size_t maximum, const std::string& message, const char* reason,
@@ -34,7 +35,7 @@ absl::Status TooManyAnswers(std::size_t maximum, const char* whose) {
                  "ANSWERS_NOT_TAKEN", "answers");
 }
 
-// Returns OK if there is no wait.
+// Returns the error for a request that must wait for `wait`, or OK if `wait` is absent.
 absl::Status TooManyRequests(double per_second, std::optional<std::chrono::milliseconds> wait) {
   if (!wait.has_value()) return absl::OkStatus();
   return base::WithDetails(

@@ -1,5 +1,6 @@
-// Limits of how much each identity, and all together, may request: calls that stay open, and
-// requests per second. Each refusal is RESOURCE_EXHAUSTED with a retry delay. Safe from any thread.
+// Limits for the requests of each identity and of all identities together: the number of calls that
+// stay open, and requests per second. Each refusal is RESOURCE_EXHAUSTED with a retry delay. Safe
+// from any thread.
 #pragma once
 
 #include <chrono>
@@ -18,10 +19,11 @@ namespace thunderhead::access {
 struct QuotaLimits {
   std::size_t max_streams = 2048;
   std::size_t max_streams_per_identity = 512;
-  // The mean rate. A burst of twice as many is allowed after a second of rest. 0 means no limit.
+  // The maximum mean rate of requests for one identity. After a pause, a burst of twice as many
+  // requests is allowed. 0 means no limit.
   double requests_per_second = 500.0;
-  // Rate of invalid tokens from one network. Beyond this limit the network may only present tokens
-  // that were valid before.
+  // The maximum rate of invalid tokens from one network. Beyond it, the network may only present
+  // tokens that were valid before.
   double wrong_tokens_per_second = 5.0;
 };
 
@@ -50,12 +52,12 @@ class Quotas {
 
   absl::Status TakeRequest(const std::string& identity, Time now);
 
-  // Reserves the place of a call that stays open. The last copy of the result releases it. It must
-  // not outlive this object.
+  // Reserves a place for a call that stays open (a stream). The place is released when the last
+  // copy of the result is destroyed. The result must not outlive this object.
   absl::StatusOr<std::shared_ptr<const void>> TakeStream(const std::string& identity);
 
-  // Does the same for an answer of a unary call, until its client has taken it. Answers have a
-  // separate limit, equal to that of calls that stay open.
+  // Reserves a place for a finished response of a unary call, until its client has received it.
+  // Responses are counted separately from streams, with the same limits.
   absl::StatusOr<std::shared_ptr<const void>> TakeAnswer(const std::string& identity);
 
   const QuotaLimits& limits() const { return limits_; }

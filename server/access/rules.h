@@ -1,5 +1,6 @@
-// The rules that say which role may call what. A session's two keys add restrictions: an identity
-// that may call UpdateScene still needs the presenter's key to that session.
+// The rules that say which role may call which method. A session's two keys are checked in
+// addition. For example, an identity that may call UpdateScene also needs the presenter key of that
+// session.
 #pragma once
 
 #include <string_view>
@@ -8,8 +9,8 @@
 
 namespace thunderhead::access {
 
-// Returns whether a role may call the service's method of that name. No role may call a method
-// without a rule.
+// Returns whether a role may call the service's method named `method`. A method without a rule
+// cannot be called by any role.
 bool MayCall(Role role, std::string_view method);
 
 // Returns whether there is a rule for the method.

@@ -20,15 +20,17 @@ namespace thunderhead::access {
 // belongs to another user, that its group may write, or that other users may read or write.
 absl::StatusOr<std::string> ReadSecretFile(const std::string& path);
 
-// The parsed text of a file, read again when it has changed. The error of a changed file is logged,
-// and the last good contents stay valid, so that an editing mistake locks no one out. They also
-// stay valid while the file's storage hangs. Safe from any thread.
+// Holds the parsed contents of a file, and reads the file again when it has changed. If a changed
+// file is invalid, the error is logged and the last valid contents stay in use, so that a mistake
+// in the file locks no one out. The contents also stay in use while the file's storage hangs. Safe
+// from any thread.
 template <typename Value>
 class KeptFile {
  public:
   using Parse = std::function<absl::StatusOr<Value>(const std::string& text)>;
 
-  // `time` measures the wait for the file's storage, and must outlive this object.
+  // Reads the file at `path`, and converts its text by `parse`. `time` measures the timeout for
+  // later checks of the file, and must outlive the object.
   static absl::StatusOr<std::unique_ptr<KeptFile>> Open(
       const std::string& path, Parse parse, const base::TimeSource& time = base::SteadyTime());
 
@@ -82,7 +84,8 @@ void KeptFile<Value>::State::Look() {
 
 template <typename Value>
 absl::Status KeptFile<Value>::State::Read() {
-  // The stamp is taken before reading, so that the next check sees a change that happens meanwhile.
+  // The file's times and size (stamp) are taken before reading, so that the next check detects a
+  // change that happens during the reading.
   stamp = base::StampOf(path);
   const absl::StatusOr<std::string> text = ReadSecretFile(path);
   if (!text.ok()) return text.status();

@@ -54,7 +54,7 @@ absl::StatusOr<TokenList> TokenList::Parse(const std::string& text) {
     if (content.empty() || content.front() == '#') continue;
     absl::StatusOr<Entry> entry = ParseLine(std::string(content));
     if (!entry.ok()) {
-      // The message does not repeat the line, which may be a token by mistake.
+      // The message does not repeat the line, because the line may contain a token by mistake.
       return absl::InvalidArgumentError(
           absl::StrCat("line ", number, " of the token file ", entry.status().message()));
     }

@@ -19,7 +19,8 @@ class TokenList {
   // Parses the file's text. INVALID_ARGUMENT names the line.
   static absl::StatusOr<TokenList> Parse(const std::string& text);
 
-  // Returns the identity of a token. It takes the same time for every token.
+  // Returns the identity of a token. The call takes the same time for every token, so that its
+  // duration reveals nothing about valid tokens.
   std::optional<Identity> Find(const std::string& token) const;
 
  private:

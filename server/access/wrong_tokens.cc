@@ -42,7 +42,8 @@ void WrongTokens::WasRight(const Credentials& shown) {
 void WrongTokens::WasWrong(const Credentials& shown, Time now) {
   if (!Counts(shown)) return;
   const std::lock_guard lock(mutex_);
-  // A token that was right and no longer is must be treated like any other.
+  // A token that was valid before and is no longer valid must be treated like any other wrong
+  // token.
   right_.erase(DigestOf(shown.token));
   (void)left_.Take(base::NetworkOf(shown.peer), now);
 }

@@ -1,6 +1,6 @@
 // Limits attempts to guess tokens. A network that has presented many wrong tokens may present no
-// new ones for a while. It may still present tokens that were right before, because other clients
-// share its address. Safe from any thread.
+// new ones for a while. It may still present tokens that were valid before, because other clients
+// may share its address. Safe from any thread.
 #pragma once
 
 #include <chrono>
@@ -18,8 +18,8 @@ class WrongTokens {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // `per_second` is the rate for one network. A burst of twice as many is allowed after a second of
-  // rest. 0 means no limit.
+  // `per_second` is the maximum mean rate of wrong tokens from one network. After a pause, a burst
+  // of twice as many is allowed. 0 means no limit.
   explicit WrongTokens(double per_second) : left_(per_second) {}
 
   // Returns RESOURCE_EXHAUSTED with a retry delay if the token must not be checked.
@@ -34,8 +34,8 @@ class WrongTokens {
   }
 
   std::mutex mutex_;
-  base::Allowances left_;        // limits by network
-  std::set<std::string> right_;  // digests of right tokens, not the tokens
+  base::Allowances left_;        // token buckets by network
+  std::set<std::string> right_;  // digests of tokens that were valid, instead of the tokens
 };
 
 }  // namespace thunderhead::access

@@ -1,5 +1,5 @@
-// The estimated error of a picture. Errors are relative RMSE of linear radiance against the
-// reference.
+// The report about a picture's error. Every error is the relative root mean square error (RMSE) of
+// linear radiance compared with the Monte Carlo reference.
 #pragma once
 
 #include <optional>
@@ -10,23 +10,27 @@
 
 namespace thunderhead::accuracy {
 
-// The reason why a requested accuracy or speed is not reached.
+// The reason why a picture does not reach the requested accuracy or speed.
 struct Unmet {
   enum class Code { kErrorOutOfReach, kTimeOutOfReach } code = Code::kErrorOutOfReach;
-  std::string message;  // the limit, and the nearest value that can be reached
+  std::string message;  // text with the requested limit and the nearest value that can be reached
 
   bool operator==(const Unmet&) const = default;
 };
 
 struct AccuracyReport {
-  scene::Technique technique;         // with its settings at full quality
-  int slices = 0;                     // of this picture; for metaballs their number
-  double image_scale = 1.0;           // of this picture
-  std::optional<double> expected_ms;  // of a frame at full quality, on this machine
-  double model_error = 0.0;           // from the table
+  scene::Technique technique;         // technique and settings of the picture at full quality
+  int slices = 0;                     // number of slices of this picture; for metaballs, number of
+                                      // balls
+  double image_scale = 1.0;           // image scale of this picture
+  std::optional<double> expected_ms;  // predicted time of a frame at full quality on this machine
+  double model_error = 0.0;           // error of the light model, from the measured table of
+                                      // settings
   std::optional<double> discretisation_error;
-  double estimated_error = 0.0;           // the measured error; without one, both parts together
-  std::optional<MeasuredError> measured;  // measured by tracing paths through the picture
+  double estimated_error = 0.0;           // the measured error or, without a measurement, both
+                                          // parts above combined
+  std::optional<MeasuredError> measured;  // error that was measured by tracing paths through the
+                                          // picture's pixels
   std::optional<Unmet> unmet;
 
   bool operator==(const AccuracyReport&) const = default;

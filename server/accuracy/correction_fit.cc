@@ -9,23 +9,23 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// kStep is a prior standard deviation divided by the spread of the factors
-// (docs/decisions/0012-traced-light.md). It applies to a texel's factor relative to the texel above
-// and to each term that depends on direction. Single colours get kColorShare of it because their
-// estimates are the noisiest.
+// kStep is the prior standard deviation of a texel's factor, divided by the spread of the factors
+// (docs/decisions/0012-traced-light.md). It applies to the difference from the coarser level and to
+// each term that depends on direction. For single colours it is multiplied by kColorShare, because
+// their estimates are the noisiest.
 constexpr double kStep = 1.5;
 constexpr double kColorShare = 0.2;
-// The spread is computed on a level with at most this many texels along a side, each with many
-// rays.
+// The spread of the factors is computed on a level with at most this many texels along each side,
+// so that each texel has many rays.
 constexpr int kSpreadTexels = 12;
 constexpr double kMinSpread = 0.03;
 constexpr double kMaxSpread = 1.0;
 
 constexpr double kMinDrawn = 1e-9;
-// A colour drawn darker than this share of the mean over the ray's colours uses the factor of the
-// mean.
+// If a ray's drawn radiance in one colour is below this fraction of the mean over its colours, this
+// colour uses the factor of the mean.
 constexpr double kMinColorShare = 0.05;
-// Limits a single outlier's error in the estimate of the rays' spread.
+// Limits the contribution of a single outlier to the estimate of the rays' variance.
 constexpr double kMaxRayError = 10.0;
 
 std::size_t Offset(const glm::ivec3& size, const glm::ivec3& texel) {
@@ -49,13 +49,13 @@ void ForEachTexel(const glm::ivec3& size, const Visit& visit) {
   }
 }
 
-// A texel and its weight in a linear fetch.
+// A texel and its weight in a linear interpolation.
 struct Corner {
   std::size_t offset = 0;
   float share = 0.0F;
 };
 
-// Returns the texels of a linear fetch at `place`, clamped at the edges.
+// Returns the eight texels and weights of a linear interpolation at `place`, clamped at the edges.
 std::array<Corner, 8> CornersAt(const glm::ivec3& size, const glm::dvec3& place) {
   const glm::dvec3 at = glm::clamp(place, 0.0, 1.0) * glm::dvec3(size) - 0.5;
   const glm::dvec3 low = glm::floor(at);
@@ -86,7 +86,7 @@ glm::vec4 SolveRidge(const std::array<float, 10>& matrix, const std::array<float
       for (int k = 0; k < column; ++k) factor[row][column] -= factor[row][k] * factor[column][k];
       if (column < row) factor[row][column] /= factor[column][column];
     }
-    // The ridge is larger than the rounding errors of single-precision sums.
+    // The lower limit is larger than the rounding errors of the sums in single precision.
     factor[row][row] = std::sqrt(std::max(factor[row][row], 1e-3 * ridge[row]));
     for (int k = 0; k < row; ++k) x[row] -= factor[row][k] * x[k];
     x[row] /= factor[row][row];
@@ -182,7 +182,8 @@ std::vector<Factors> CorrectionFit::SolveLevel(const Level& level,
   const glm::dvec4 color_ridge = ridge / (kColorShare * kColorShare);
   std::vector<Factors> factors(level.normals.size());
   ForEachTexel(level.size, [&](const glm::ivec3& texel) {
-    // A texel above covers two texels of this level along each side; the last one may cover one.
+    // A texel of the coarser level covers two texels of this level along each side. The last texel
+    // along a side may cover only one.
     const glm::dvec3 place = (glm::dvec3(texel) + 0.5) / (2.0 * glm::dvec3(size_above));
     const Factors prior = FetchedAt(above, size_above, place);
     const std::size_t offset = Offset(level.size, texel);
@@ -202,7 +203,8 @@ std::vector<Factors> CorrectionFit::SolveLevel(const Level& level,
   return factors;
 }
 
-// Uses the method of moments: subtracts the squares that noise of that variance adds.
+// Uses the method of moments: the expected contribution of noise with this variance is subtracted
+// from the sum of squares.
 double CorrectionFit::SpreadOf(const Level& level, double variance) {
   double weights = 0.0;
   double sum = 0.0;
@@ -222,14 +224,14 @@ double CorrectionFit::SpreadOf(const Level& level, double variance) {
 }
 
 std::vector<Factors> CorrectionFit::Solve() const {
-  std::vector<Level> coarser;  // levels coarser than the finest
+  std::vector<Level> coarser;  // all levels except the finest, in order of decreasing resolution
   const auto level = [&](std::size_t i) -> const Level& {
     return i == 0 ? finest_ : coarser[i - 1];
   };
   while (level(coarser.size()).size != glm::ivec3(1)) {
     coarser.push_back(Coarser(level(coarser.size())));
   }
-  // Variance of the factor estimated by one ray of drawn radiance 1.
+  // The variance of a factor that is estimated from one ray whose drawn radiance is 1.
   const double variance = std::max(spread_ / std::max(static_cast<double>(rays_), 1.0), 1e-9);
   std::size_t settled = 0;
   while (std::max({level(settled).size.x, level(settled).size.y, level(settled).size.z}) >
@@ -240,7 +242,8 @@ std::vector<Factors> CorrectionFit::Solve() const {
   std::vector<Factors> above(1, kNone);
   glm::ivec3 size_above(1);
   for (std::size_t i = coarser.size() + 1; i-- > 0;) {
-    // The first texel uses all rays, so it may differ from 1 by any amount.
+    // The coarsest level has one texel with all rays, so its factor is reliable and may differ from
+    // 1 by any amount.
     const double step = i == coarser.size() ? kMaxSpread : spread;
     above = SolveLevel(level(i), above, size_above, variance, step);
     size_above = level(i).size;

@@ -1,8 +1,9 @@
-// Fits factors that multiply drawn radiance so that it agrees with better estimates along some
-// rays. Factors depend on place and direction. The fit is regularised linear least squares for each
-// texel of a pyramid, from one texel down to the finest level. The texel above is the prior, which
-// dominates in texels with few rays. How much texels and directions may differ from it is estimated
-// from the rays (empirical Bayes). Knows no GL and no scene.
+// Fits correction factors for drawn radiance. Multiplied by them, the drawn radiance agrees with
+// better estimates that were traced along some rays. Factors depend on place and direction. The fit
+// uses a pyramid of levels, from a single texel down to the finest level. Each texel is fitted by
+// regularised linear least squares. Its prior is the factor of the coarser level at the same place,
+// which dominates if the texel has few rays. The expected difference from the prior is estimated
+// from the rays (empirical Bayes). This code does not depend on GL or scenes.
 #pragma once
 
 #include <array>
@@ -17,25 +18,28 @@ namespace thunderhead::accuracy {
 // A ray with its drawn radiance and an estimate of the reference radiance. The estimate may be
 // noisy, even negative, but has almost no bias.
 struct CorrectedRay {
-  glm::dvec3 place{0.0};  // where the ray's factor is looked up, 0 to 1 along each side of a box
-  glm::dvec3 direction{0.0};  // unit vector; zero if factors do not depend on direction
+  glm::dvec3 place{0.0};  // position at which the ray's factor is looked up, 0 to 1 along each side
+                          // of the box
+  glm::dvec3 direction{0.0};  // unit vector, or zero if factors do not depend on direction
   glm::dvec3 drawn{0.0};
   glm::dvec3 estimate{0.0};
 };
 
-// Coefficients of one texel, by colour: the factor for direction d is dot(coefficients, (1, d)).
+// The coefficients of one texel, one vector for each colour. The factor for the direction d is
+// dot(coefficients, (1, d)).
 using Factors = std::array<glm::vec4, 3>;
 
 class CorrectionFit {
  public:
-  // `size` is the number of texels of the finest level over the box.
+  // `size` is the number of texels of the finest level along each side of the box.
   explicit CorrectionFit(const glm::ivec3& size);
 
   void Add(const CorrectedRay& ray);
   std::int64_t Rays() const { return rays_; }
   const glm::ivec3& Size() const { return finest_.size; }
 
-  // Returns the factors of all texels, x fastest. They are 1 if there are no rays nearby.
+  // Returns the factors of all texels of the finest level, x fastest. Without any rays, all factors
+  // are 1.
   std::vector<Factors> Solve() const;
 
  private:
@@ -47,7 +51,7 @@ class CorrectionFit {
     std::array<std::array<float, 4>, 3> right{};
 
     void operator+=(const Normal& other);
-    // Returns the mean of the colours' right sides.
+    // Returns the mean over the colours of `right`.
     std::array<float, 4> GrayRight() const;
   };
   struct Level {
@@ -59,12 +63,14 @@ class CorrectionFit {
   static std::vector<Factors> SolveLevel(const Level& level, const std::vector<Factors>& above,
                                          const glm::ivec3& size_above, double variance,
                                          double spread);
-  // Returns the root mean square difference of the texels' factors from their mean.
+  // Returns the spread: the root mean square difference of the texels' factors from their mean.
+  // `variance` is the noise to subtract.
   static double SpreadOf(const Level& level, double variance);
 
   Level finest_;
   std::int64_t rays_ = 0;
-  double spread_ = 0.0;  // weighted sum of the rays' squared differences from a factor of 1
+  double spread_ = 0.0;  // weighted sum over rays of the squared difference of the ray's factor
+                         // from 1
 };
 
 }  // namespace thunderhead::accuracy

@@ -10,8 +10,9 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// A correction is fitted again when the number of paths has grown by this factor or after this
-// time. A fit takes as long as several steps of tracing.
+// A correction is fitted and published again when its number of paths has grown by
+// kPublishedGrowth, or after kMaxUnpublished_ms. It is not fitted after every step, because a fit
+// takes as long as several steps of tracing.
 constexpr double kPublishedGrowth = 1.2;
 constexpr double kMaxUnpublished_ms = 2000.0;
 
@@ -39,7 +40,7 @@ void CorrectorPool::DropUnused() {
   });
 }
 
-// Returns the end if all correctors are busy or claimed.
+// Returns the least recently used idle corrector, or end() if all correctors are busy or claimed.
 std::list<CorrectorPool::Kept>::iterator CorrectorPool::OldestIdle() {
   const auto idle_ms = [](const Kept& kept) {
     return kept.IsClaimed() ? -1.0 : kept.since_traced.ElapsedMs();

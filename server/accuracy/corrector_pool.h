@@ -1,6 +1,6 @@
-// Light correctors for several scenes that are in view at the same time. Each keeps its traced
-// light and publishes corrections for drawing threads. Owns GL objects: use it on the context's
-// thread.
+// A pool of light correctors for several scenes that are viewed at the same time. Each corrector
+// keeps the light that it has traced for its scene, and publishes corrections for drawing threads.
+// The pool owns GL objects, so it must be used on the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -23,10 +23,11 @@ namespace thunderhead::accuracy {
 
 class CorrectorPool {
  public:
-  // Programs are linked in `programs`. There are at most `max_correctors`, because each takes up to
-  // a hundred megabytes in addition to the storm's extinction. The extinction is reserved in
-  // `memory`. A corrector that was traced within `busy_s` or is claimed is not replaced. A
-  // corrector that was not used for `unused_s` is dropped at the next call.
+  // `programs` caches linked shader programs. There are at most `max_correctors` correctors,
+  // because each takes up to a hundred megabytes in addition to the storm's extinction. The memory
+  // for the extinction is reserved in `memory`. A corrector that was used for tracing within the
+  // last `busy_s` seconds, or that is claimed, is not replaced. A corrector that was not used for
+  // `unused_s` seconds is dropped at the next call.
   explicit CorrectorPool(
       std::shared_ptr<gl::ProgramCache> programs,
       std::shared_ptr<TracedLights> lights = std::make_shared<TracedLights>(),
@@ -39,20 +40,21 @@ class CorrectorPool {
         programs_(std::move(programs)),
         lights_(std::move(lights)) {}
 
-  // Returns null if there is no corrector for the scene or the scene has no traced light.
+  // Returns the corrector for the scene, or null if there is none or the scene does not request
+  // traced light.
   const LightCorrector* Find(const scene::Scene& scene,
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
-  // Traces one step for the scene. RESOURCE_EXHAUSTED if `max_correctors` exist and all are busy or
-  // claimed. Also RESOURCE_EXHAUSTED if their storms leave no memory for another. `claim` may be
-  // null; otherwise it receives a claim on the scene's light. The correction is published at
-  // intervals, and once `wanted_paths` are traced.
+  // Traces one step for the scene. Returns RESOURCE_EXHAUSTED if there are `max_correctors`
+  // correctors and all are busy or claimed, or if there is no memory for another storm. If `claim`
+  // is not null, it receives a claim on the scene's light. The correction is published at
+  // intervals, and when `wanted_paths` paths are traced.
   absl::StatusOr<LightProgress> Trace(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       LightClaim* claim = nullptr, std::int64_t wanted_paths = kTracedPaths);
 
-  // Drops the corrector that was traced longest ago. Returns false if all are busy or claimed. May
-  // be called while another one is traced.
+  // Drops the corrector that was least recently used for tracing. Returns false if all correctors
+  // are busy or claimed. May be called while another corrector is tracing.
   bool DropOldest();
 
  private:
@@ -63,7 +65,7 @@ class CorrectorPool {
     base::Stopwatch since_traced;
     base::Stopwatch since_published;
     std::int64_t published_paths = 0;
-    LightClaim claim = std::make_shared<int>();  // others may have copies of it
+    LightClaim claim = std::make_shared<int>();  // copies of it are held by the claimants
 
     bool IsClaimed() const { return claim.use_count() > 1; }
   };
@@ -72,7 +74,8 @@ class CorrectorPool {
                 const std::shared_ptr<const volume::HydrometeorFields>& fields);
   std::list<Kept>::iterator OldestIdle();
   absl::Status MakeRoom();
-  // Reserves memory. If it does not suffice, drops idle correctors, the oldest first.
+  // Reserves memory. If there is not enough, drops idle correctors first, the least recently used
+  // first.
   absl::StatusOr<base::MemoryReservation> Reserve(std::size_t bytes);
   static void Publish(Kept& kept, std::int64_t wanted_paths);
   void DropUnused();

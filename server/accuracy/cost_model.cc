@@ -6,15 +6,17 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// The weight of a measurement falls to a third in five frames. That is fast enough to follow a
-// camera that flies into the cloud, and slow enough to separate a from b.
+// The factor by which the weight of older frames decreases with each frame, to a third in five
+// frames. This is fast enough to follow a camera that flies into the cloud, and slow enough to
+// determine both coefficients a and b.
 constexpr double kForgetting = 0.8;
-// Below this variance of x (relative to its mean square) a and b cannot be determined separately.
+// If the variance of x (the number of samples), divided by its mean square, is below this value, a
+// and b cannot be determined separately.
 constexpr double kMinRelativeVariance = 1e-3;
-// The line holds up to this multiple of the size of the fitted frames. A full frame has 64 times
-// the size of the coarsest frame with all its pixels. Frames at a server's start have a hundredth
-// of a million samples and mostly fixed cost. Their line would predict an hour for an image of 3840
-// x 2160.
+// The fitted line is used for frames with up to this multiple of the samples of the fitted frames.
+// A full frame has 64 times the samples of the coarsest frame with all its pixels. The first frames
+// of a server have only about 10 000 samples, and their time is mostly fixed. Extrapolated to an
+// image of 3840 x 2160 pixels, their line would predict an hour.
 constexpr double kReach = 100.0;
 
 bool IsPreparation(const scene::StageTime& cost) {
@@ -23,7 +25,8 @@ bool IsPreparation(const scene::StageTime& cost) {
          cost.stage == FrameStage::kFit || cost.stage == FrameStage::kSurface;
 }
 
-// Moves `mean` towards a measurement of a stage that ran.
+// Updates the decaying mean of a stage's time. A time of 0 is ignored, because the stage did not
+// run.
 void Follow(double measured_ms, double* mean_ms) {
   if (measured_ms <= 0.0) return;
   *mean_ms =
@@ -33,9 +36,9 @@ void Follow(double measured_ms, double* mean_ms) {
 }  // namespace
 
 double MegaSamples(const scene::Scene& scene, const FrameQuality& quality) {
-  // The ratio of a sparse picture's whole time to that with one ray per pixel, measured at 1280 x
-  // 720 (docs/performance.md). A smaller picture takes a larger share, which is learnt from the
-  // next frames.
+  // The time of a sparse picture divided by the time of the same picture with one ray per pixel,
+  // measured at 1280 x 720 pixels (docs/performance.md). The ratio is larger for smaller pictures;
+  // the following frames correct the prediction.
   constexpr double kSparseShare = 0.2;
   const double scale = scene.rendering.image_scale * quality.Scale();
   const double pixels =
@@ -94,8 +97,9 @@ void CostModel::Observe(double mega_samples, double total_ms,
 void CostModel::Fit() {
   FitLine();
   reach_mega_samples_ = kReach * std::sqrt(sum_xx_ / weight_);
-  // Combines the frames' own mean with the assumed cost, which weighs as much as a frame of a
-  // million samples. Much smaller frames carry less information than the assumption.
+  // Beyond the reach of the line, the cost is a weighted mean of the frames' own cost and the
+  // assumed cost. The assumption has the weight of a frame with a million samples, so it dominates
+  // if all frames were much smaller.
   const double mean = (sum_xy_ / weight_ + kUnknownMsPerMegaSample) / (sum_xx_ / weight_ + 1.0);
   ms_beyond_reach_ = std::min(ms_per_mega_sample_, mean);
 }
@@ -107,8 +111,8 @@ void CostModel::FitLine() {
     fixed_ms_ = (sum_y_ - ms_per_mega_sample_ * sum_x_) / weight_;
     if (ms_per_mega_sample_ > 0.0 && fixed_ms_ >= 0.0) return;
   }
-  // All frames have one size, or noise has made the fit negative. So the whole cost is assumed to
-  // grow with the size.
+  // All frames had the same number of samples, or noise has made a coefficient negative. The whole
+  // time is therefore assumed to be proportional to the number of samples.
   fixed_ms_ = 0.0;
   ms_per_mega_sample_ = sum_xx_ > 0.0 ? sum_xy_ / sum_xx_ : ms_per_mega_sample_;
 }

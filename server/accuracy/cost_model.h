@@ -1,6 +1,7 @@
-// Predicts the cost of a frame from the costs of earlier frames: milliseconds = a + b pixels x
-// slices. The fit is a least-squares fit with decaying weights. If the fields or the light changed,
-// the time for preparing the fields and propagating the light is added. Plain values, no clock.
+// Predicts the time of a frame from the times of earlier frames, as a + b (pixels x slices)
+// milliseconds. The coefficients are found by least squares, and older frames have smaller weights.
+// If the fields or the light have changed, the times for preparing the fields and propagating the
+// light are added. The class uses no clock.
 #pragma once
 
 #include <limits>
@@ -13,25 +14,27 @@
 
 namespace thunderhead::accuracy {
 
-// Returns the size that the cost of drawing `scene` at `quality` grows with, in millions. It is
-// pixels times slices, or times the metaballs or ellipsoids over them.
+// Returns the number of samples, in millions, to which the time of drawing `scene` at `quality` is
+// proportional. It is the number of pixels times the number of slices, or times the number of
+// metaballs or ellipsoids that cover them.
 double MegaSamples(const scene::Scene& scene, const FrameQuality& quality);
 
-// Returns the part of a frame's `total_ms` from the view on, which is the cost of a moved camera.
-// None if the frame drew no view.
+// Returns the part of a frame's `total_ms` that must be repeated if only the camera moves: the view
+// stage and all later stages. Returns nothing if the frame did not run the view stage.
 std::optional<double> ViewMs(double total_ms, const std::vector<scene::StageTime>& stages);
 
 class CostModel {
  public:
-  // The cost before any measurement. It lies between a GPU's 0.1 and a software renderer's 15, so
-  // that the first frame is coarse but not the coarsest.
+  // The assumed milliseconds per million samples before any measurement. The value lies between 0.1
+  // ms of a GPU and 15 ms of a software renderer, so that the first frame has a medium quality.
   static constexpr double kUnknownMsPerMegaSample = 2.0;
 
-  // Returns the predicted cost of a frame if `first_dirty` is the first stage to rerun.
+  // Returns the predicted milliseconds of a frame with that number of samples. `first_dirty` is the
+  // first stage that must be run again.
   double EstimateMs(double mega_samples, scene::Stage first_dirty) const;
 
-  // Records that a frame of that size took `total_ms`, divided among `stages`. Frames that drew no
-  // slices and no view are ignored.
+  // Records that a frame with that number of samples took `total_ms`, of which `stages` gives the
+  // parts. Frames that drew neither slices nor a view are ignored.
   void Observe(double mega_samples, double total_ms, const std::vector<scene::StageTime>& stages);
 
  private:

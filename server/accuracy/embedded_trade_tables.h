@@ -1,5 +1,5 @@
-// The texts of docs/accuracy by view: "orbit", "spotter", "top-down". cmake/embed_texts.cmake
-// builds them into the program.
+// Returns the tables in docs/accuracy as texts. The key is the name of the view: "orbit", "spotter"
+// or "top-down". cmake/embed_texts.cmake builds the texts into the program.
 #pragma once
 
 #include <map>

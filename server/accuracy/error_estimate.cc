@@ -13,13 +13,14 @@ namespace {
 // Student's t at 97.5 % for kGroups - 1 = 39 degrees of freedom.
 constexpr double kStudent = 2.0227;
 constexpr std::int64_t kMinPixels = 160;
-// Minimum half widths of the intervals, as shares of the error and of the mean radiance. They are
-// the uncertainty of a reference with 1000 samples per pixel.
+// The minimum half widths of the confidence intervals: of the error, relative to the error, and of
+// the bias, relative to the mean radiance. They correspond to the uncertainty of a reference with
+// 1000 samples per pixel.
 constexpr double kMinReach = 0.03;
 constexpr double kMinBiasReach = 0.002;
 
-// Returns half the width of the 95 % interval of `whole` by Tukey's jackknife. `without` holds the
-// estimates with one group left out each.
+// Returns half the width of the 95 % interval of `whole` by Tukey's jackknife. Each element of
+// `without` is the estimate with one group of pixels left out.
 double Reach(double whole, const std::vector<double>& without) {
   const auto count = static_cast<double>(without.size());
   double squares = 0.0;
@@ -27,9 +28,9 @@ double Reach(double whole, const std::vector<double>& without) {
   return kStudent * std::sqrt((count - 1.0) / count * squares);
 }
 
-// Returns a bound on the bias of the squared error. The bias arises because clamped light is added
-// back to other pixels than those that lost it. `lost` is the root mean square of that light. In
-// the worst case all of it falls on pixels with the same error.
+// Returns a bound on the bias of the squared error. The bias arises because the light that clamping
+// removes from some pixels is added back to all pixels. `lost` is the root mean square of that
+// light. In the worst case, all of the light belongs to pixels whose error has the same sign.
 double Misplaced(double squared_error, double lost) {
   return 2.0 * std::sqrt(std::max(squared_error, 0.0)) * std::abs(lost) + lost * lost;
 }
@@ -112,7 +113,8 @@ ErrorEstimate::Group ErrorEstimate::All() const {
 ErrorEstimate::Ratios ErrorEstimate::RatiosOf(const Group& group, std::size_t clamp) const {
   const Sums& clamped = group.clamped[clamp];
   const double whole_truth = group.clamped.back().truth;
-  // Adds the clamped light back, spread over all pixels.
+  // The light that clamping removes is added back, spread over all pixels, by scaling the reference
+  // radiance.
   const double scale = clamped.truth > 0.0 ? whole_truth / clamped.truth : 1.0;
   const double squared_error = group.squared_drawn - 2.0 * scale * clamped.drawn_truth +
                                scale * scale * clamped.squared_truth;
@@ -142,7 +144,7 @@ std::size_t ErrorEstimate::BestClamp(const Group& all) const {
 
 std::optional<MeasuredError> ErrorEstimate::Result() const {
   const Group all = All();
-  // The difference is the mean reference radiance, which must be positive.
+  // The two sides differ by the mean reference radiance, which must be positive.
   if (pixels_ < kMinPixels || !(mean_drawn_ * all.pixels > all.drawn - all.clamped.back().truth)) {
     return std::nullopt;
   }

@@ -1,6 +1,7 @@
-// Estimates a picture's error from independent estimates of the reference radiance of some of its
-// pixels. Errors are relative RMSE and bias, as measure/image_error.h defines them. Each has a 95 %
-// confidence interval (docs/decisions/0051-measured-error.md). Plain values; knows no scene.
+// Estimates a picture's error. The input is independent estimates of the reference radiance (Monte
+// Carlo ground truth) of some of its pixels. Errors are relative RMSE and bias, as
+// measure/image_error.h defines them. Each error has a 95 % confidence interval
+// (docs/decisions/0051-measured-error.md). This code does not depend on scenes.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace thunderhead::accuracy {
 
-// A value and its 95 % interval.
+// An estimated value and its 95 % confidence interval.
 struct Estimated {
   double value = 0.0;
   double low = 0.0;
@@ -23,18 +24,19 @@ struct Estimated {
 
 struct MeasuredError {
   Estimated relative_rmse;  // 0 or more
-  Estimated relative_bias;  // above 0: the picture is too bright
+  Estimated relative_bias;  // positive if the picture is too bright
   std::int64_t paths = 0;
 
   bool operator==(const MeasuredError&) const = default;
 };
 
-// Paths are clamped at these multiples of their pixel's usual radiance. A few paths are a hundred
-// times brighter than the rest, and squares of so few paths are unreliable. Clamped paths lose a
-// little light, which is added back evenly. The last multiple clamps nothing.
+// The multiples of a pixel's usual radiance at which the radiance of paths is clamped. Clamping is
+// necessary because a few paths are a hundred times brighter than the rest, which makes sums of
+// squares unreliable. The light that clamping removes is added back, spread evenly over the pixels.
+// All multiples are tried; the last one clamps nothing.
 inline constexpr std::array<double, 8> kClamps = {4.0, 6.0, 9.0, 13.0, 20.0, 30.0, 60.0, 1e300};
 
-// Independent, almost unbiased estimates of the reference radiance of one pixel.
+// The sums of independent, almost unbiased estimates of the reference radiance of one pixel.
 class PixelTruth {
  public:
   struct Sums {
@@ -42,16 +44,16 @@ class PixelTruth {
     glm::dvec3 squares{0.0};
   };
 
-  // `usual` is the pixel's approximate radiance, above 0. `weight` is the number of the picture's
-  // pixels that it stands for, divided by the mean of that number. It equals 1 / (number of pixels
-  // x probability of choosing this pixel).
+  // `usual` is the pixel's approximate radiance, above 0. `weight` says how many of the picture's
+  // pixels this pixel represents, relative to the mean. It equals 1 / (number of pixels x
+  // probability of choosing this pixel).
   explicit PixelTruth(double usual, double weight = 1.0) : usual_(usual), weight_(weight) {}
 
   void Add(const glm::dvec3& estimate);
 
   double Weight() const { return weight_; }
   std::int64_t Paths() const { return paths_; }
-  // Returns the sums of the estimates clamped by kClamps[clamp].
+  // Returns the sums over the estimates, each clamped at kClamps[clamp] times the usual radiance.
   const Sums& Clamped(std::size_t clamp) const { return sums_[clamp]; }
 
  private:
@@ -63,32 +65,33 @@ class PixelTruth {
 
 class ErrorEstimate {
  public:
-  // `mean_drawn` is the mean of the drawn radiance over all pixels and colours. Because it is
-  // known, only the difference between drawn and reference radiance is estimated.
+  // `mean_drawn` is the mean of the drawn radiance over all pixels and colours. Because this mean
+  // is known exactly, only the difference between drawn and reference radiance is estimated.
   explicit ErrorEstimate(double mean_drawn) : mean_drawn_(mean_drawn) {}
 
-  // Adds a pixel with at least two paths. The paths' noise does not count as error: the mean
-  // product of two different paths' differences from `drawn` is an unbiased estimate of the squared
-  // error (a U-statistic).
+  // Adds a pixel with at least two paths. The paths' noise does not count as error. The squared
+  // error is estimated by the product of the differences from `drawn` of two different paths,
+  // averaged over all pairs. This estimate is unbiased (a U-statistic).
   void Add(const glm::dvec3& drawn, const PixelTruth& truth);
 
-  // Returns none before 160 pixels, or while the mean reference radiance is not above 0.
+  // Returns nothing for fewer than 160 pixels, or while the estimated mean reference radiance is
+  // not above 0.
   std::optional<MeasuredError> Result() const;
 
-  // Returns the number of paths per pixel that would have given the smallest variance for the paths
-  // traced so far. It is large if the pixels' errors are alike and paths are noisy, and small if
-  // errors differ from pixel to pixel. At least 2.
+  // Returns the number of paths per pixel, 2 to `most`, with which the same total number of paths
+  // would have given the smallest variance. It is large if pixels have similar errors and paths are
+  // noisy, and small if errors differ from pixel to pixel.
   int BestPathsPerPixel(int most) const;
 
   std::int64_t Pixels() const { return pixels_; }
 
  private:
-  // Weighted sums over pixels; each term is the mean over colours. The reference radiance is that
-  // of clamped paths.
+  // Weighted sums over pixels of means over colours. "Truth" is the reference radiance, estimated
+  // from clamped paths.
   struct Sums {
     double truth = 0.0;
-    double drawn_truth = 0.0;    // of the product
-    double squared_truth = 0.0;  // without the paths' noise
+    double drawn_truth = 0.0;    // sum of drawn times reference radiance
+    double squared_truth = 0.0;  // sum of squared reference radiance, without the paths' noise
 
     Sums operator-(const Sums& other) const;
     void operator+=(const Sums& other);
@@ -102,20 +105,19 @@ class ErrorEstimate {
     Group operator-(const Group& other) const;
     void operator+=(const Group& other);
   };
-  // Results of the sums: the squared relative RMSE, the relative bias, and the share of the light
-  // that clamping removes.
+  // The results from the sums of a group: the squared relative RMSE, the relative bias, and the
+  // share of the light that clamping removes.
   struct Ratios {
     double squared_rmse = 0.0;
     double bias = 0.0;
     double lost = 0.0;
   };
-  // Sums over pixels for BestPathsPerPixel: of the paths' squared variance, and of the square of
-  // the squared error's estimate.
+  // Sums over pixels for BestPathsPerPixel.
   struct Noise {
     double squared_error = 0.0;
     double variance_squares = 0.0;
     double error_squares = 0.0;
-    double pair_noise = 0.0;  // the part of `error_squares` that is the paths' noise
+    double pair_noise = 0.0;  // the part of `error_squares` that is caused by the paths' noise
   };
 
   Group All() const;
@@ -123,7 +125,7 @@ class ErrorEstimate {
   // Returns the clamp with the narrowest interval, including the bias that clamping may cause.
   std::size_t BestClamp(const Group& all) const;
 
-  // Number of groups, to which pixels are assigned in turn, for the jackknife.
+  // The number of groups of pixels for the jackknife. Pixels are assigned to the groups in turn.
   static constexpr std::size_t kGroups = 40;
 
   double mean_drawn_;

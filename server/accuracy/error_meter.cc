@@ -16,8 +16,8 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// Paths per pixel before anything is known of the picture, and the number of pixels after which
-// enough is known.
+// The first kPilotPixels pixels get kFirstPathsPerPixel paths each. After them, the number of paths
+// is chosen by ErrorEstimate::BestPathsPerPixel.
 constexpr int kFirstPathsPerPixel = 16;
 constexpr std::int64_t kPilotPixels = 320;
 constexpr int kMaxPathsPerPixel = 64;
@@ -25,11 +25,12 @@ constexpr int kMaxPathsPerPixel = 64;
 constexpr int kPathsPerBatch = 4096;
 constexpr std::uint64_t kSeed = 0x6572726f72;
 
-// kEvenShare of the pixels are chosen evenly over the picture, so that no error is missed. Among
-// the rest, kWithoutStorm is the weight of pixels that show no storm.
+// The fraction kEvenShare of the pixels is chosen evenly over the picture, so that no error is
+// missed. For the other pixels, kWithoutStorm is the relative weight of pixels that show no storm.
 constexpr double kEvenShare = 0.2;
 constexpr double kWithoutStorm = 0.05;
-// A share of the mean radiance. Pixels drawn darker than this may be brighter in the reference.
+// The minimum radiance that is assumed for a pixel, relative to the mean radiance. A pixel that is
+// drawn darker may be brighter in the reference.
 constexpr double kDark = 0.25;
 
 double MeanColor(const glm::vec3& color) {
@@ -50,7 +51,7 @@ ErrorMeter::ErrorMeter(reference::RayTracer tracer, reference::Surroundings surr
 absl::StatusOr<std::unique_ptr<ErrorMeter>> ErrorMeter::Create(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
     int threads, std::uint64_t seed, const reference::MakesTracer& makes_tracer) {
-  // Each field has its own phase function, as in the reference.
+  // The reference technique is used, in which each field has its own phase function.
   scene::Scene truth = scene;
   truth.rendering.technique =
       scene::Reference{.false_colors = scene::FieldLookOf(scene.rendering.technique).false_colors};
@@ -84,8 +85,8 @@ void ErrorMeter::Show(picture::LinearPicture drawn) {
   }
 }
 
-// Weighs pixels by radiance because most of the noise and the error is in the bright parts of the
-// storm.
+// Computes the probabilities of choosing pixels. They increase with radiance, because most of the
+// noise and the error is in the bright parts of the storm.
 void ErrorMeter::Weigh() {
   const std::vector<bool> left_out = reference::NearSun(camera_, surroundings_.towards_sun,
                                                         drawn_.size_px, reference::kPeakCut_deg);
@@ -121,8 +122,8 @@ double ErrorMeter::ChanceOf(std::size_t index) const {
   return chances_[index] - (index > 0 ? chances_[index - 1] : 0.0);
 }
 
-// Returns pixel `count` of an endless sequence that is even in probability (multiples of the golden
-// ratio).
+// Returns the index of pixel number `count` in an endless sequence. The sequence is evenly
+// distributed in cumulative probability (multiples of the golden ratio).
 std::size_t ErrorMeter::ChoosePixel(std::uint64_t count) const {
   constexpr double kGolden = 0.6180339887498949;
   const double place = glm::fract(0.5 + static_cast<double>(count) * kGolden) * chances_.back();

@@ -1,6 +1,6 @@
-// Measures the error of a drawn picture by tracing some of its pixels. It compares the picture with
-// the reference (reference/trace_scene.h) for the same scene and storm. Knows no GL itself, but its
-// tracer may use GL.
+// Measures the error of a drawn picture by path tracing some of its pixels. The traced radiance is
+// that of the reference technique (reference/trace_scene.h) for the same scene and storm. This
+// class does not use GL itself, but its tracer may.
 #pragma once
 
 #include <cstdint>
@@ -24,31 +24,33 @@ namespace thunderhead::accuracy {
 class ErrorMeter {
  public:
   // Creates a meter for pictures of `scene` with any number of pixels and the aspect ratio of its
-  // output. Fails as reference::MediumOf and `makes_tracer` do. If the CPU traces, it uses
-  // `threads` threads (0: all cores). `seed` selects the random paths.
+  // output. Returns the errors of reference::MediumOf and `makes_tracer`. If paths are traced on
+  // the CPU, `threads` threads are used; 0 means one for each core. `seed` selects the random
+  // paths.
   static absl::StatusOr<std::unique_ptr<ErrorMeter>> Create(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       int threads, std::uint64_t seed = 0,
       const reference::MakesTracer& makes_tracer = reference::TracerOnProcessors);
 
-  // Sets the picture to measure. Paths traced before are kept if the picture has as many pixels as
-  // the previous one; otherwise they are dropped.
+  // Sets the picture to measure. Paths that were traced before are kept if the picture has the same
+  // number of pixels as the previous picture.
   void Show(picture::LinearPicture drawn);
 
-  // Returns false if the last shown picture shows almost nothing but the sun. Nothing is measured
-  // next to the sun (reference/near_sun.h).
+  // Returns false if almost all pixels of the last shown picture are close to the sun. Pixels close
+  // to the sun are not measured (reference/near_sun.h).
   bool IsMeasurable() const;
 
   // Traces pixels of the picture for some tenths of a second. A measurable picture must have been
-  // shown. Fails only if `wanted` fails, and has then traced nothing.
+  // shown. Returns an error only if `wanted` returns an error; then nothing was traced.
   absl::Status Step(const reference::IsWanted& wanted = nullptr);
-  // Steps for about `seconds`, or until `stop` is requested. Does nothing if the picture is not
-  // measurable.
+  // Calls Step for about `seconds`, or until `stop` is requested. Does nothing if the picture is
+  // not measurable.
   void Measure(double seconds, const std::stop_token& stop);
 
-  // Returns the error of the last shown picture. None while too few pixels are traced.
+  // Returns the measured error of the last shown picture, or nothing while too few pixels are
+  // traced.
   std::optional<MeasuredError> Result() const;
-  // Returns the time spent in steps so far.
+  // Returns the seconds spent in Step so far.
   double TracedSeconds() const { return traced_s_; }
 
  private:
@@ -71,8 +73,8 @@ class ErrorMeter {
   const std::uint64_t seed_;
   picture::LinearPicture drawn_;
   double mean_drawn_ = 0.0;
-  std::size_t pixels_ = 0;  // number of pixels of drawn_ that are not left out
-  // Cumulative probabilities of choosing the pixels, from the first shown picture.
+  std::size_t pixels_ = 0;  // number of pixels of drawn_ that are measured
+  // The cumulative probabilities of choosing each pixel, computed from the first shown picture.
   std::vector<double> chances_;
   std::vector<TracedPixel> traced_;
   std::optional<ErrorEstimate> estimate_;

@@ -16,19 +16,19 @@ namespace {
 // factor.
 constexpr double kRedrawnGrowth = 1.3;
 
-// An interval whose width is at most this share of the error is narrow enough. At most kMaxTraced_s
-// is spent on one scene.
+// A measurement ends when the width of the confidence interval is at most kEnoughWidth times the
+// error, or after kMaxTraced_s seconds of tracing.
 constexpr double kEnoughWidth = 0.25;
 constexpr double kMaxTraced_s = 30.0;
 
-// Relief below this height is drawn as level ground.
+// If the ground's heights differ by less than this, the ground counts as level.
 constexpr float kLevel_m = 1.0F;
 
 bool IsEnough(const Estimated& error) {
   return error.high - error.low <= kEnoughWidth * error.value;
 }
 
-// Returns the scene without the settings that change neither light nor view.
+// Returns the scene with default values for the settings that change neither light nor view.
 scene::Scene WithoutDisplay(scene::Scene scene) {
   scene.display = {};
   scene.accuracy = {};

@@ -1,6 +1,6 @@
-// Error meters for several scenes at rest, which improve step by step. Each meter gets its scene's
-// picture with the current light and traces some of its pixels. Used on one thread; the caller does
-// the drawing.
+// Error meters for several scenes that are at rest (neither scene nor camera changes). The measured
+// errors become more precise with each step. Each meter receives a picture of its scene and traces
+// some of its pixels. The class must be used on one thread. The caller draws the pictures.
 #pragma once
 
 #include <cstddef>
@@ -22,10 +22,10 @@
 namespace thunderhead::accuracy {
 
 struct ErrorProgress {
-  // None while too few paths are traced for a useful interval.
+  // Nothing while too few paths are traced for a useful confidence interval.
   std::optional<MeasuredError> error;
   double traced_s = 0.0;
-  // True if more paths are not worthwhile while the light stays the same, or if nothing can be
+  // True if the error is precise enough as long as the light stays the same, or if nothing can be
   // measured.
   bool ended = false;
 
@@ -33,12 +33,12 @@ struct ErrorProgress {
   bool operator==(const ErrorProgress&) const = default;
 };
 
-// Returns the scene of a picture that can be compared with the reference. It is `scene` at full
-// quality and in its own size, without features that the reference does not show in the same way:
-// turbulent detail and range rings.
+// Returns a version of `scene` whose picture can be compared with the reference. It has full
+// quality and the same size. It has no turbulent detail and no range rings, because the reference
+// shows them differently.
 scene::Scene MeasuredScene(const scene::Scene& scene);
 
-// Returns false for fields with uneven ground, because the reference does not show it.
+// Returns false for fields with uneven ground, because the reference does not show relief.
 bool IsMeasurable(const volume::HydrometeorFields& fields);
 
 class ErrorMeters {
@@ -46,9 +46,9 @@ class ErrorMeters {
   using Fields = std::shared_ptr<const volume::HydrometeorFields>;
   using Draw = std::function<absl::StatusOr<picture::LinearPicture>(const scene::Scene& measured)>;
 
-  // There are at most `max_meters`, because each holds a copy of its storm's extinction, which is
-  // reserved in `memory`. A meter that was used within `busy_s` is not replaced. A meter that was
-  // not used for `unused_s` is dropped at the next call.
+  // There are at most `max_meters` meters, because each holds a copy of its storm's extinction. The
+  // memory for it is reserved in `memory`. A meter that was used within the last `busy_s` seconds
+  // is not replaced. A meter that was not used for `unused_s` seconds is dropped at the next call.
   explicit ErrorMeters(std::shared_ptr<base::MemoryBudget> memory = base::MemoryBudget::Unlimited(),
                        std::size_t max_meters = 8, double busy_s = 3.0, double unused_s = 60.0,
                        reference::MakesTracer makes_tracer = reference::TracerOnProcessors)
@@ -58,15 +58,16 @@ class ErrorMeters {
         unused_s_(unused_s),
         makes_tracer_(std::move(makes_tracer)) {}
 
-  // Does one step for the scene. Draws with `draw` if the scene is new, or if many more paths
-  // (`light_paths`) correct its light than before. Otherwise traces, unless the measurement has
-  // ended or `wanted` fails. RESOURCE_EXHAUSTED if too many other scenes are being measured or
-  // memory does not suffice for another storm.
+  // Does one step for the scene. `light_paths` is the number of paths that correct the scene's
+  // light now. If the scene is new, or if this number has grown much, the step draws a picture by
+  // `draw`. Otherwise it traces paths, unless the measurement has ended or `wanted` returns an
+  // error. Returns RESOURCE_EXHAUSTED if too many other scenes are being measured, or if there is
+  // no memory for another storm.
   absl::StatusOr<ErrorProgress> Step(const scene::Scene& scene, const Fields& fields,
                                      std::int64_t light_paths, const Draw& draw,
                                      const reference::IsWanted& wanted = nullptr);
 
-  // Drops the meter that was used longest ago. Returns false if all are busy.
+  // Drops the least recently used meter. Returns false if all meters are busy.
   bool DropOldest();
 
  private:
@@ -75,7 +76,8 @@ class ErrorMeters {
     Fields fields;
     base::MemoryReservation reserved;
     std::unique_ptr<ErrorMeter> meter;
-    std::optional<std::int64_t> drawn_paths;  // paths behind the measured picture's light
+    std::optional<std::int64_t> drawn_paths;  // number of paths that corrected the light of the
+                                              // measured picture
     base::Stopwatch since_used;
   };
 

@@ -23,25 +23,30 @@ namespace {
 
 constexpr int kWidth_px = 128;
 constexpr int kHeight_px = 96;
-// More texels made the result noisier for the same number of paths, and no better after many paths.
+// The maximum number of texels along a side. More texels made the result noisier for the same
+// number of paths, and not better after many paths.
 constexpr int kMaxTexels = 96;
 constexpr double kMaxTexelCount = 262144.0;
 // Rays with a higher transmittance through the storm carry little information about its light.
 constexpr double kMaxTransmittance = 0.8;
-// This gives less noise than a cut of 3 degrees. The change in pictures was too small to measure
+// The angle in degrees around the sun in which the peak of phase functions is cut off. It gives
+// less noise than 3 degrees. The difference between pictures was too small to measure
 // (docs/decisions/0012).
 constexpr double kPeakCut_deg = 20.0;
 
-// Drawing a picture takes as long as tracing it once, so its rays have two paths each. The first
-// pictures have one, because they must show the storm from enough directions (docs/decisions/0012).
+// The number of paths for each ray. Drawing a probe takes as long as tracing one path for each of
+// its rays, so two paths per ray are efficient. The first kPicturesOfOnePath probes have one path
+// per ray, so that the storm is soon seen from many directions (docs/decisions/0012).
 constexpr int kPathsOfRay = 2;
 constexpr std::uint64_t kPicturesOfOnePath = 8;
 
 constexpr int kGroundTexels = 64;
-constexpr int kGroundRays = 2048;       // in one pass
-constexpr int kGroundPassesOfStep = 2;  // in each of the first steps
-constexpr int kFirstGroundPasses = 32;  // before the first picture, whose background is the ground
-constexpr int kPicturesPerGround = 16;  // pictures after which the ground's correction is updated
+constexpr int kGroundRays = 2048;       // number of rays from the ground in one pass
+constexpr int kGroundPassesOfStep = 2;  // number of passes in each of the first steps
+constexpr int kFirstGroundPasses = 32;  // passes before the first probe, because probes show the
+                                        // ground
+constexpr int kPicturesPerGround = 16;  // number of probes after which the ground's correction is
+                                        // updated
 constexpr double kAboveGround_m = 1.0;
 constexpr std::uint64_t kGroundSeed = 0x67726f756e64;
 
@@ -63,8 +68,8 @@ glm::dvec2 Middle_m(const volume::WorldBox& box) {
   return 0.5 * glm::dvec2(box.low_m + box.high_m);
 }
 
-// Returns the scene that probes draw. It has no light that the light volume cannot show, no
-// structure finer than texels, and plain ground as bright as the scene's.
+// Returns the scene that probes draw. It has no lights that the light volume cannot show, no detail
+// finer than texels, and uniform ground with the mean brightness of the scene's ground.
 scene::Scene ProbedScene(const scene::Scene& asked, const volume::HydrometeorFields& fields) {
   scene::Scene scene = scene::WithGroundOf(asked, fields);
   scene.ground = {};
@@ -76,7 +81,8 @@ scene::Scene ProbedScene(const scene::Scene& asked, const volume::HydrometeorFie
   return scene;
 }
 
-// Returns the particle sizes for the storm's box. If fields differ, the model's sizes are used.
+// Returns the source of particle sizes for computing the storm's box. If the fields have different
+// sources, it is the model.
 physics::SizeSource SizesOf(const scene::Scene& scene) {
   const bool papers = std::ranges::all_of(scene.fields, [](const scene::FieldParameters& field) {
     return field.sizes == physics::SizeSource::kPapers;
@@ -176,7 +182,7 @@ absl::Status LightCorrector::TraceUntil(std::int64_t paths, const std::stop_toke
 absl::StatusOr<LightCorrector::Probe> LightCorrector::DrawProbe() {
   renderers::DrawQuality quality;
   quality.single_precision = true;
-  quality.sun_seen = false;  // a peak cut as wide as this leaves no aureole
+  quality.sun_seen = false;  // with such a wide peak cut, there is no aureole around the sun
   quality.correction = plain_;
   Probe probe;
   THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame whole,
@@ -235,8 +241,8 @@ absl::Status LightCorrector::TraceProbe(const Probe& probe) {
   return absl::OkStatus();
 }
 
-// Traces rays from random places on the ground in cosine-distributed directions, so that their mean
-// radiance is the ground's irradiance divided by pi.
+// Traces rays from random places on the ground. Their directions are cosine-distributed, so that
+// the mean radiance of the rays is the ground's irradiance divided by pi.
 absl::Status LightCorrector::TraceGround() {
   const std::uint64_t pass = ground_passes_ + 1;
   if (!over_ground_.ground.has_value() || !over_ground_.sky) {

@@ -1,8 +1,10 @@
-// Corrects a scene's light volume progressively with the reference. It draws small pictures of the
-// storm, half of them from near the scene's camera and half from all directions. It traces one or
-// two paths along each of their rays and fits factors for the drawn radiance. Paths from the ground
-// correct the ground's skylight. The result does not depend on the number of threads. Owns GL
-// objects: use it on the context's thread, which draws in pieces (gl/pieces.h).
+// Corrects a scene's light volume progressively by path tracing. It draws small pictures of the
+// storm (probes), half of them from near the scene's camera and half from all directions. For each
+// pixel of a probe, it traces one or two paths with the reference technique. From them it fits
+// correction factors for the drawn radiance (accuracy/correction_fit.h). Paths from the ground
+// correct the skylight on the ground. The result does not depend on the number of threads. The
+// class owns GL objects, so it must be used on the context's thread, which draws in pieces
+// (gl/pieces.h).
 #pragma once
 
 #include <cstdint>
@@ -29,13 +31,15 @@
 
 namespace thunderhead::accuracy {
 
-// Returns true if the scene requests traced light, its renderer can show it, and a field is drawn.
+// Returns true if the scene requests traced light, its technique supports traced light, and at
+// least one field is drawn.
 bool TracesLight(const scene::Scene& scene, const volume::HydrometeorFields& fields);
 
 class LightCorrector {
  public:
-  // Creates a corrector; TracesLight must be true. Links programs in `programs`. Traces on the
-  // device if device_paths::TracesOnDevice(), else on `threads` threads (0: all cores).
+  // Creates a corrector. TracesLight must be true for the scene. `programs` caches linked shader
+  // programs. Paths are traced on the device if device_paths::TracesOnDevice(), and otherwise on
+  // `threads` CPU threads; 0 means one for each core.
   static absl::StatusOr<std::unique_ptr<LightCorrector>> Create(
       const scene::Scene& scene, std::shared_ptr<const volume::HydrometeorFields> fields,
       std::shared_ptr<gl::ProgramCache> programs, int threads);
@@ -45,34 +49,36 @@ class LightCorrector {
   bool Serves(const scene::Scene& scene,
               const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
 
-  // Continues with the camera of `scene`, for which Serves must be true. From then on half of the
-  // pictures are drawn from near that camera.
+  // Sets the camera from near which half of the probes are drawn to that of `scene`. Serves must be
+  // true for `scene`.
   void LookAs(const scene::Scene& scene);
 
-  // Traces some thousand paths. The first steps trace only the ground; each later step traces one
-  // picture. Fails if it cannot draw, or if the work is no longer needed (gl::Pieces::Wanted).
+  // Traces some thousand paths. The first steps trace only paths from the ground; each later step
+  // traces one probe. Returns an error if the probe cannot be drawn, or if the work is no longer
+  // needed (gl::Pieces::Wanted).
   absl::Status Step();
-  // Steps until LightProgress::HasTraced(paths). CANCELLED if `stop` is requested earlier.
-  // `observer` may be null; otherwise it receives the share of paths traced.
+  // Calls Step until LightProgress::HasTraced(paths). Returns CANCELLED if `stop` is requested
+  // earlier. `observer` receives the part of the paths that are traced, 0 to 1. It may be empty.
   absl::Status TraceUntil(std::int64_t paths, const std::stop_token& stop,
                           const std::function<void(double)>& observer);
 
-  // Returns the total number of paths, without those of the ground.
+  // Returns the progress. Its number of paths does not include the paths from the ground.
   const LightProgress& Progress() const { return progress_; }
 
-  // Returns the correction from all paths so far. Null while there are too few paths
-  // (LightProgress::Corrects).
+  // Returns the correction that was fitted to all paths so far, or null while there are too few
+  // paths (LightProgress::Corrects).
   std::shared_ptr<const renderers::LightCorrection> Correction();
 
  private:
-  // Pictures drawn from one camera, with four values per pixel and rows from bottom to top. They
-  // are empty if no storm is visible.
+  // The pictures of one probe, all drawn from one camera. They have four values per pixel and rows
+  // from bottom to top. They are empty if no storm is visible.
   struct Probe {
     std::vector<float> whole;
-    std::vector<float> behind;  // background dimmed by the storm, without its radiance
-    // As in renderers::SeenStorm.
+    std::vector<float> behind;  // the background, dimmed by the storm but without the storm's
+                                // radiance
+    // The textures of renderers::SeenStorm.
     std::vector<float> storm;
-    std::vector<float> opacity_distance_m;  // the first of four values
+    std::vector<float> opacity_distance_m;  // only the first of the four values is used
     volume::WorldBox box;
   };
 
@@ -90,22 +96,24 @@ class LightCorrector {
   std::shared_ptr<renderers::LightCorrection> WithGround() const;
   void UpdateGround();
 
-  scene::Scene scene_;  // as the probes draw it
+  scene::Scene scene_;  // the scene that the probes draw (ProbedScene)
   scene::Scene asked_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
   reference::RayTracer tracer_;
   volume::WorldBox box_;
   std::shared_ptr<const reference::SceneLight> light_;
-  reference::Surroundings over_ground_;  // as seen by rays from the ground: without air in front
+  reference::Surroundings over_ground_;  // the surroundings for rays from the ground, which have no
+                                         // air in front of the storm
   int threads_;
   std::shared_ptr<gl::ProgramCache> programs_;
   renderers::SceneRenderer renderer_;
   CorrectionFit storm_fit_;
   CorrectionFit ground_fit_;
   glm::dvec3 sky_sum_{0.0};  // sum of the clear sky's radiance over the ground's rays
-  // The current correction of the ground, which does not change the storm.
+  // A correction that contains only the current correction of the ground.
   std::shared_ptr<const renderers::LightCorrection> plain_;
-  std::shared_ptr<const renderers::LightCorrection> correction_;  // null: must be computed again
+  std::shared_ptr<const renderers::LightCorrection> correction_;  // null if it must be computed
+                                                                  // again
   std::uint64_t ground_passes_ = 0;
   std::uint64_t pictures_ = 0;
   LightProgress progress_;

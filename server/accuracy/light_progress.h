@@ -1,4 +1,4 @@
-// The progress of tracing a scene's light, and a claim on the light. Plain values.
+// The progress of path tracing a scene's light, and a claim on the traced light.
 #pragma once
 
 #include <algorithm>
@@ -7,24 +7,26 @@
 
 namespace thunderhead::accuracy {
 
-// Minimum number of paths for a correction; with fewer it is mostly noise. With only the first
-// picture's paths the error grew by 21 to 48 % on two storms of three. With this many it was 14 to
-// 47 % less on all of them (docs/decisions/0012).
+// The minimum number of paths for a correction; a correction from fewer paths is mostly noise. With
+// the paths of only one probe, the picture's error was 21 to 48 % larger than without correction
+// for two of three storms. With this number of paths, the error was 14 to 47 % smaller for all
+// three (docs/decisions/0012).
 inline constexpr std::int64_t kMinCorrectingPaths = 25'000;
 
-// While a claim exists, the light traced for its scene is not evicted for another scene.
+// A claim on the light traced for a scene. While the claim exists, the light is not evicted in
+// favour of another scene.
 using LightClaim = std::shared_ptr<const void>;
 
 struct LightProgress {
   std::int64_t paths = 0;
-  std::int64_t steps = 0;  // 0 if there is nothing to trace
+  std::int64_t steps = 0;  // number of steps; 0 if there is nothing to trace
 
   // Returns true if a correction by these paths is worth applying.
   bool Corrects() const { return paths >= kMinCorrectingPaths; }
 
-  // Returns the completed share of tracing `wanted` paths, 0 to 1. The number of steps that should
-  // have sufficed counts as well. Few rays hit a small or thin storm, and waiting for more would
-  // take too long.
+  // Returns the completed share of tracing `wanted` paths, 0 to 1. Each step counts as at least
+  // kMinPathsPerStep paths. Otherwise tracing a small or thin storm, which few rays hit, would take
+  // too long.
   double ShareOf(std::int64_t wanted) const {
     constexpr std::int64_t kMinPathsPerStep = 300;
     const std::int64_t done = std::max(paths, kMinPathsPerStep * steps);

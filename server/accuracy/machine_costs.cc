@@ -30,7 +30,8 @@ void MachineCosts::CompareWithTable(const scene::Scene& scene, double view_ms) {
   if (!table.ok()) return;
   const Setting setting = Untraced(SettingOf(scene));
   const PricedSetting* const row = NearestRow(*table, setting);
-  // Frames of settings without a row in the table would teach the distance to the nearest row.
+  // If the table has no row for exactly this setting, the ratio would also contain the difference
+  // between the setting and the nearest row.
   if (row == nullptr || Distance(row->setting, setting) > 0.0) return;
   correction_.Observe(setting, TableMs(*table, *row, scene), view_ms);
 }

@@ -1,6 +1,6 @@
-// The cost of frames on this machine, learnt from the frames that it draws. Each frame is reported
-// once. From them follow the cost of a view's next frame and that of a setting of a table. Plain
-// values, no clock.
+// The drawing times of frames on this machine, learnt from the frames that it draws. From the
+// observed frames, the class predicts the time of a view's next frame and the time of any setting
+// in a table. It uses no clock.
 #pragma once
 
 #include <array>
@@ -21,42 +21,45 @@
 
 namespace thunderhead::accuracy {
 
-// A drawn frame of a decided scene.
+// A frame that was drawn. The settings of its scene are final (Offers::Decide).
 struct MeasuredFrame {
   const scene::Scene& scene;
   FrameQuality quality;
   double total_ms = 0.0;
   const std::vector<scene::StageTime>& stages;
-  bool traced = false;            // traced paths corrected its light
-  std::string_view context = {};  // OpenGL context; each context compiles its own shaders
+  bool traced = false;            // true if traced paths corrected the frame's light
+  std::string_view context = {};  // name of the OpenGL context; each context compiles its own
+                                  // shaders
 };
 
 class MachineCosts {
  public:
-  // `tables` must outlive it.
+  // `tables` must outlive this object.
   explicit MachineCosts(const OfferTables& tables) : tables_(tables) {}
 
-  // Records a frame of `view`, which names the picture's owner. The first frame of a setting in
-  // each context is ignored because its time includes shader compilation.
+  // Records a frame of the view named `view`. The first frame of a setting in each context is
+  // ignored, because its time includes the compilation of shaders.
   void Observe(const std::string& view, const MeasuredFrame& frame);
 
   // Returns the predicted time of the next frame of `view` if `first_dirty` is the first stage to
-  // rerun. It uses that view's frames, or all frames if the view has none yet. Views differ in how
-  // much of their storm they look through.
+  // rerun. The prediction uses the frames of that view, or all frames if the view has no frames
+  // yet. The times differ between views, because views show different parts of their storms.
   double FrameMs(const std::string& view, const scene::Scene& scene, const FrameQuality& quality,
                  scene::Stage first_dirty) const;
   void Forget(const std::string& view);
 
-  // Returns the time of a frame of a moved camera with a row's setting, at the scene's size.
+  // Returns the predicted time of a frame with the setting of `row` in the size of `scene`, if only
+  // the camera has moved.
   double SettingMs(const PricedSettings& table, const PricedSetting& row,
                    const scene::Scene& scene) const;
-  // Returns true if a full frame of that setting was observed.
+  // Returns true if a frame at full quality with that setting was observed.
   bool Knows(const Setting& setting) const { return correction_.Knows(setting); }
 
  private:
-  // One model for each kind of technique, because their costs are unrelated.
+  // One cost model for each technique, because the costs of techniques are unrelated.
   using Models = std::array<CostModel, std::variant_size_v<scene::Technique>>;
-  // Names of technique, mode and transport; the context; whether traced paths correct the light.
+  // The names of technique, mode and transport, the name of the context, and whether traced paths
+  // correct the light.
   using Shaders = std::tuple<std::string, std::string, std::string_view, std::string_view, bool>;
 
   void CompareWithTable(const scene::Scene& scene, double view_ms);
@@ -64,7 +67,8 @@ class MachineCosts {
   const OfferTables& tables_;
   std::set<Shaders> compiled_;
   Models machine_;
-  std::map<std::string, Models> views_;  // by view; each starts as a copy of machine_
+  std::map<std::string, Models> views_;  // the models of each view, which begin as a copy of
+                                         // machine_
   TableCorrection correction_;
 };
 

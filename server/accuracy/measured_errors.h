@@ -1,4 +1,4 @@
-// Corrections of the tables' errors by measurements of a scene's pictures. A plain value.
+// Corrects the errors in the tables by measured errors of a scene's pictures.
 #pragma once
 
 #include <vector>
@@ -7,16 +7,18 @@
 
 namespace thunderhead::accuracy {
 
-// The ratios of measured errors of a scene's pictures to the tables' errors. There is one ratio for
-// each measured technique and light model, with and without traced light.
+// The ratios of the measured errors of a scene's pictures to the errors in the tables. There is a
+// separate ratio for each measured technique and light model, and for settings with and without
+// traced light.
 class MeasuredErrors {
  public:
-  // Records that pictures of `setting`, whose error is `table_error` in the table, have
-  // `measured_error`.
+  // Records that a picture with `setting` has the error `measured_error`, where the table has
+  // `table_error`.
   void Observe(const Setting& setting, double table_error, double measured_error);
-  // Returns the ratio for a setting. If it was not measured, returns the geometric mean of the
-  // measured ones with, or without, traced light. If the tables are wrong about one light model,
-  // they are probably wrong about others as well. 1 if nothing was measured.
+  // Returns the ratio for `setting`. If it was not measured, returns the geometric mean of the
+  // measured ratios of settings that are likewise with or without traced light. This is a good
+  // guess, because a scene for which one light model's error in the table is wrong is probably
+  // unusual for the other models, too. Returns 1 if nothing was measured.
   double FactorOf(const Setting& setting) const;
 
  private:

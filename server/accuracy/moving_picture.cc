@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t kChannels = 3;
 
-// The exponent of the number of pixels with which the contrast of larger pictures grows, and its
-// largest factor.
+// The contrast limit of larger pictures grows with the number of pixels to the power of
+// kContrastGrowth, up to the factor kMostContrast.
 constexpr double kContrastGrowth = 0.4;
 constexpr double kMostContrast = 2.25;
 
@@ -115,9 +115,10 @@ absl::StatusOr<CompletedPicture> CompleteMoving(
     drawing_ms += Sum_ms(chosen.stages);
     return ColorsOf(chosen, places.size(), tone_mapper);
   };
-  // Smaller image_scales allow more contrast, in proportion to the pixels that they stand for.
+  // With a smaller image_scale, each ray represents more pixels, so the contrast limit grows in
+  // proportion.
   const double contrast = MovingContrast(scene) / (quality.image_scale * quality.image_scale);
-  // Most of this is CPU work, so others may draw meanwhile.
+  // Most of this work runs on the CPU, so other drawings may use the device meanwhile.
   absl::StatusOr<frame::FineImage> completed;
   THUNDERHEAD_RETURN_IF_ERROR(pieces.OffTurn([&] {
     completed =

@@ -1,4 +1,5 @@
-// Techniques, modes and transports by name, as tables, flags and measurements identify them.
+// The names of techniques, modes and transports (ways of solving the light), by which tables, flags
+// and measurements identify them.
 #pragma once
 
 #include <array>
@@ -18,8 +19,8 @@ struct Named {
   std::string_view name;
 };
 
-// A technique in its plainest settings: consistent transport if it has a choice, no detail and no
-// traced light. Measurements start from these settings.
+// A technique with its simplest settings: consistent transport if the technique has several
+// transports, no detail and no traced light. Measurements start from these settings.
 struct PlainTechnique {
   std::string_view name;
   scene::Technique (*settings)();
@@ -41,8 +42,8 @@ constexpr PlainTechnique Plain() {
 
 namespace internal {
 
-// Returns true for techniques with their own settings, except the reference, which the others are
-// measured against.
+// Returns true for techniques that have rows in the tables: all that have settings, except the
+// reference, with which the others are compared.
 template <typename Settings>
 constexpr bool IsMeasured() {
   if constexpr (requires { Settings::kName; }) return Settings::kCapabilities.images;
@@ -66,14 +67,15 @@ constexpr auto MeasuredOf(std::type_identity<std::variant<Settings...>> /*techni
 inline constexpr auto kPlainTechniques =
     internal::MeasuredOf(std::type_identity<scene::Technique>{});
 
-// The techniques that draw the fields cell by cell, so that their pictures have exact solutions.
+// The techniques that draw the cells of the fields, so that exact solutions for their pictures
+// exist.
 inline constexpr std::array<PlainTechnique, 2> kCellTechniques = {Plain<scene::HalfAngle>(),
                                                                   Plain<scene::LightVolume>()};
 
-// Returns the technique of that name; none for an unknown name.
+// Returns the technique with that name, or nothing for an unknown name.
 std::optional<PlainTechnique> PlainTechniqueNamed(std::string_view name);
 
-// A mode of the papers' frame-rate table.
+// A mode (combination of medium settings) in the frame-rate table of the papers.
 struct Mode {
   std::string_view name;
   bool per_field_phase = true;
@@ -95,27 +97,27 @@ inline constexpr std::array<Mode, 4> kModes = {
     {kUniformPhaseLowAlbedoMode, kUniformPhaseTranslucentMode, kPerFieldPhaseTranslucentMode,
      kPerFieldPhaseDetailTranslucentMode}};
 
-// The transports of translucent modes by their names in tables.
+// The transports of translucent modes, with their names in tables.
 inline constexpr std::array<Named<scene::Transport>, 3> kTransportNames = {{
     {scene::Transport::kPaper, "paper"},
     {scene::Transport::kConsistent, "consistent"},
     {scene::Transport::kDiffusion, "diffusion"},
 }};
 
-// Returns `technique` in that mode. `transport` is the transport of its translucent variant. A
-// technique without a medium does not change.
+// Returns `technique` with the settings of `mode`. If the mode is translucent, its transport is
+// `transport`. A technique without a medium is returned unchanged.
 scene::Technique InMode(scene::Technique technique, const Mode& mode, scene::Transport transport);
 
-// Returns true if the technique supports that transport or draws no medium.
+// Returns true if the technique supports the transport, or has no medium.
 bool ShowsTransport(const scene::Technique& technique, scene::Transport transport);
 
-// Return the mode of a technique's settings and the name of its transport, whether or not it is
-// translucent. For a technique without a medium they return kPerFieldPhaseTranslucentMode and
-// "consistent".
+// These functions return the mode of a technique's settings and the name of its transport. The
+// transport is returned even if the mode is not translucent. For a technique without a medium they
+// return kPerFieldPhaseTranslucentMode and "consistent".
 const Mode& ModeOf(const scene::Technique& technique);
 std::string_view TransportNameOf(const scene::Technique& technique);
 
-// Returns the technique of a table's names; none if a name is unknown.
+// Returns the technique for the three names in a table's row, or nothing if a name is unknown.
 std::optional<scene::Technique> TechniqueNamed(std::string_view name, std::string_view mode,
                                                std::string_view transport);
 

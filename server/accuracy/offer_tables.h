@@ -1,5 +1,5 @@
-// The tables of docs/accuracy by kind of camera. They hold the cost and error of each setting;
-// these functions select a scene's row. Plain values.
+// The tables of docs/accuracy, one for each kind of camera. They contain the drawing time and the
+// error of each setting. These functions find the row for a scene.
 #pragma once
 
 #include <array>
@@ -13,7 +13,8 @@
 
 namespace thunderhead::accuracy {
 
-// A table for each kind of camera, in the order of scene::Camera, or the reason why it is missing.
+// A table for each kind of camera, in the order of scene::Camera, or the error why the table is
+// missing.
 using OfferTables = std::array<absl::StatusOr<PricedSettings>, std::variant_size_v<scene::Camera>>;
 
 // Returns the tables that are built into the program.
@@ -26,12 +27,13 @@ const absl::StatusOr<PricedSettings>& TableFor(const OfferTables& tables,
 // Returns "orbit", "spotter" or "top-down".
 std::string_view ViewNameOf(const scene::Camera& camera);
 
-// Returns the row with the same technique and model that is most similar to `setting`, if any. For
-// traced light, it prefers rows with traced light and at most as many paths.
+// Returns the row that is most similar to `setting` among the rows with the same technique and
+// light model, or null if there is none. For a setting with traced light, it prefers rows with
+// traced light and at most as many paths.
 const PricedSetting* NearestRow(const PricedSettings& table, const Setting& setting);
 
-// Returns the row's time for a picture of the scene's size. Nearly all of the time grows with the
-// number of pixels.
+// Returns the row's time in ms, scaled to the size of the scene's picture. It is scaled by the
+// number of pixels, because nearly all of the time is proportional to it.
 double TableMs(const PricedSettings& table, const PricedSetting& row, const scene::Scene& scene);
 
 }  // namespace thunderhead::accuracy

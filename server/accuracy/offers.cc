@@ -11,12 +11,13 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// The current setting is kept if it exceeds the limit by at most kLimitSlack and is worse than the
-// best by at most kWorthChanging.
+// The current setting is kept if it exceeds the limit by at most the factor kLimitSlack, and is
+// worse than the best offer by at most the factor kWorthChanging.
 constexpr double kLimitSlack = 1.1;
 constexpr double kWorthChanging = 1.25;
-// Tracing light adds nothing to a frame's time but uses the machine at rest. It is worthwhile if
-// nothing else is as accurate, but not if it only seems a little faster.
+// The factor by which the time of settings with traced light is multiplied in comparisons. Tracing
+// adds nothing to a frame's time, but uses the machine while the scene is at rest. It should be
+// chosen only if it is clearly better than other settings.
 constexpr double kTracingIsDearer = 1.2;
 
 // The constrained quantity, its bound, and the objective to minimise within the bound.
@@ -134,7 +135,8 @@ absl::StatusOr<scene::Scene> Offers::Decide(const scene::Scene& scene,
   scene::Scene decided = scene;
   decided.rendering.technique = WithTasteOf(scene.rendering.technique, setting.technique);
   decided.rendering.image_scale = setting.image_scale;
-  // A request for an error that only tracing reaches waits for the traced light.
+  // If the requested error is reached only with traced light, the picture waits for the traced
+  // light.
   scene::SetTracedLight(&decided.rendering.technique, setting.million_paths > 0.0
                                                           ? scene::TracedLight::kAwaited
                                                           : scene::TracedLight::kOff);

@@ -1,6 +1,6 @@
-// Chooses the setting that reaches the accuracy or speed that a scene requests. It uses tables
-// measured against the reference (accuracy/priced_settings.h) and the cost of frames on this
-// machine. Plain values, no clock, no threads.
+// Chooses the setting with which a scene reaches its requested accuracy or speed. The choice uses
+// the tables of measured errors (accuracy/priced_settings.h) and the drawing times of frames on
+// this machine. This code uses no clock and no threads.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace thunderhead::accuracy {
 
-// A setting with its predicted cost and error on this machine.
+// A setting with its predicted drawing time on this machine and its error.
 struct Offer {
   Setting setting;
   double milliseconds = 0.0;
@@ -25,39 +25,42 @@ struct Offer {
   bool operator==(const Offer&) const = default;
 };
 
-// Returns the best of `offers`, which must not be empty. Among those within the limit it is the
-// cheapest for MaxError and the most accurate for MaxMilliseconds. If none is within the limit, it
-// is the nearest. `current` is kept while it exceeds the limit by at most a tenth and is little
-// worse than the best. So noise in the times does not make the picture flicker. Without a limit it
-// is the first.
+// Returns the best of `offers`, which must not be empty. Among the offers within `limit`, this is
+// the fastest for MaxError and the most accurate for MaxMilliseconds. If no offer is within the
+// limit, it is the offer nearest to the limit. Without a limit, it is the first offer. The setting
+// `current` is kept if it exceeds the limit by at most a tenth and is little worse than the best.
+// Noise in the measured times therefore does not make the picture flicker.
 Offer BestOffer(const std::vector<Offer>& offers, const scene::Accuracy& limit,
                 const std::optional<Setting>& current);
 
 // Returns true if the offer is within the limit.
 bool Meets(const Offer& offer, const scene::Accuracy& limit);
 
-// Returns why `offer`, with which the scene is drawn, misses the scene's request. None if it does
-// not.
+// Returns why `offer`, with which the scene is drawn, does not meet the scene's request, or nothing
+// if it does.
 std::optional<Unmet> WhyUnmet(const scene::Scene& scene, const Offer& offer);
 
-// Maximum number of refuted settings of one view; then the last one stays. Otherwise several
-// settings that miss the limit by almost the same amount would alternate.
+// The maximum number of settings of one view that measurements may refute; then the last setting is
+// kept. Without this limit, several settings that miss the request by almost the same amount would
+// alternate.
 inline constexpr int kMaxRefuted = 8;
 
 class Offers {
  public:
-  // Both must outlive it.
+  // Both arguments must outlive this object.
   Offers(const OfferTables& tables, const MachineCosts& costs) : tables_(tables), costs_(costs) {}
 
-  // Returns the scene with the setting that reaches its request. A scene without a request is not
-  // changed. `current` is the present setting of its view. `measured` holds the errors measured on
-  // it. Fails if there is no table.
+  // Returns the scene with the setting that reaches the scene's request. A scene without a request
+  // is returned unchanged. `current` is the present setting of the scene's view, and `measured` has
+  // the errors measured for this scene. Returns an error if there is no table for the scene's
+  // camera.
   absl::StatusOr<scene::Scene> Decide(const scene::Scene& scene,
                                       const std::optional<Setting>& current,
                                       const MeasuredErrors& measured = {}) const;
 
-  // Returns true if the picture of `scene`, drawn with that setting, certainly has a larger error
-  // than requested, and records it in `measured`. Callers ask kMaxRefuted times at most.
+  // Returns true if `error`, measured for the picture of `scene` with the setting `drawn`, is
+  // certainly larger than requested. In this case, it also records the error in `measured`. For
+  // each view, callers stop calling it after it has returned true kMaxRefuted times.
   bool Refutes(const scene::Scene& scene, const Setting& drawn, const MeasuredError& error,
                MeasuredErrors* measured) const;
 
@@ -69,8 +72,8 @@ class Offers {
   const MachineCosts& costs_;
 };
 
-// Returns `technique` with the look of `asked`, because the table's settings do not include it:
-// turbulent detail, false colours and theta_f.
+// Returns `technique` with those settings of `asked` that the tables do not distinguish: turbulent
+// detail, false colours and theta_f.
 scene::Technique WithTasteOf(const scene::Technique& asked, scene::Technique technique);
 
 }  // namespace thunderhead::accuracy

@@ -7,9 +7,10 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// docs/performance.md lists the cost and error of each preset.
+// The numbers of slices of two presets. docs/performance.md lists the drawing time and the error of
+// each preset.
 constexpr int kFastSlices = 64;
-// At 1280 x 640 pixels, 128 samples leave jagged thin edges: docs/performance.md.
+// With 128 samples, thin edges look jagged at 1280 x 640 pixels (docs/performance.md).
 constexpr int kTrueSlices = 512;
 
 const NamedPreset& RowOf(Preset preset) {

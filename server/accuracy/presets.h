@@ -1,5 +1,5 @@
-// Named settings: three that trade speed for accuracy, and the modes of the papers' frame-rate
-// table (Riley et al. 2003, AMS, Table IV) as settings of the light volume.
+// Named settings (presets). Three presets differ in speed and accuracy. The others are the modes of
+// the papers' frame-rate table (Riley et al. 2003, AMS, Table IV), drawn with the light volume.
 #pragma once
 
 #include <array>
@@ -24,10 +24,10 @@ enum class Preset {
 struct NamedPreset {
   Preset preset;
   std::string_view name;
-  const Mode* of_the_papers = nullptr;  // the mode of the papers' table, if it is one
+  const Mode* of_the_papers = nullptr;  // the mode in the papers' table, or null
 };
 
-// The presets in the order in which to offer them.
+// All presets, in the order in which they are offered to users.
 inline constexpr std::array<NamedPreset, 7> kPresets = {{
     {Preset::kFast, "fast"},
     {Preset::kBalanced, "balanced"},

@@ -28,7 +28,8 @@ constexpr std::array<absl::string_view, 7> kPassedOver = {
     "milliseconds_spread", "bytes",     "relative_bias", "flip",
     "estimated_error",     "error_low", "error_high"};
 
-// Columns that scenes cannot choose: only rows with these values are offered.
+// Columns of settings that scenes cannot choose, with the value that scenes use. Rows with other
+// values are left out.
 struct Fixed {
   absl::string_view column;
   absl::string_view value;

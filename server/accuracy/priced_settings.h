@@ -1,6 +1,6 @@
 // Costs and errors of settings, read from the tables of `thunderhead measure trade`. Columns are
-// read by name. A table with an unknown column is refused, because the column might distinguish
-// rows that would be taken for the same. Pure functions.
+// read by name. A table with an unknown column is refused, because rows that differ only in this
+// column would look the same.
 #pragma once
 
 #include <string_view>
@@ -14,8 +14,9 @@ namespace thunderhead::accuracy {
 
 struct PricedSetting {
   Setting setting;
-  double milliseconds = 0.0;   // time of a frame of a moved camera, at the table's size
-  double relative_rmse = 0.0;  // of linear radiance, against the reference
+  double milliseconds = 0.0;   // time of a frame after the camera has moved, for a picture of the
+                               // table's size
+  double relative_rmse = 0.0;  // relative RMSE of linear radiance, compared with the reference
 };
 
 struct PricedSettings {
@@ -24,7 +25,8 @@ struct PricedSettings {
   std::vector<PricedSetting> rows;
 };
 
-// INVALID_ARGUMENT names the missing, unknown or non-numeric value and its line.
+// Reads a table. Returns INVALID_ARGUMENT, with the line and the missing, unknown or non-numeric
+// value, if the table is invalid.
 absl::StatusOr<PricedSettings> ReadPricedSettings(std::string_view text);
 
 }  // namespace thunderhead::accuracy

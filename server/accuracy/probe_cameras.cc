@@ -27,12 +27,12 @@ glm::dvec3 Spread(std::uint64_t index) {
   return turns - glm::floor(turns);
 }
 
-// Moves any kind of camera.
+// A function object that moves any kind of camera by the same amounts.
 struct Nudge {
   glm::dvec2 middle_m;
   double turn_deg;  // clockwise, seen from above
   double tilt_deg;
-  double farther;  // ratio
+  double farther;  // ratio of the new distance to the old
 
   scene::Camera operator()(scene::OrbitCamera camera) const {
     camera.azimuth_deg += turn_deg;

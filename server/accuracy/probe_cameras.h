@@ -1,4 +1,4 @@
-// The cameras of probes, as low-discrepancy sequences. Pure functions.
+// The cameras of probes (accuracy/light_corrector.h), as low-discrepancy sequences.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace thunderhead::accuracy {
 scene::Camera AroundStorm(const volume::WorldBox& box, double aspect_ratio, std::uint64_t index);
 
 // Returns `camera` turned around the box's middle by at most 10 degrees, and moved closer or
-// farther by at most a twentieth.
+// farther away by at most a twentieth of its distance.
 scene::Camera Nudged(const scene::Camera& camera, const volume::WorldBox& box, std::uint64_t index);
 
 }  // namespace thunderhead::accuracy

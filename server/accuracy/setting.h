@@ -9,36 +9,40 @@
 
 namespace thunderhead::accuracy {
 
-// Number of paths traced for a view at rest if its light is traced. More paths change the visible
-// result by less than a hundredth.
+// The number of paths that are traced for the light of a scene at rest. More paths change the
+// visible result by less than one per cent.
 inline constexpr std::int64_t kTracedPaths = 4'000'000;
-// Number of paths that an image outside any session waits for if it requests no error.
+// The number of paths that are traced before an image outside any session is drawn, if the image
+// requests traced light but no maximum error.
 inline constexpr std::int64_t kImagePaths = 1'000'000;
 
 struct Setting {
   scene::Technique technique;
   double image_scale = 1.0;
   int jpeg_quality = scene::Output{}.jpeg_quality;
-  double light_detail = 1.0;  // as in renderers::DrawQuality
+  double light_detail = 1.0;  // resolution of the light, as in renderers::DrawQuality
   bool single_precision = false;
-  double million_paths = 0.0;  // of traced light
+  double million_paths = 0.0;  // millions of paths that correct the light; 0 without traced light
 
   bool operator==(const Setting&) const = default;
 };
 
-// Returns the final setting of a decided scene, at full quality and with all paths traced.
+// Returns the setting of a scene whose settings are final (Offers::Decide), at full quality and
+// with all paths traced.
 Setting SettingOf(const scene::Scene& scene);
 
-// Returns the setting without traced light, because paths add nothing to a frame's cost.
+// Returns the setting without traced light. It is used to compare costs, because traced paths add
+// nothing to a frame's cost.
 Setting Untraced(Setting setting);
 
-// Return true for the same technique, light model and buffers, both traced or both not traced.
+// These functions compare settings. SameModel returns true for the same technique and light model.
+// SameDrawing also compares the number of slices, the image scale, and whether the light is traced.
 // Turbulent detail is ignored because it does not change the mean light that tables compare.
 bool SameModel(const scene::Technique& a, const scene::Technique& b);
 bool SameDrawing(const Setting& a, const Setting& b);
 
-// Returns the distance as the number of factors of two between the settings' slices and image
-// scales.
+// Returns how different two settings are: the number of factors of two between their numbers of
+// slices, plus that between their image scales.
 double Distance(const Setting& a, const Setting& b);
 
 }  // namespace thunderhead::accuracy

@@ -8,7 +8,7 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// Weight of a new measurement.
+// The weight of a new measurement in the running mean.
 constexpr double kFollow = 0.3;
 
 }  // namespace
@@ -19,7 +19,8 @@ void TableCorrection::Mean::Follow(double log_measured) {
 }
 
 TableCorrection::Key TableCorrection::KeyOf(const Setting& setting) {
-  // Rows of the tables have no detail, and stand for settings with detail.
+  // The rows of the tables have no detail. They also represent settings with detail, so detail is
+  // removed from the key.
   scene::Technique technique = setting.technique;
   if (scene::MediumSettings* medium = scene::MediumSettingsOf(&technique); medium != nullptr) {
     medium->look.detail = false;

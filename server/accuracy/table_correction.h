@@ -1,4 +1,4 @@
-// The ratio of frame times on this machine to those in a table. Plain values.
+// The ratio of frame times on this machine to the frame times in a table.
 #pragma once
 
 #include <map>
@@ -9,25 +9,25 @@
 
 namespace thunderhead::accuracy {
 
-// Ratios of measured to tabulated time for each drawn setting, for each technique and for the
-// machine. The most specific known ratio applies.
+// The ratios of measured times to the times in a table: for each drawn setting, for each technique
+// and for the whole machine. For a setting, the most specific known ratio is used.
 class TableCorrection {
  public:
-  // Records that a frame of `setting` took `measured_ms`, with `table_ms` in the table.
+  // Records that a frame with `setting` took `measured_ms`, where the table has `table_ms`.
   void Observe(const Setting& setting, double table_ms, double measured_ms);
   double Factor(const Setting& setting) const;
   // Returns true if a frame of that setting was observed.
   bool Knows(const Setting& setting) const;
 
  private:
-  // A running mean of logarithms, because times scatter by factors.
+  // A running mean of the logarithms of ratios. Logarithms are used because times vary by factors.
   struct Mean {
     double log_factor = 0.0;
     int count = 0;
 
     void Follow(double log_measured);
   };
-  // Names of technique, mode and transport; the number of slices; the image scale.
+  // The names of technique, mode and transport, the number of slices, and the image scale.
   using Key = std::tuple<std::string_view, std::string_view, std::string_view, int, double>;
   static Key KeyOf(const Setting& setting);
 

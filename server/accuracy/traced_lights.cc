@@ -10,7 +10,7 @@ bool SharesLight(const scene::Scene& traced, const scene::Scene& scene) {
   if (!scene::CapabilitiesOf(scene.rendering.technique).traced_light) return false;
   scene::Scene known = traced;
   scene::Scene alike = scene;
-  // The time of tracing does not matter, nor does what is painted on the ground.
+  // When light is traced (TracedLight) does not matter, and neither do lines painted on the ground.
   for (scene::Scene* const each : {&known, &alike}) {
     each->ground = {.cover = each->ground.cover};
     scene::SetTracedLight(&each->rendering.technique, scene::TracedLight::kOff);

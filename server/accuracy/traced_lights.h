@@ -1,5 +1,6 @@
-// The current corrections of light by tracing, for drawing threads. Safe from any thread: one
-// thread traces (accuracy/corrector_pool.h) while others draw.
+// The current corrections of scenes' light by path tracing. One thread traces and publishes
+// corrections (accuracy/corrector_pool.h), and drawing threads find them here. Safe from any
+// thread.
 #pragma once
 
 #include <cstdint>
@@ -25,13 +26,14 @@ class TracedLights {
 
   struct Found {
     std::shared_ptr<const renderers::LightCorrection> correction;
-    std::int64_t paths = 0;  // number of paths that it was made of
+    std::int64_t paths = 0;  // number of paths from which the correction was fitted
   };
 
-  // Returns none if there is no correction for the scene or the scene shows none.
+  // Returns the correction for the scene, or nothing if there is none or the scene does not request
+  // traced light.
   std::optional<Found> Find(const scene::Scene& scene, const Fields& fields);
 
-  // A scene whose light is traced. The tracing thread holds it.
+  // A scene whose light is being traced, and its correction. The tracing thread owns this object.
   class Entry {
    public:
     Entry(std::shared_ptr<TracedLights> lights, scene::Scene scene, Fields fields);
@@ -40,7 +42,8 @@ class TracedLights {
     Entry& operator=(const Entry&) = delete;
 
     void Publish(Found found);
-    // Returns the time since the correction was published or last found.
+    // Returns the milliseconds since the correction was last published or found by a drawing
+    // thread.
     double UnusedMs() const;
 
    private:

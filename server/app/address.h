@@ -13,8 +13,7 @@ struct Address {
   std::uint16_t port = 0;
 };
 
-// Parses HOST:PORT. Returns INVALID_ARGUMENT, which names `flag` and the expected format, if that
-// fails.
+// Parses HOST:PORT. INVALID_ARGUMENT names `flag` and the expected format.
 absl::StatusOr<Address> ParseAddress(const std::string& flag, const std::string& text);
 
 // Returns HOST:PORT, with brackets around an IPv6 address.

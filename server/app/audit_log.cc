@@ -19,7 +19,7 @@
 namespace thunderhead::app {
 namespace {
 
-// Maximum number of lines that wait while the disk hangs.
+// Maximum number of lines that wait to be written while the disk hangs.
 constexpr std::size_t kMaxWaitingLines = 10'000;
 
 }  // namespace
@@ -43,7 +43,7 @@ absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path
   if (path.empty() && log_format == "json") {
     log->set_formatter(std::make_unique<JsonFormatter>());
   } else {
-    log->set_pattern("%v");  // because the line contains its own time
+    log->set_pattern("%v");  // only the message, which contains its own time
   }
   log->flush_on(spdlog::level::info);
   const auto writer = std::make_shared<base::LineWriter>(

@@ -9,9 +9,9 @@
 
 namespace thunderhead::app {
 
-// Opens the audit log, which appends to the file at `path`; only its owner may read the file. If
-// `path` is empty, the lines go to standard error among the log's lines and in its format, "text"
-// or "json". A separate thread writes them, and may fall behind if the disk hangs.
+// Opens the audit log. Entries are appended to the file at `path`, which only its owner may read.
+// If `path` is empty, they are written to standard error with the log, in its format `log_format`,
+// "text" or "json". A separate thread writes them, and may fall behind if the disk blocks.
 absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path,
                                                          const std::string& log_format);
 

@@ -21,7 +21,7 @@ void AddCatalogueFlags(CLI::App& command, CatalogueFlags& flags);
 
 storm_store::LinkPolicy LinksOf(const CatalogueFlags& flags);
 
-// Returns nothing if the storms should stay as they were at the start.
+// Returns nothing if the list of storms should stay as it was at the start.
 std::optional<storm_store::LiveCatalogueOptions> LiveCatalogueOf(const CatalogueFlags& flags);
 
 }  // namespace thunderhead::app

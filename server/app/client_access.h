@@ -1,4 +1,4 @@
-// The flags of commands that call a server with access control or TLS.
+// The flags of commands that call a server: the access token and the TLS certificates.
 #pragma once
 
 #include <string>
@@ -16,8 +16,8 @@ struct ClientAccessFlags {
 
 void AddClientAccessFlags(CLI::App& command, ClientAccessFlags& flags);
 
-// Reads the credentials. The token comes from the file or from $THUNDERHEAD_TOKEN. It is never a
-// flag, because every user of the machine could read it in the list of processes.
+// Reads the credentials. The token comes from the file or from $THUNDERHEAD_TOKEN. It is not a
+// flag, because every user of the machine can read flags in the list of processes.
 absl::StatusOr<load::Access> ReadClientAccess(const ClientAccessFlags& flags);
 
 }  // namespace thunderhead::app

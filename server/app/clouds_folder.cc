@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kTemporary = "thunderhead-clouds-";
-// A starting server creates its folder shortly before it locks it, so new folders are kept.
+// A starting server creates its folder shortly before it locks it, so folders younger than this are
+// kept.
 constexpr std::chrono::minutes kStarting{1};
 
 // Deletes the folders of servers that were killed.

@@ -1,4 +1,4 @@
-// The folder for generated clouds: the user's, or a temporary one.
+// The folder for generated clouds: one that the user names, or a temporary one.
 #pragma once
 
 #include <optional>
@@ -12,12 +12,12 @@ namespace thunderhead::app {
 
 class CloudsFolder {
  public:
-  // Creates the folder if it does not exist. An empty `path` creates a temporary one, after
-  // deleting the temporary folders of servers that were killed.
+  // Opens the folder, and creates it if it does not exist. If `path` is empty, creates a temporary
+  // folder, after deleting the temporary folders of servers that were killed.
   static absl::StatusOr<CloudsFolder> Open(const std::string& path);
   CloudsFolder(CloudsFolder&& other) noexcept;
   CloudsFolder& operator=(CloudsFolder&&) = delete;
-  // Deletes a temporary folder with its contents.
+  // Deletes the folder with its contents if it is a temporary one.
   ~CloudsFolder();
 
   const std::string& Path() const { return path_; }
@@ -28,7 +28,7 @@ class CloudsFolder {
   CloudsFolder(std::string path, std::optional<store::FileLock> held);
 
   std::string path_;
-  std::optional<store::FileLock> held_;  // only for a temporary folder
+  std::optional<store::FileLock> held_;  // lock of a temporary folder
 };
 
 }  // namespace thunderhead::app

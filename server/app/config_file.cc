@@ -52,7 +52,8 @@ absl::Status ReadConfigFile(CLI::App& command, const std::string& path) {
                                                      "'; `thunderhead ", command.get_name(),
                                                      " --print-config` lists them all"));
     }
-    // ConfigFileOf writes a setting without a value so.
+    // ConfigFileOf writes an empty value for a setting that has none. Such a setting keeps its
+    // default.
     if (std::ranges::all_of(setting.inputs, &std::string::empty)) continue;
     THUNDERHEAD_RETURN_IF_ERROR(
         base::Annotate(Set(*option, setting), absl::StrCat(path, ": ", setting.name)));

@@ -15,8 +15,8 @@ namespace thunderhead::app {
 // not exist, or a setting does not exist or has a wrong value.
 absl::Status ReadConfigFile(CLI::App& command, const std::string& path);
 
-// Returns a file with every option of `command` that such a file can set. Each has its meaning and
-// its current value, which is that of the command line or the default.
+// Returns the text of a settings file with every option of `command` that such a file can set. Each
+// option has its description and its current value: that of the command line, or the default.
 std::string ConfigFileOf(const CLI::App& command);
 
 }  // namespace thunderhead::app

@@ -1,5 +1,5 @@
-// The formats with which commands open storm files. A confined process describes and reads every
-// file (sandbox/confined_files.h).
+// The file formats with which commands open storm files. Every file is described and read in a
+// confined process (sandbox/confined_files.h).
 #pragma once
 
 #include "CLI/CLI.hpp"
@@ -20,8 +20,8 @@ void AddReaderFlags(CLI::App& command, ReaderFlags& flags);
 
 sandbox::ReaderLimits LimitsOf(const ReaderFlags& flags);
 
-// Returns FAILED_PRECONDITION if this machine cannot confine a reader, so that no storm file can be
-// read.
+// Returns FAILED_PRECONDITION if this machine cannot confine a reader process, so that no storm
+// file can be read.
 absl::Status ProbeReaders(const sandbox::ReaderLimits& limits);
 
 }  // namespace thunderhead::app

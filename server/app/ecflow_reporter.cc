@@ -28,7 +28,7 @@ int Spawn(std::vector<std::string> arguments) {
   posix_spawn_file_actions_init(&actions);
   // Standard output is reserved for the lines of products.
   posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-  // The signals are unblocked, because this program blocks those that ask it to stop.
+  // The signals that this program blocks are unblocked for ecflow_client.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -87,7 +87,7 @@ void EcflowReporter::TellServer(const State& state) {
   const bool first = told_.product.empty() && !state.product.empty();
   if (state.product != told_.product) Call("--label=product", state.product);
   if (first) Call("--event=first");
-  // The meter is set last, so that an observer who sees 100 has seen the rest.
+  // The meter is set last, so that an observer who sees 100 has also seen the label and the event.
   if (state.percent != told_.percent) Call("--meter=products", absl::StrCat(state.percent));
   told_ = state;
 }

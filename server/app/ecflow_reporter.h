@@ -1,6 +1,6 @@
-// Reports the progress of a task to ecFlow by its program ecflow_client. It sets the meter
-// "products" from 0 to 100, the label "product" to the newest one, and the event "first" after the
-// first product.
+// Reports the progress of a task to ecFlow with the program ecflow_client. It sets the meter
+// "products" from 0 to 100 percent, the label "product" to the newest product, and the event
+// "first" after the first product.
 #pragma once
 
 #include <condition_variable>
@@ -18,11 +18,11 @@ class EcflowReporter {
   EcflowReporter(const EcflowReporter&) = delete;
   EcflowReporter& operator=(const EcflowReporter&) = delete;
 
-  // Returns true in a task of ecFlow, which has ECF_NAME set.
+  // Returns true if the program runs in a task of ecFlow, which sets ECF_NAME.
   static bool InTask();
 
-  // Reports progress without waiting for ecFlow's server. Newer progress replaces progress that was
-  // not reported yet.
+  // Reports progress without waiting for ecFlow's server. Progress that was not reported yet is
+  // replaced.
   void Tell(int done, int planned, const std::string& product);
 
  private:
@@ -40,7 +40,7 @@ class EcflowReporter {
   std::condition_variable changed_;
   bool ended_ = false;
   State newest_;
-  // Only the thread uses these.
+  // Only the reporter's own thread uses the following members.
   State told_;
   bool complained_ = false;
   std::thread thread_;

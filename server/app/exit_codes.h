@@ -1,5 +1,5 @@
-// The exit codes of the program, for the suites that run it. They follow sysexits.h, so that a
-// suite can distinguish failures to retry from permanent ones.
+// The exit codes of the program, for the workflow suites that run it. They follow sysexits.h, so
+// that a suite can distinguish failures to retry from permanent ones.
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@ namespace thunderhead::app {
 enum class ExitCode {
   kDone = 0,
   kBadRequest = 64,    // EX_USAGE: an error in the command line or the scene
-  kBadInput = 65,      // EX_DATAERR: a storm file that is damaged or of another kind
+  kBadInput = 65,      // EX_DATAERR: a storm file that is damaged or has another format
   kProgramError = 70,  // EX_SOFTWARE: an error of the program itself
   kTryAgain = 75,      // EX_TEMPFAIL: not ready, busy, interrupted, or out of space
   // EX_CONFIG: for example a missing device, or a folder without write permission
   kConfiguration = 78,
 };
 
-// Returns the exit code for the status's code. INVALID_ARGUMENT is a bad request, DATA_LOSS bad
-// input, FAILED_PRECONDITION and PERMISSION_DENIED configuration. Errors that may pass without a
-// change can be retried. They include NOT_FOUND, because a file may not exist yet.
+// Returns the exit code for a status. INVALID_ARGUMENT gives kBadRequest, DATA_LOSS kBadInput,
+// FAILED_PRECONDITION and PERMISSION_DENIED kConfiguration. Errors that may pass by themselves give
+// kTryAgain. NOT_FOUND is one of these, because a file may not exist yet.
 ExitCode ExitCodeOf(const absl::Status& status);
 
 // Returns the table of exit codes for --help.

@@ -34,8 +34,8 @@ struct FitFlags {
   clouds::FitOptions options;
 };
 
-// The quantity to approximate: extinction (1/m) of all fields with their default optics, or the
-// mass of one field (kg/m3).
+// The quantity that the metaballs approximate: the extinction (1/m) of all fields with their
+// default optics, or the mass of one field (kg/m3).
 struct FitTarget {
   std::string quantity;
   std::string units;

@@ -79,8 +79,8 @@ absl::StatusOr<reference::FluxProblem> SlabProblem(const FluxFlags& flags,
   return reference::FluxProblem::Of(std::move(medium), towards_sun);
 }
 
-// Returns the interpolation of the extinction. If the file gives extinction directly, it is
-// constant in each cell. That of hydrometeors is interpolated linearly, as it is drawn.
+// Returns how to interpolate the extinction. Extinction that the file gives directly is constant in
+// each cell. Extinction computed from hydrometeors is interpolated linearly, as it is drawn.
 reference::Interpolation InterpolationOf(const volume::HydrometeorFields& fields) {
   const bool direct =
       !fields.fields.empty() && fields.fields.front().quantity == volume::Quantity::kExtinction;

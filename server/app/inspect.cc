@@ -66,7 +66,7 @@ std::string TurbulenceOf(const v1::StormDescription& storm) {
   }
 }
 
-// Describes how detail moves: the wind along the grid's east and north.
+// Describes how turbulent detail moves: with the wind along the grid's east and north.
 std::string DriftOf(const v1::StormDescription& storm) {
   if (!storm.has_steering_east_m_per_s()) return "stays: no wind (U, V, W) was read from the file";
   return absl::StrFormat("drifts with the mean wind of the lowest 6 km, %.1f m/s east, %.1f north",

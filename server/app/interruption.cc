@@ -29,7 +29,7 @@ bool Taken(const sigset_t& signals, milliseconds wait) {
 // the program and its process group.
 constexpr milliseconds kOneInterruption(250);
 
-// The name of the thread from when a further signal ends the program.
+// The thread gets this name when a further signal would end the program.
 constexpr char kInterrupted[] = "interrupted";
 
 }  // namespace
@@ -44,11 +44,10 @@ Interruption::Interruption() {
     stop_.request_stop();
     const auto whole = steady_clock::now() + kOneInterruption;
     while (steady_clock::now() < whole) Taken(signals, milliseconds(20));
-    // This thread may not have run during the whole time. Signals that arrived meanwhile belong to
-    // the same request.
+    // Signals that arrived while this thread could not run belong to the same request.
     while (Taken(signals, milliseconds(0))) {
     }
-    // Only this thread unblocks the next signal, which then ends the program.
+    // Only this thread unblocks the signals, so that the next one ends the program.
     pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
     pthread_setname_np(pthread_self(), kInterrupted);
     while (!ended.stop_requested()) std::this_thread::sleep_for(milliseconds(20));

@@ -1,6 +1,6 @@
 // Converts Ctrl-C (SIGINT) and SIGTERM to a request to stop, for work that then reports its partial
-// result. Signals within a quarter of a second count as one request. A later signal ends the
-// program as usual.
+// result. Signals within a quarter of a second count as one request. A later signal has its default
+// effect: it ends the program.
 #pragma once
 
 #include <csignal>
@@ -14,8 +14,8 @@ class Interruption {
   // Blocks the signals in this thread and in all threads that it starts later, and waits for them
   // in a separate thread.
   Interruption();
-  // Restores the signal mask. It first waits until all signals of a request have arrived, so that a
-  // late one does not end the program before it has written its result.
+  // Restores the signal mask. It first waits until all signals of one request have arrived.
+  // Otherwise a late signal could end the program before it has written its result.
   ~Interruption();
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;

@@ -26,11 +26,12 @@ using PictureState = v1::RenderJobPictureState;
 using std::chrono::seconds;
 using std::chrono::steady_clock;
 
-// Each job is small, so that a request is small and a killed run leaves little. There are several
-// jobs, so that one is drawn while the last pictures of another are fetched.
+// Jobs are small, so that a request is small and a killed run leaves little behind. Two jobs run at
+// a time, so that one is drawn while the last pictures of the other are fetched.
 constexpr std::size_t kPicturesPerJob = 100;
 constexpr int kJobsAtATime = 2;
-// The total time of retries after the server was lost, and the pause between two retries.
+// Retries after the connection to the server was lost: their total time, and the pause between two
+// of them.
 constexpr seconds kServerPatience{60};
 constexpr seconds kServerPause{1};
 
@@ -67,8 +68,8 @@ v1::RenderJobPicture RequestOf(const PictureRunOptions& options, const PlannedPi
   request.mutable_scene()->set_storm_id(picture.server_storm);
   request.mutable_scene()->set_time_index(static_cast<std::uint32_t>(picture.time_index));
   request.set_format(options.format.Drawn());
-  // The name depends on what the picture shows. It does not depend on the index of its time, which
-  // may change meanwhile.
+  // The name identifies what the picture shows. It does not depend on the index of the time,
+  // because that index may change.
   const pipeline::InputFile& input = *picture.server_input;
   request.set_name(pipeline::Sha256(absl::StrCat(
       picture.path, "\n", options.views[picture.view].sha256, "\n", input.path, "\n", input.bytes,
@@ -76,8 +77,8 @@ v1::RenderJobPicture RequestOf(const PictureRunOptions& options, const PlannedPi
   return request;
 }
 
-// Returns a label that is the same for every run of these products, on any machine with the same
-// folder.
+// Returns a label for the jobs of these products. Every run of them has the same label, on any
+// machine that uses the same folder.
 std::string LabelOf(const std::string& manifest) {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::absolute(manifest, error);
@@ -95,7 +96,8 @@ pipeline::InputFile InputOf(const std::string& server, const std::string& storm,
   return input;
 }
 
-// The pictures of one job, by their index in it. Without an id, the job has yet to be created.
+// The pictures of one job, by their index in the job. The id is empty if the job has yet to be
+// created.
 struct JobShare {
   std::string job_id;
   std::map<std::uint32_t, PlannedPicture*> pictures;
@@ -106,8 +108,8 @@ class JobRun {
   JobRun(ServerLink& server, PictureRun& run, RunProgress& progress)
       : server_(server), run_(run), progress_(progress), label_(LabelOf(run.Options().manifest)) {}
 
-  // Returns the jobs for the missing pictures. Existing jobs of these products without missing
-  // pictures are deleted from the server.
+  // Returns the jobs for the missing pictures. Existing jobs for these products that contain no
+  // missing picture are deleted from the server.
   absl::StatusOr<std::vector<JobShare>> SharesOf(const std::vector<PlannedPicture*>& missing);
   // Returns when each picture of the share has its outcome.
   absl::Status Make(JobShare& share, const std::stop_token& stop);
@@ -162,7 +164,7 @@ absl::StatusOr<std::vector<JobShare>> JobRun::SharesOf(
       shares.push_back(std::move(share));
     }
   }
-  // The remaining pictures are added in the order of the plan.
+  // The pictures that are in no existing job are added in the order of the plan.
   std::size_t open = shares.size();
   for (PlannedPicture* picture : missing) {
     if (!by_name.contains(RequestOf(run_.Options(), *picture).name())) continue;
@@ -194,7 +196,7 @@ void JobRun::Forget(const std::string& job_id) {
   request.set_job_id(job_id);
   request.set_forget(true);
   v1::CancelRenderJobResponse response;
-  // If this fails, the server deletes the job automatically after a time.
+  // An error is ignored, because the server deletes the job automatically after a time.
   (void)server_.Call(server_.Jobs(), &JobStub::CancelRenderJob, request, &response);
 }
 
@@ -313,7 +315,7 @@ absl::Status JobRun::Make(JobShare& share, const std::stop_token& stop) {
     if (!MayComeBack(status) || steady_clock::now() - lost_since > kServerPatience) return status;
     PauseForServer(stop);
   }
-  // The job has ended, so the remaining pictures will not arrive.
+  // The job has ended, so its remaining pictures will not arrive.
   for (const auto& [place, picture] : share.pictures) {
     progress_.Failed(picture->path, picture->outcome);
   }
@@ -370,7 +372,7 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
   std::vector<PlannedPicture*> missing;
   for (PlannedPicture& picture : pictures) {
     if (stop.stop_requested()) return RunInterrupted();
-    // The server's files have no hash here, so only their size and time decide.
+    // The server's input files have no hash here, so only their sizes and times are compared.
     const auto no_hash = [] { return std::string("unknown"); };
     THUNDERHEAD_ASSIGN_OR_RETURN(const bool made,
                                  run.IsMade(picture, *picture.server_input, no_hash));
@@ -382,8 +384,8 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
     progress.Kept(picture.path);
   }
   JobRun jobs(server, run, progress);
-  // This is needed even if nothing is missing, because a run that was killed at its end has left
-  // its job on the server.
+  // Jobs are looked up even if no picture is missing, because a run that was killed at its end may
+  // have left its job on the server.
   absl::StatusOr<std::vector<JobShare>> found = jobs.SharesOf(missing);
   if (missing.empty()) return absl::OkStatus();
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<JobShare> shares, std::move(found));
@@ -397,7 +399,7 @@ absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<Planned
       const absl::Status made = jobs.Make(shares[i], ending.get_token());
       if (made.ok()) continue;
       const std::lock_guard lock(failure_mutex);
-      // Only the first failure counts, because the others are cancelled as a result.
+      // Only the first failure counts, because it cancels the other pictures.
       if (failure.ok()) failure = made;
       ending.request_stop();
     }

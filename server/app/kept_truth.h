@@ -1,4 +1,5 @@
-// The pictures of the reference for comparison with others, stored between runs.
+// Pictures by the Monte Carlo reference with which others are compared. They are stored between
+// runs.
 #pragma once
 
 #include <string>
@@ -14,14 +15,14 @@ namespace thunderhead::app {
 struct Truth {
   std::string name;  // for the progress bar
   scene::Scene scene;
-  std::string scene_text;  // with every setting that the picture depends on
+  std::string scene_text;  // text with every setting that affects the picture
   reference::TraceOptions options;
   int samples_per_pixel = 0;
 };
 
-// Returns the picture stored at `path` if it has the same scene text, peak cut and samples.
-// Otherwise traces a new one and stores it there. Returns CANCELLED if interrupted, and then writes
-// nothing.
+// Returns the picture stored at `path`, if it has the same scene text, peak cut and number of
+// samples. Otherwise traces a new picture and stores it there. Returns CANCELLED if it is
+// interrupted, and then writes nothing.
 absl::StatusOr<picture::LinearPicture> KeptTruth(const Truth& truth,
                                                  const volume::HydrometeorFields& fields,
                                                  const std::string& path,

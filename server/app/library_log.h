@@ -1,5 +1,5 @@
-// Redirects the log lines of gRPC and protobuf to the log. They are limited to a few per second,
-// because clients can cause them.
+// Redirects the log lines of gRPC and protobuf to the program's log. They are limited to a few per
+// second, because clients can cause them.
 #pragma once
 
 namespace thunderhead::app {

@@ -97,7 +97,8 @@ absl::Status Load(const LoadFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const LoadTarget target, ParseTarget(flags.server));
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::LoadOptions options, LoadOptionsOf(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
-  // This precedes the threads of the transport, which must not receive the signals.
+  // The signals must be blocked before the transport starts its threads, so that these do not
+  // receive them.
   const Interruption interruption;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<load::Transport> transport,
                                TransportTo(target, access));

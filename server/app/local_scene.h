@@ -22,7 +22,7 @@ struct LocalScene {
 };
 
 // Opens the storm at `path`, completes the scene from `flags` as the service does, and reads the
-// fields of its time with a progress bar. Returns INVALID_ARGUMENT, which names the wrong value.
+// fields of its time with a progress bar. INVALID_ARGUMENT names the wrong value.
 absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& flags);
 
 }  // namespace thunderhead::app

@@ -30,8 +30,9 @@ absl::Status AsFileProblem(const std::string& path, const absl::Status& status) 
   if (!absl::IsDataLoss(status)) return AsFileProblem(status);
   const auto stamp = base::StampOf(path);
   if (!stamp.has_value()) return status;
-  // The age does not use the time of the inode change, because a change of owner is not made by a
-  // writer. A time that lies further in the future than clocks differ gives no information.
+  // The age is computed from the modification time and not from the inode change time, because a
+  // program that only changes the owner does not write the file. A modification time in the future,
+  // beyond usual clock differences, gives no information.
   const absl::Duration age = absl::Now() - absl::FromUnixNanos(stamp->modified_ns);
   if (absl::AbsDuration(age) > kStillWritten) return status;
   return absl::UnavailableError(
@@ -88,7 +89,7 @@ absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
   service::ServerOptions options;
   options.render_loop.lanes_yield = false;
   auto server = service::Server::Start(options, std::move(store), drawing::GlFrameSources(device));
-  // A missing device will not appear by waiting, so the code must not suggest a retry.
+  // Waiting does not make a missing device appear, so the status must not suggest a retry.
   if (!server.ok() && !absl::IsInvalidArgument(server.status())) {
     return absl::FailedPreconditionError(server.status().message());
   }

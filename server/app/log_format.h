@@ -1,5 +1,5 @@
-// The two formats of log lines: text, and JSON with one object per line. Both make a message
-// printable, so that a name from a file or a client cannot forge a line.
+// The two formats of log lines: text, and JSON with one object per line. Both make messages
+// printable, so that a name from a file or from a client cannot forge a log line.
 #pragma once
 
 #include <memory>
@@ -9,17 +9,17 @@
 
 namespace thunderhead::app {
 
-// Returns a formatter for time, logger, level and message, as spdlog writes them by default.
+// Returns a formatter that writes time, logger, level and message, as spdlog does by default.
 std::unique_ptr<spdlog::formatter> TextFormatter();
 
-// Writes an object with time, level and message.
+// A formatter that writes a JSON object with time, level and message.
 class JsonFormatter final : public spdlog::formatter {
  public:
   void format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) override;
   std::unique_ptr<spdlog::formatter> clone() const override;
 };
 
-// Returns the text, made printable (base/utf8.h), as a JSON string with its quotes.
+// Returns the text, made printable (base/utf8.h), as a JSON string including the quotes.
 std::string JsonString(const std::string& text);
 
 }  // namespace thunderhead::app

@@ -29,8 +29,8 @@ int Report(const absl::Status& status) {
   return static_cast<int>(ExitCodeOf(status));
 }
 
-// Returns an error for an unknown subcommand, because the parser would only report that a
-// subcommand is required.
+// Returns an error that names an unknown subcommand. The parser would only report that a subcommand
+// is required.
 absl::Status CheckSubcommand(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return absl::OkStatus();
   std::vector<std::string> names;
@@ -41,7 +41,8 @@ absl::Status CheckSubcommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Main(int argc, char** argv) {
-  // Reaching a limit on the size of files should be a write error, not a signal.
+  // SIGXFSZ is ignored, so that reaching the limit on the size of files is a write error and not a
+  // signal.
   std::signal(SIGXFSZ, SIG_IGN);
   // Standard output is for results, so the log goes to standard error.
   spdlog::set_default_logger(spdlog::stderr_color_mt("thunderhead"));

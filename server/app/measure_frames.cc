@@ -33,7 +33,7 @@ absl::StatusOr<FieldsPtr> Read(storm_store::StormStore& store, int time_index) {
   return store.Get(store.Storms().front()->id, time_index, {});
 }
 
-// Returns the requested time, or the one with the most condensate.
+// Returns the fields of the requested time, or of the time with the most condensate.
 absl::StatusOr<FieldsPtr> Choose(const FramesFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
                                OpenStorm(flags.storm));

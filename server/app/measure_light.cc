@@ -66,8 +66,9 @@ absl::StatusOr<picture::LinearPicture> TruthOf(const LightFlags& flags, const Lo
   return KeptTruth(truth, *local.fields, path, interruption);
 }
 
-// Writes three pictures side by side: the reference, the drawn picture, and their difference. The
-// difference is shown as 1/2 plus a quarter of the difference over the reference's mean.
+// Writes three pictures side by side: by the reference, as drawn, and their difference. Grey (1/2)
+// means no difference; the brightness changes by a quarter for a difference of the reference's
+// mean.
 absl::Status WriteComparison(const picture::LinearPicture& truth,
                              const picture::LinearPicture& drawn, scene::Scene scene,
                              const std::string& path) {
@@ -100,7 +101,8 @@ absl::Status WriteComparison(const picture::LinearPicture& truth,
   return base::WriteWholeFile(path, png);
 }
 
-// Prints the table row of one drawn picture compared with the reference, and writes the comparison.
+// A picture drawn for comparison with the reference. It prints its row of the table and writes the
+// comparison.
 struct Compared {
   const LightFlags& flags;
   const LocalScene& local;
@@ -128,7 +130,7 @@ struct Compared {
   }
 };
 
-// Repeats the part "all" with path-traced correction of the light.
+// Measures the part "all" again, with path-traced correction of the light.
 absl::Status MeasureTracedLight(const Compared& compared, const scene::Scene& scene,
                                 const Interruption& interruption) {
   THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -158,7 +160,7 @@ absl::Status MeasureTransport(const Compared& compared,
   scene::Scene scene = compared.local.scene;
   auto& technique = std::get<scene::LightVolume>(scene.rendering.technique);
   technique.medium.transport = transport.value;
-  technique.medium.look.detail = false;  // as in the reference
+  technique.medium.look.detail = false;  // off, because the reference has no detail
   THUNDERHEAD_RETURN_IF_ERROR(compared.Print(scene, std::string(transport.name), nullptr));
   technique.traced_light = scene::TracedLight::kAtRest;
   const bool traces = compared.part == LightPart::kAll && !compared.flags.million_paths.empty() &&

@@ -54,7 +54,7 @@ absl::Status CheckFlags(const SlicesFlags& flags) {
   return absl::OkStatus();
 }
 
-// Returns the technique with that name, or half-angle slices for an empty name.
+// Returns the technique with that name; an empty name means half-angle slices.
 absl::StatusOr<accuracy::PlainTechnique> TechniqueNamed(const std::string& name) {
   if (name.empty()) return accuracy::Plain<scene::HalfAngle>();
   const auto* const found =
@@ -64,7 +64,7 @@ absl::StatusOr<accuracy::PlainTechnique> TechniqueNamed(const std::string& name)
       absl::StrCat("--renderer is '", name, "'; it must be half_angle or light_volume"));
 }
 
-// Returns a cloud that fills the picture.
+// Returns a smooth cloud of that optical depth, which fills the picture.
 Subject SlabOf(double optical_depth) {
   Subject subject{absl::StrFormat("smooth cloud of optical depth %g", optical_depth),
                   {},

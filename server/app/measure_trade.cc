@@ -55,8 +55,8 @@ absl::StatusOr<picture::LinearPicture> TruthOf(const TradeFlags& flags, const Lo
   return KeptTruth(truth, *local.fields, path, interruption);
 }
 
-// Returns the rows of an earlier run in `path`, if any. Rewrites the file with only the complete
-// rows.
+// Returns the rows that an earlier run has written to `path`, if any. Rewrites the file with only
+// the complete rows.
 absl::StatusOr<std::vector<measure::TradeRow>> RowsSoFar(const std::string& path,
                                                          const std::string& head) {
   std::vector<measure::TradeRow> rows;

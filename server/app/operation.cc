@@ -32,7 +32,7 @@ using std::chrono::steady_clock;
 // One request may arrive as several signals (interruption.cc).
 constexpr milliseconds kOneRequest{250};
 
-// A lane counts as stalled when it has drawn nothing for this multiple of --stuck-seconds.
+// A lane counts as stalled if it has drawn nothing for --stuck-seconds times this factor.
 constexpr double kLaneFactor = 5.0;
 
 // Interval between checks of the health that is reported to gRPC's clients.
@@ -116,7 +116,7 @@ Operation::~Operation() {
 }
 
 void Operation::SetServer(service::Server* server, Resources resources) {
-  // The thread ends before the lock is taken, because the thread takes it too.
+  // The thread is ended before the lock is taken, because it takes the same lock.
   telling_ = {};
   if (server != nullptr) {
     telling_ = std::jthread([this, server](const std::stop_token& stop) {
@@ -191,7 +191,7 @@ telemetry::Health Operation::HealthNow() {
             .ready = false,
             .state = absl::StrFormat("not making progress: drawing for %.0f s", load.turn_s)};
   }
-  // Between two pieces, a lane may read, fit or encode for minutes.
+  // The limit is long because a lane may read, fit or encode for minutes between two pieces.
   if (load.stalled_s > kLaneFactor * flags_.stuck_s) {
     return {.alive = false,
             .ready = false,
@@ -202,8 +202,8 @@ telemetry::Health Operation::HealthNow() {
     return {.alive = true, .ready = false, .state = "the device was lost; opening it again"};
   }
   if (load.draining) return {.alive = true, .ready = false, .state = "draining"};
-  // Restarting the process does not help if a state folder or a disk of results hangs, so it stays
-  // alive.
+  // If a state folder or a disk of results hangs, restarting the process does not help. So the
+  // process is reported as alive.
   if (const double hangs_s = StateHangsFor(); hangs_s > 0.0) {
     return {.alive = true,
             .ready = true,

@@ -1,4 +1,4 @@
-// The operator's side of `thunderhead serve`: its log, its operator port, and its end.
+// What operators of `thunderhead serve` use: its log, its operator port, and its shutdown.
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@
 namespace thunderhead::app {
 
 struct OperationFlags {
-  std::string metrics;  // HOST:PORT; empty for no port
+  std::string metrics;  // HOST:PORT of the operator port; empty for no port
   std::string log_format = "text";
   double drain_s = 30.0;
   double stuck_s = 120.0;
@@ -34,50 +34,51 @@ void AddOperationFlags(CLI::App& command, OperationFlags& flags);
 // Sets the format of the log on standard error: text, or JSON with one object per line.
 void SetLogFormat(const std::string& format);
 
-// Starts a thread that ends the process at once with 0 when one of `signals` arrives. All threads
+// Starts a thread that ends the process with exit code 0 when one of `signals` arrives. All threads
 // must block these signals.
 std::jthread EndIfToldWhileStarting(const sigset_t& signals);
 
-// Starts a thread that ends the process with the result of `code`, after calling `last`, unless it
-// is told to stop within `patience`. Without it, a call that hangs with its storage could keep the
-// server from ending.
+// Starts a thread that ends the process after `patience`, unless the thread is told to stop before.
+// It calls `last` and exits with the result of `code`. Without it, a call that hangs with its
+// storage could keep the server from ending.
 std::jthread EndAnywayAfter(std::chrono::seconds patience, const std::function<int()>& code,
                             const std::function<void()>& last);
 
-// The operator port of the flags, if any, and the messages to systemd. The port serves at once, and
-// reports that the server is starting until it is given one.
+// The operator port, if the flags ask for one, and the messages to systemd. The port serves at
+// once. Until SetServer is called, it reports that the server is starting.
 class Operation {
  public:
-  // Starts it. With `allowed_hosts` the port answers only to these names and to those that the page
-  // accepts; otherwise it answers to any name.
+  // Starts the operation. If `allowed_hosts` is not empty, the port answers only requests for these
+  // names and for the names that the page accepts. Otherwise it answers requests for any name.
   static absl::StatusOr<std::unique_ptr<Operation>> Start(
       const OperationFlags& flags, const std::vector<std::string>& allowed_hosts = {});
   ~Operation();
   Operation(const Operation&) = delete;
   Operation& operator=(const Operation&) = delete;
 
-  // Memory and storage that a server uses. Each may be null.
+  // Memory and storage that a server uses. Each pointer may be null.
   struct Resources {
     std::shared_ptr<const base::MemoryBudget> memory;
     std::shared_ptr<const base::MemoryBudget> gpu_memory;
-    std::shared_ptr<base::PatientCalls> state;  // requests to the state folder
+    std::shared_ptr<base::PatientCalls> state;  // calls to the storage of the state folder
   };
 
-  // Sets the server and its resources. The server must outlive their use until SetServer(nullptr).
-  // While there is a server, gRPC's health service gets its health.
+  // Sets the server and its resources. The server must stay alive until SetServer(nullptr) is
+  // called. While a server is set, its gRPC health service reports the health that this object
+  // determines.
   void SetServer(service::Server* server, Resources resources);
   void SetServer(std::nullptr_t) { SetServer(nullptr, {}); }
 
-  // Waits for SIGINT or SIGTERM, which this thread must block, and then tells the clients. Returns
-  // when the pictures that were begun are delivered, or after the grace period. A second signal
-  // then calls `last`, which must be fast, and ends the process.
+  // Waits for SIGINT or SIGTERM, which this thread must block, and then tells the clients that the
+  // server stops. Returns when the started pictures are delivered, or after the grace period. If a
+  // second signal arrives, it calls `last`, which must be fast, and ends the process.
   void WaitAndDrain(
       const sigset_t& signals, service::Server& server, const std::function<void()>& last = [] {});
 
  private:
   explicit Operation(const OperationFlags& flags) : flags_(flags) {}
 
-  // Returns how long the state folder has not responded. The caller must hold mutex_.
+  // Returns for how many seconds the state folder has not responded. The caller must hold mutex_.
   double StateHangsFor();
   std::string MetricsText();
   telemetry::Health HealthNow();

@@ -15,7 +15,7 @@ namespace {
 
 using reference::SampledPhase;
 
-// Beyond this value the forward peak is narrower than the tables' angular steps.
+// Largest asymmetry. Above it, the forward peak is narrower than the tables' angular steps.
 constexpr float kMaxAsymmetry = 0.99F;
 
 absl::StatusOr<SampledPhase> FromTable(absl::string_view name) {

@@ -12,8 +12,8 @@ namespace thunderhead::app {
 inline constexpr char kPhaseFlagHelp[] =
     "Phase function: hg:G (Henyey-Greenstein), cs:G (Cornette-Shanks), rayleigh, or table:NAME";
 
-// Parses "hg:0.85", "cs:0.85", "rayleigh" or "table:cloud_re10". The error INVALID_ARGUMENT lists
-// the formats.
+// Parses a phase function such as "hg:0.85", "cs:0.85", "rayleigh" or "table:cloud_re10".
+// INVALID_ARGUMENT lists the formats.
 absl::StatusOr<std::shared_ptr<const reference::SampledPhase>> ParsePhase(const std::string& text);
 
 }  // namespace thunderhead::app

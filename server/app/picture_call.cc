@@ -27,12 +27,12 @@ absl::StatusOr<v1::RenderImageResponse> CallForPicture(
     if (event.has_chunk()) bytes += event.chunk();
     if (event.has_image()) picture = std::move(*event.mutable_image());
   }
-  // An older server sends the picture without chunks.
+  // An older server sends the picture without chunks, in the response itself.
   if (picture.image().empty()) picture.set_image(std::move(bytes));
   const grpc::Status status = reader->Finish();
   if (stop.stop_requested()) return absl::CancelledError("interrupted: no picture was written");
-  // A message in addition to the code comes from a server that has the call but cannot fulfil the
-  // request.
+  // UNIMPLEMENTED with a message comes from a server that has the call but cannot fulfil the
+  // request. Without a message, the server does not have the call.
   if (status.error_code() == grpc::StatusCode::UNIMPLEMENTED && status.error_message().empty()) {
     return absl::UnimplementedError(
         "the server is older than this program and lacks the call that it needs "

@@ -1,4 +1,4 @@
-// Requests one picture from the service, in this process or another.
+// Requests one picture from a service in this process or in another one.
 #pragma once
 
 #include <functional>
@@ -12,11 +12,11 @@
 
 namespace thunderhead::app {
 
-// Reports the progress of the path tracing that the picture waits for, on the calling thread.
+// Called on the calling thread with the progress of the path tracing that the picture waits for.
 using OnPictureProgress = std::function<void(const v1::RenderImageProgress&)>;
 
 // Requests a picture and waits for it. If `token` is not empty, it is sent to the server. Returns
-// CANCELLED if `stop` came first. `progress` may be empty.
+// CANCELLED if `stop` is requested before the picture arrives. `progress` may be empty.
 absl::StatusOr<v1::RenderImageResponse> CallForPicture(
     const std::shared_ptr<grpc::Channel>& channel, const v1::RenderImageRequest& request,
     const std::string& token, const std::stop_token& stop, const OnPictureProgress& progress);

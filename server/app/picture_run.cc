@@ -61,7 +61,7 @@ absl::Status ChangedMeanwhile(const std::string& path) {
   return absl::AbortedError(absl::StrCat(path, " was written to while it was drawn; try again"));
 }
 
-// Returns true for an error that affects only one input and no other pictures.
+// Returns true for an error that concerns only one input file and its pictures.
 bool IsOfInput(const absl::Status& status) {
   return absl::IsDataLoss(status) || absl::IsNotFound(status) || absl::IsAborted(status);
 }
@@ -143,7 +143,8 @@ std::string PictureRun::HashOf(const pipeline::InputFile& input) {
     if (known != hashed_.end() && SameStamp(known->second, input)) return known->second.sha256;
   }
   pipeline::InputFile hashed = input;
-  // A file that cannot be read has a hash equal to no other. Drawing it will report the error.
+  // A file that cannot be read gets an empty hash, which equals no other. Drawing the file will
+  // report the error.
   hashed.sha256 = pipeline::Sha256OfFile(input.path).value_or("");
   const std::lock_guard lock(mutex_);
   return hashed_.insert_or_assign(input.path, std::move(hashed)).first->second.sha256;
@@ -176,14 +177,14 @@ absl::StatusOr<bool> PictureRun::IsMade(const std::string& path, const std::stri
       pipeline::Sha256OfFile(path).value_or("") != entry.sha256) {
     return false;
   }
-  // A run that was killed while it remade the product may have left this file.
+  // A killed run that was remaking the product may have left a partial file.
   fs::remove(base::PartialPath(path), error);
   if (options_.done_markers && !fs::exists(path + ".done", error)) {
     THUNDERHEAD_RETURN_IF_ERROR(MarkDone(path, entry.sha256));
   }
   if (SameStamp(entry.input, input)) return true;
-  // The same bytes were copied again. The new stamp is recorded so that the next run need not hash
-  // them.
+  // The input was copied again with the same bytes. Its new size and time are recorded, so that the
+  // next run need not compute the hash.
   const std::string sha256 = entry.input.sha256;
   entry.input = input;
   entry.input.sha256 = sha256;
@@ -215,7 +216,7 @@ absl::Status PictureRun::Publish(const PlannedPicture& planned, v1::RenderImageR
                                MakeProduct(options_.format, planned.key.storm, std::move(picture)));
   if (file.world_file.has_value()) {
     const std::string path = WorldFilePath(planned.path);
-    // The world file may exist already if a run was killed before it wrote the picture.
+    // The world file may exist already, if an earlier run was killed before it wrote the picture.
     THUNDERHEAD_ASSIGN_OR_RETURN(const bool made, IsMade(path, entry.scene_sha256, entry.input,
                                                          [] { return std::string("unknown"); }));
     if (!made) THUNDERHEAD_RETURN_IF_ERROR(PublishFile(path, *file.world_file, entry));
@@ -254,7 +255,7 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, storm_store::Sto
   const View& view = options_.views[picture.view];
   THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::InputFile input, StampOf(picture.input));
   if (!IsAsBegun(input)) return ChangedMeanwhile(picture.input);
-  // The fields are read here, because the service does not distinguish a bad file from a bad
+  // The fields are read here first, because the service does not distinguish a bad file from a bad
   // request.
   if (const absl::Status read = store.Get(storm_id, picture.time_index, {}).status(); !read.ok()) {
     const absl::Status problem = AsFileProblem(read);
@@ -338,7 +339,7 @@ absl::Status PictureRun::Make(const std::vector<storm_store::CataloguedStorm>& s
         progress.Failed(picture.path, picture.outcome);
       } else {
         const std::lock_guard lock(failure_mutex);
-        // Only the first failure counts, because the others are cancelled as a result.
+        // Only the first failure counts, because it cancels the other pictures.
         if (failure.ok()) failure = picture.outcome;
         ending.request_stop();
       }

@@ -12,7 +12,7 @@ struct PictureSize {
   int height_px = 0;
 };
 
-// Parses WIDTHxHEIGHT. The error INVALID_ARGUMENT names the flag.
+// Parses WIDTHxHEIGHT. INVALID_ARGUMENT names `flag`.
 absl::StatusOr<PictureSize> ParsePictureSize(const std::string& size,
                                              const std::string& flag = "--size");
 

@@ -67,8 +67,9 @@ absl::StatusOr<std::vector<View>> ReadViews(const PipelineFlags& flags) {
   return views;
 }
 
-// Returns the other manifests of the same folder, whose products need not be drawn again. A run of
-// all pictures inherits the manifests of shares.
+// Returns the other manifests in the manifest's folder. Products that they record need not be drawn
+// again. If `takes_over` is true (a run of all pictures), the manifests of shares are merged into
+// this one.
 pipeline::OtherManifests OthersOf(const std::string& manifest, bool takes_over) {
   pipeline::OtherManifests others;
   std::error_code error;

@@ -1,4 +1,4 @@
-// The flags that sequence and watch share, and their meaning.
+// The flags that the commands sequence and watch share, and the options that result from them.
 #pragma once
 
 #include <string>
@@ -19,14 +19,15 @@ namespace thunderhead::app {
 
 struct PipelineFlags {
   SceneFlags scene;
-  std::vector<std::string> views;  // scene files
+  std::vector<std::string> views;  // paths of scene files
   std::string product;
-  std::string manifest;  // if empty, in the products' folder
-  std::string movie;     // empty for none
-  ServerFlags server;    // without an address, the service runs in this process
+  std::string manifest;  // path of the manifest; if empty, a file in the products' folder
+  std::string movie;     // name template of movies; empty for no movie
+  ServerFlags server;    // if its address is empty, the service runs in this process
   std::string device = "auto";
   int jobs = 2;
-  double error_seconds = 0.0;  // of path tracing, to measure each picture's error
+  // Maximum seconds of path tracing to measure the error of each picture.
+  double error_seconds = 0.0;
   bool done_markers = false;
   ProductFlags files;
   ProgressStyle progress = ProgressStyle::kAuto;
@@ -34,15 +35,15 @@ struct PipelineFlags {
 
 void AddPipelineOptions(CLI::App& command, PipelineFlags& flags);
 
-// A scene with the name that products use for it.
+// A scene, and the name that the products' names use for it.
 struct View {
   std::string name;
   v1::Scene scene;
-  // The hash of the scene as canonical JSON, and of everything else that affects the pictures.
+  // The hash of the scene as canonical JSON and of everything else that affects the pictures.
   std::string sha256;
 };
 
-// The flags, checked as far as is possible without a storm.
+// The options that result from the flags, checked as far as is possible without a storm.
 struct PictureRunOptions {
   pipeline::ProductName product;
   ProductFormat format;
@@ -55,7 +56,7 @@ struct PictureRunOptions {
   bool done_markers = false;
 };
 
-// Returns the checked options. The error INVALID_ARGUMENT names the flag and what is wrong.
+// Returns the options, checked. INVALID_ARGUMENT names the flag and what is wrong.
 absl::StatusOr<PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
                                                const pipeline::Shard& shard);
 

@@ -54,7 +54,7 @@ std::string RunText(const Texts& texts, absl::Time valid) {
                          std::abs(minutes % 60));
 }
 
-// Returns whether the settings of the chosen technique have false_colors on.
+// Returns true if the chosen technique's setting false_colors is on.
 bool ShowsFalseColors(const v1::Rendering& rendering) {
   const google::protobuf::FieldDescriptor* const technique =
       rendering.GetReflection()->GetOneofFieldDescriptor(
@@ -100,8 +100,7 @@ absl::Status Annotate(const ProductFormat& format, const std::string& storm,
   return product::Annotate(annotation, image);
 }
 
-// Returns the place of the map, or INVALID_ARGUMENT if the projection is needed and the storm has
-// none.
+// Returns the map's position. INVALID_ARGUMENT if a projection is needed and the storm has none.
 absl::StatusOr<product::MapPlace> PlaceOf(const v1::RenderImageResponse& picture,
                                           const Texts& texts) {
   const v1::View& view = picture.view();
@@ -210,8 +209,7 @@ void AddProductOptions(CLI::App& command, ProductFlags& flags) {
 
 v1::ImageFormat ProductFormat::Drawn() const {
   if (kind == ProductKind::kExr || kind == ProductKind::kNetcdf) return v1::IMAGE_FORMAT_EXR;
-  // Products that are made from the picture here use PNG, so that they start from a lossless
-  // picture.
+  // If the product is made from the picture here, PNG is requested, because it is lossless.
   return kind == ProductKind::kJpeg && !annotate && !world_file ? v1::IMAGE_FORMAT_JPEG
                                                                 : v1::IMAGE_FORMAT_PNG;
 }
@@ -261,7 +259,8 @@ absl::Status CheckScene(const ProductFormat& format, const v1::Scene& scene) {
 }
 
 std::string WorldFilePath(const std::string& path) {
-  // The ending consists of the first and last letter of the picture's ending, and a w.
+  // The extension of a world file is the first and the last letter of the picture's extension, and
+  // a w.
   const std::filesystem::path picture(path);
   const std::string ending = picture.extension().string();
   return std::filesystem::path(picture)

@@ -1,6 +1,6 @@
-// Converts a drawn picture to the file that a command was asked for. What the service encodes is
-// used unchanged. Annotations, maps and netCDF are added here, in the same way for pictures drawn
-// in this process, by a server, or by a job.
+// Converts a drawn picture to the product file that a command was asked for. Files that the service
+// has encoded are used unchanged. Annotations, maps and netCDF are added here, in the same way for
+// pictures drawn in this process, by a server, or by a render job.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ namespace thunderhead::app {
 struct ProductFlags {
   bool annotate = false;
   std::string title;  // if empty, the storm's title
-  std::string logo;   // a file; empty for none
+  std::string logo;   // path of a PNG file; empty for no logo
   bool world_file = false;
 };
 
@@ -32,28 +32,29 @@ struct ProductFormat {
   std::string title;  // if empty, the storm's title
   std::shared_ptr<const product::Logo> logo;
   bool world_file = false;
-  // A hash of everything that changes the file in addition to the scene; empty if there is nothing.
+  // A hash of all settings except the scene that affect the file; empty if there are none.
   std::string fingerprint;
 
   // Returns the image format to request from the service.
   v1::ImageFormat Drawn() const;
-  // Returns true for files from which movies can be made.
+  // Returns true if movies can be made from the files.
   bool IsPicture() const { return kind == ProductKind::kPng || kind == ProductKind::kJpeg; }
   bool IsMap() const {
     return world_file || kind == ProductKind::kGeoTiff || kind == ProductKind::kNetcdf;
   }
 };
 
-// Returns the format from the ending of a product's name and the flags. INVALID_ARGUMENT names a
-// wrong flag, and DATA_LOSS reports a bad logo.
+// Returns the format that results from the extension of the product's name `path` and from the
+// flags. INVALID_ARGUMENT names a wrong flag, and DATA_LOSS reports a bad logo.
 absl::StatusOr<ProductFormat> ProductFormatOf(const std::string& flag, const std::string& path,
                                               const ProductFlags& flags);
 
-// Returns INVALID_ARGUMENT if the scene cannot be such a product, for example because a map needs a
-// view from above.
+// Returns INVALID_ARGUMENT if the scene cannot be saved in this format. For example, a map needs a
+// top-down camera.
 absl::Status CheckScene(const ProductFormat& format, const v1::Scene& scene);
 
-// Returns the path of a picture's world file, by the convention of GIS programs: .pgw, .jgw, .tfw.
+// Returns the path of a picture's world file. By the convention of GIS programs, it ends in .pgw,
+// .jgw or .tfw.
 std::string WorldFilePath(const std::string& path);
 
 struct ProductFile {
@@ -61,8 +62,8 @@ struct ProductFile {
   std::optional<std::string> world_file;  // the text of the world file
 };
 
-// Makes the file of a picture that was drawn as `format.Drawn()`. `storm` is the title if neither
-// the flags nor the picture have one. Returns INVALID_ARGUMENT for a map of a storm without a place
+// Makes the file from a picture that was requested as `format.Drawn()`. `storm` is the title if
+// neither the flags nor the picture give one. INVALID_ARGUMENT for a map of a storm without a place
 // on Earth.
 absl::StatusOr<ProductFile> MakeProduct(const ProductFormat& format, const std::string& storm,
                                         v1::RenderImageResponse picture);

@@ -19,7 +19,7 @@ constexpr std::chrono::milliseconds kRedrawing{100};
 std::string Bar(double share, int tick) {
   std::string bar(kWidth, '.');
   if (share < 0.0) {
-    // The share is unknown, so a mark moves back and forth.
+    // If the share is unknown, a mark moves back and forth.
     const int turn = tick % (2 * (kWidth - 1));
     bar[static_cast<std::size_t>(std::min(turn, 2 * (kWidth - 1) - turn))] = '#';
   } else {

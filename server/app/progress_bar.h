@@ -1,5 +1,5 @@
-// A progress bar for work of more than a second, shown on standard error if that is a terminal. A
-// separate thread draws it, so that it also moves while the work reports nothing.
+// A progress bar for work that takes more than a second. It is shown on standard error if that is a
+// terminal. A separate thread draws it, so that it also moves while the work reports nothing.
 #pragma once
 
 #include <atomic>
@@ -22,11 +22,12 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  // Sets the share done, 0 to 1. Until the first call the bar only shows activity. Safe to call
-  // from any thread.
+  // Sets the share of the work that is done, 0 to 1. Until the first call, the bar only shows
+  // activity. Safe to call from any thread.
   void Set(double share) { share_ = share; }
 
-  // Sets the text after the share, for example the current error. Safe to call from any thread.
+  // Sets the text that follows the share, for example the current error. Safe to call from any
+  // thread.
   void Note(const std::string& note) {
     const std::lock_guard lock(mutex_);
     note_ = base::Printable(note);

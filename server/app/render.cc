@@ -112,7 +112,7 @@ void PrintAccuracy(const v1::RenderImageResponse& response) {
   std::cout << "\n";
 }
 
-// Below this elevation civil twilight has ended, and pictures are nearly black.
+// The sun's elevation below which civil twilight has ended and pictures are nearly black.
 constexpr float kNightBelow_deg = -6.0F;
 
 void TellOfNight(const v1::Scene& scene) {

@@ -49,8 +49,8 @@ absl::Status CheckFlags(const ReferenceFlags& limits) {
   return absl::OkStatus();
 }
 
-// Returns the progress towards the nearest limit, 0 to 1. The error falls with the square root of
-// the samples.
+// Returns the progress towards the limit that will be reached first, 0 to 1. The error falls with
+// the square root of the number of samples.
 double ShareDone(const reference::RefineLimits& limits, const reference::ImageProgress& progress) {
   double share = 0.0;
   if (limits.samples_per_pixel > 0) {

@@ -1,5 +1,5 @@
-// Renders a picture by the reference for the render command. It is traced in this process on all
-// cores.
+// Renders a picture by the Monte Carlo reference for the render command. The picture is traced in
+// this process on all cores.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace thunderhead::app {
 
-// The light that the reference traces and its limits. Without a limit it traces
+// What light the reference traces, and when it stops. If no limit is set, it traces
 // kDefaultSamplesPerPixel.
 struct ReferenceFlags {
   int samples_per_pixel = 0;
   double seconds = 0.0;
-  double target_error = 0.0;  // relative standard error of the whole picture
+  double target_error = 0.0;  // relative standard error of the whole picture at which to stop
   reference::TraceOptions light;
 
   bool AnyLimit() const { return samples_per_pixel != 0 || seconds != 0.0 || target_error != 0.0; }
@@ -23,8 +23,9 @@ struct ReferenceFlags {
 
 inline constexpr int kDefaultSamplesPerPixel = 64;
 
-// Writes `output`. An .exr file has linear radiance and its standard error; .png and .jpg files are
-// tone mapped on `device`. Ctrl-C stops early and writes the picture so far.
+// Renders the picture and writes it to `output`. An .exr file has linear radiance and its standard
+// error. A .png or .jpg file is tone mapped on `device`. Ctrl-C stops tracing early and writes the
+// picture so far.
 absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
                              const ReferenceFlags& limits, const std::string& output,
                              const std::string& device);

@@ -29,9 +29,9 @@ nlohmann::ordered_json JsonOf(const std::string& text) {
   return nlohmann::ordered_json::parse(text, nullptr, false);
 }
 
-// Returns the description for a movie's metadata, as JSON: the storm with its times, the largest
-// estimated error of its pictures, and the scene. It also has the camera's position if the first
-// picture gives it.
+// Returns the description for a movie's metadata, as JSON. It has the storm with its times, the
+// largest estimated error of the pictures, and the scene. It also has the camera's position if the
+// first picture has it.
 std::string DescriptionOf(const pipeline::ManifestEntry& entry, const View& view,
                           const std::vector<const PlannedPicture*>& pictures) {
   nlohmann::ordered_json json;
@@ -54,7 +54,8 @@ std::string DescriptionOf(const pipeline::ManifestEntry& entry, const View& view
       json["pose"] = JsonOf(texts->at(service::kViewText));
     }
   }
-  // Invalid characters are replaced, because storms are named after files, in any encoding.
+  // Invalid characters are replaced, because storms are named after files, whose names may have any
+  // encoding.
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
@@ -65,7 +66,7 @@ absl::Status MakeMovie(const std::string& path, const View& view,
   const std::string folder = std::filesystem::path(path).parent_path().string();
   if (!folder.empty()) THUNDERHEAD_RETURN_IF_ERROR(base::MakeFolders(folder));
   std::ranges::sort(pictures, {}, [](const PlannedPicture* picture) { return picture->key.valid; });
-  pipeline::InputFile input;  // stands for the pictures, by their hashes
+  pipeline::InputFile input;  // its hash is made of the hashes of the movie's pictures
   std::vector<absl::Time> valid;
   std::string hashes;
   pipeline::ManifestEntry entry;
@@ -84,7 +85,8 @@ absl::Status MakeMovie(const std::string& path, const View& view,
     }
   }
   entry.estimated_error = largest_error;
-  // These are of one picture only, while the largest error may be another picture's.
+  // The interval is removed because it belongs to one picture, while the largest error may belong
+  // to another.
   entry.error_low.reset();
   entry.error_high.reset();
   input.path = run.Options().product.Text();

@@ -1,4 +1,4 @@
-// Makes the movies of a run's pictures.
+// Makes movies from a run's pictures.
 #pragma once
 
 #include <optional>
@@ -13,15 +13,16 @@ namespace thunderhead::app {
 
 // The names of a run's movies.
 struct MovieOptions {
-  std::optional<pipeline::ProductName> name;  // absent for no movie
+  std::optional<pipeline::ProductName> name;  // absent if no movie is made
 };
 
-// Returns the options. Returns INVALID_ARGUMENT if --movie is not a valid name of a movie, or if
-// movies cannot be made from products of that format.
+// Returns the movie options. INVALID_ARGUMENT if --movie is not a valid name of a movie, or if
+// movies cannot be made from products of `format`.
 absl::StatusOr<MovieOptions> MovieOptionsOf(const PipelineFlags& flags,
                                             const ProductFormat& format);
 
-// Makes each storm's movies from its finished pictures, if the pictures have changed since.
+// Makes each storm's movies from its finished pictures, unless an existing movie shows the same
+// pictures.
 absl::Status MakeMovies(const MovieOptions& options, const std::vector<PlannedPicture>& pictures,
                         PictureRun& run, RunProgress& progress, const std::stop_token& stop);
 

@@ -18,8 +18,8 @@ enum class ProgressStyle { kAuto, kLines, kJson, kEcflow, kNone };
 
 // The time that a picture took, without waiting for other pictures.
 struct PictureTimes {
-  double read_ms = 0.0;   // the storm's file
-  double draw_ms = 0.0;   // until its pixels are read back
+  double read_ms = 0.0;   // reading the storm's file
+  double draw_ms = 0.0;   // drawing, until the pixels are read back
   double write_ms = 0.0;  // encoding, hashing and writing to the disk
 };
 
@@ -28,14 +28,15 @@ class RunProgress {
  public:
   RunProgress(ProgressStyle style, const std::string& label);
 
-  // Adds products that are to be made, or were found complete.
+  // Increases the number of planned products: those to be made, and those found complete.
   void Plan(int products);
-  // Reports that a product exists: it was drawn in `milliseconds`, or is unchanged since an earlier
-  // run.
+  // Drawn reports that a product was drawn in `milliseconds`. Kept reports that a product from an
+  // earlier run is still valid.
   void Drawn(const std::string& path, double milliseconds,
              const std::optional<PictureTimes>& times = std::nullopt);
   void Kept(const std::string& path);
-  // Reports a product or input that failed, temporarily or permanently; also on standard error.
+  // Reports that a product or an input failed, temporarily or permanently. The error is also
+  // printed on standard error.
   void Failed(const std::string& path, const absl::Status& why);
   // Reports an ongoing activity, such as waiting for a file; `what` names it.
   void Note(const std::string& path, const std::string& what);
@@ -49,8 +50,8 @@ class RunProgress {
 
   mutable std::mutex mutex_;
   ProgressStyle style_;
-  std::unique_ptr<ProgressBar> bar_;        // null without a terminal
-  std::unique_ptr<EcflowReporter> ecflow_;  // null outside of a task of ecFlow
+  std::unique_ptr<ProgressBar> bar_;        // null if standard error is not a terminal
+  std::unique_ptr<EcflowReporter> ecflow_;  // null outside an ecFlow task
   int planned_ = 0;
   int drawn_ = 0;
   int kept_ = 0;

@@ -22,8 +22,8 @@
 namespace thunderhead::app {
 namespace {
 
-// Returns the scene stored in a picture that the service made. The storm is left out, so that the
-// scene can show another one.
+// Returns the scene that is stored in a picture made by the service. The storm is left out, so that
+// the scene can be used with another storm.
 absl::StatusOr<std::string> SceneJsonIn(const std::string& what, const std::string& png) {
   auto texts = frame::TextsOf(png);
   if (!texts.ok()) return base::Annotate(texts.status(), what);
@@ -48,14 +48,14 @@ absl::StatusOr<v1::Scene> ReadFile(const std::string& flag, const std::string& p
   const auto status = google::protobuf::util::JsonStringToMessage(json, &scene);
   if (picture) scene.clear_storm_id();
   if (status.ok()) return scene;
-  // The parser quotes the file with its line breaks, which are removed here.
+  // The parser's message quotes the file with its line breaks, which are removed here.
   std::string why(status.message());
   absl::RemoveExtraAsciiWhitespace(&why);
   return absl::InvalidArgumentError(absl::StrCat(
       what, " is not a scene: ", why, "; see proto/thunderhead/v1/scene.proto for its fields"));
 }
 
-// Replaces the values of `scene` by those of `over`. Lists are replaced as a whole.
+// Replaces the values in `scene` by those that `over` sets. Lists are replaced as a whole.
 void Lay(const v1::Scene& over, v1::Scene& scene) {
   if (over.fields_size() > 0) scene.clear_fields();
   if (over.lights_size() > 0) scene.clear_lights();
@@ -69,8 +69,8 @@ absl::Status SetSize(const std::string& size, v1::Output& output) {
   return absl::OkStatus();
 }
 
-// Selects the kind of camera. Keeps the file's settings if its camera is of that kind, and
-// otherwise starts with the defaults.
+// Sets the kind of camera. If the file's camera is of that kind, its settings are kept. Otherwise
+// the camera gets the defaults.
 absl::Status SetCamera(const std::string& kind, v1::Camera& camera) {
   if (kind == "orbit") {
     camera.mutable_orbit();
@@ -112,8 +112,8 @@ std::string NamesOf(const Descriptors& fields, const std::string& before_last) {
   return names;
 }
 
-// Selects the technique. Keeps the file's settings if it has that technique, and otherwise starts
-// with the defaults.
+// Sets the technique. If the file has that technique, its settings are kept. Otherwise the
+// technique gets its defaults.
 absl::Status SetTechnique(const std::string& name, v1::Rendering& rendering) {
   const Descriptors fields = TechniqueFields();
   const auto field = std::ranges::find(fields, name, [](const auto* each) { return each->name(); });

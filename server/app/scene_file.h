@@ -1,4 +1,4 @@
-// The scene of a command: a file of Protobuf JSON, and flags that override it.
+// The scene that a command draws: a file of Protobuf JSON, and flags that override its values.
 #pragma once
 
 #include <optional>
@@ -20,17 +20,17 @@ struct SceneFlags {
   std::string technique;  // "half_angle" and so on
   std::string preset;     // "balanced" and so on; not together with `technique`
   std::optional<float> max_error;
-  std::optional<float> max_milliseconds;  // at most one of the two
+  std::optional<float> max_milliseconds;  // not together with max_error
 };
 
-// Adds the options of all commands that take a scene: --scene, --size, --camera.
+// Adds the options that all commands with a scene have: --scene, --size, --camera.
 void AddViewOptions(CLI::App& command, SceneFlags& flags);
 // Adds the same options and --time, for commands that show one time.
 void AddSceneOptions(CLI::App& command, SceneFlags& flags);
-// Adds the options of commands that draw it: --quality, --preset, --renderer, --slices.
+// Adds the options of commands that draw the scene: --quality, --preset, --renderer, --slices.
 void AddTechniqueOptions(CLI::App& command, SceneFlags& flags);
 
-// Returns the scene. The error INVALID_ARGUMENT names the file or flag and its error.
+// Returns the scene. INVALID_ARGUMENT names the file or flag, and what is wrong with it.
 absl::StatusOr<v1::Scene> ReadScene(const SceneFlags& flags);
 
 }  // namespace thunderhead::app

@@ -1,5 +1,5 @@
-// The flag --seed, an integer from 0. The flag parser alone would convert a negative number to a
-// large one.
+// The flag --seed, a non-negative integer. CLI11 alone would convert a negative number to a large
+// one.
 #pragma once
 
 #include <cstdint>

@@ -33,18 +33,18 @@ struct SequenceFlags {
   PipelineFlags pipeline;
 };
 
-// The storms and their files, as found.
+// The storms and files that were found.
 struct Found {
   std::vector<storm_store::CataloguedStorm> storms;
-  // The indices of the storms' files among all files, in the order of their names. Unreadable files
-  // are included.
+  // The position of each storm file among all files in the order of their names, including
+  // unreadable files.
   std::map<std::string, std::size_t> places;
   // Files that do not exist or are not readable yet, by path.
   std::map<std::string, absl::Status> problems;
 };
 
-// Ranks outcomes for the exit code: errors that a retry may fix take precedence over permanent
-// ones.
+// Ranks outcomes for the exit code. Errors that a retry may fix take precedence over permanent
+// errors.
 int RankOf(const absl::Status& status) {
   switch (ExitCodeOf(status)) {
     case ExitCode::kDone:
@@ -68,14 +68,14 @@ absl::Status WorstOf(const std::map<std::string, absl::Status>& problems) {
   return worst;
 }
 
-// Searches each path. A file that cannot be read does not affect the others.
+// Searches each path for storms. A file that cannot be read does not affect the others.
 absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
   Found found;
   const storm_files::StormFormats formats = ConfinedFormats();
   const storm_store::StormSearch search{
       .describe = [&](const std::string& path) -> absl::StatusOr<storm_files::StormFile> {
         auto file = storm_store::DescribeFile(path, formats);
-        // A folder may also hold files of other kinds.
+        // A folder may also contain files that are not storms.
         const bool other = absl::IsInvalidArgument(file.status());
         if (other && std::ranges::find(paths, path) == paths.end()) return file;
         found.places.emplace(path, found.places.size());
@@ -105,8 +105,8 @@ absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
   return found;
 }
 
-// Returns an error if some times are unknown, and the request counts times or begins with the first
-// one.
+// Returns an error if some of the storms' times are unknown although the request counts times, or
+// begins with the first time.
 absl::Status CheckCounts(const Found& found, const std::string& times,
                          const PictureRunOptions& options, const MovieOptions& movie) {
   if (found.problems.empty()) return absl::OkStatus();
@@ -144,9 +144,10 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanSequence(
   return all;
 }
 
-// Returns the number of a time, which decides the share that it belongs to. For all times it comes
-// from the time's index in its file and the file's index among all files, readable or not. So
-// shares that search before and after a file is complete omit no time between them.
+// Returns the number of a time, which determines the share that it belongs to. If all times are
+// requested, the number is made of the time's index in its file and of the file's index among all
+// files, readable or not. So no time is omitted if one share searches before a file is complete and
+// another share after.
 std::size_t NumberOf(const PlannedPicture& picture, std::size_t index, const Found& found,
                      const std::string& times) {
   const auto place = found.places.find(picture.input);
@@ -155,8 +156,8 @@ std::size_t NumberOf(const PlannedPicture& picture, std::size_t index, const Fou
   return place->second + sources[static_cast<std::size_t>(picture.time_index)].record;
 }
 
-// Returns the pictures of a share. The views of one time stay together, so that each process reads
-// a time once.
+// Returns the pictures of one share. All views of a time are in the same share, so that only one
+// process reads the time.
 std::vector<PlannedPicture> ShareOf(const std::vector<PlannedPicture>& all, std::size_t views,
                                     const pipeline::Shard& shard, const Found& found,
                                     const std::string& times) {
@@ -189,7 +190,8 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanSequence(const PictureRunOptions
   return all;
 }
 
-// Returns the worst error of all pictures and files that are not done.
+// Returns the worst error of all pictures that were not made and of all files that could not be
+// read.
 absl::Status Summary(const std::vector<PlannedPicture>& pictures, const Found& found) {
   absl::Status worst = WorstOf(found.problems);
   int missing = 0;
@@ -252,7 +254,7 @@ absl::Status Sequence(const SequenceFlags& flags) {
         " pictures are made and in ", run->Records().Path(), "; the same command goes on"));
   }
   THUNDERHEAD_RETURN_IF_ERROR(made);
-  // The movies are made from the existing pictures, because the rest may never arrive.
+  // The movies are made from the pictures that exist, because the missing ones may never arrive.
   const absl::Status missing = Summary(pictures, found);
   const absl::Status movies = MakeMovies(movie, pictures, *run, progress, stop);
   if (missing.ok() || movies.ok()) return missing.ok() ? movies : missing;

@@ -39,11 +39,11 @@
 namespace thunderhead::app {
 namespace {
 
-// Time for the audit log to be written before a second signal ends the process.
+// The time within which the audit log must be written before a second signal ends the process.
 constexpr std::chrono::seconds kLastLines{1};
 
-// Time for calls to end after the grace period, and for the last saves. systemd kills the process
-// later.
+// The time for calls to end after the grace period, and for the last saves. The service manager's
+// own limit, after which it kills the process, is longer.
 constexpr std::chrono::seconds kEndPatience{12};
 
 // Returns the folder of the installed page, or of the one in the build tree; empty if there is
@@ -92,8 +92,8 @@ grpc::Status ShowOnce(v1::ThunderheadService::Stub& stub, const v1::Scene& scene
   return stub.CloseSession(&closing, close, &closed);
 }
 
-// Draws two small pictures, with the sun in front of and behind the eye, so that storm and shaders
-// are ready for the first viewer.
+// Draws two small pictures, one with the sun in front of the eye and one with the sun behind it.
+// After that, the storm and the shaders are ready for the first viewer.
 void WarmUp(const std::shared_ptr<grpc::Channel>& channel, const access::Door& door) {
   const auto stub = v1::ThunderheadService::NewStub(channel);
   for (const float azimuth_deg : {255.0F, 75.0F}) {
@@ -106,8 +106,8 @@ void WarmUp(const std::shared_ptr<grpc::Channel>& channel, const access::Door& d
   }
 }
 
-// Waits for the first search of the folders, so that clients find the storms, but at most 30 s.
-// Returns false if it is told to stop.
+// Waits until the folders were searched for the first time, so that clients find the storms, but at
+// most 30 s. Returns false if it is told to stop.
 bool AwaitStorms(const storm_store::StormStore& store, const std::stop_token& stop) {
   constexpr std::chrono::seconds kWhile{30};
   constexpr std::chrono::milliseconds kPause{20};
@@ -142,7 +142,8 @@ std::optional<gateway::KeptFile> FindResult(service::Server& server, std::string
 }
 
 absl::Status Serve(ServeFlags flags) {
-  // The signals are blocked before any thread starts, so that only sigwait below receives them.
+  // The signals are blocked before any thread starts, so that only the code below that waits for
+  // them receives them.
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
@@ -154,12 +155,12 @@ absl::Status Serve(ServeFlags flags) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckReach(flags, http, grpc));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<Operation> operation,
                                Operation::Start(flags.operation, flags.allowed_hosts));
-  // Reading the storms' headers and the state may take long on slow storage, and may not end on
-  // storage that hangs.
+  // Reading the storms' headers and the state may take long on slow storage, or forever on storage
+  // that hangs. So signals are handled meanwhile.
   std::jthread starting = EndIfToldWhileStarting(signals);
   THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::Door> door, MakeDoor(flags));
-  // This precedes the opening of any port, because its errors name the files.
+  // The certificates are checked before any port is opened, because these errors name the files.
   if (!flags.tls.certificate.empty()) {
     THUNDERHEAD_RETURN_IF_ERROR(
         gateway::TlsContexts::Open(flags.tls.certificate, flags.tls.key).status());
@@ -173,8 +174,8 @@ absl::Status Serve(ServeFlags flags) {
   const std::chrono::milliseconds read_deadline(std::lround(1e3 * flags.read_deadline_s));
   sandbox::ReaderLimits reader_limits = LimitsOf(flags.reader);
   reader_limits.silence = read_deadline;
-  // A silent reader must be ended first, because only then is it known that its storage does not
-  // respond.
+  // The read's deadline is later than the reader's, so that a reader that does not respond is ended
+  // first. Only then is it known that its storage hangs.
   store_options.read_deadline = read_deadline + std::chrono::seconds(5);
   store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_RETURN_IF_ERROR(ProbeReaders(reader_limits));
@@ -205,7 +206,8 @@ absl::Status Serve(ServeFlags flags) {
   server_options.render_loop = flags.render_loop;
   server_options.render_loop.memory = budgets.memory;
   server_options.render_loop.device_memory = {budgets.memory, budgets.gpu};
-  // This signal ends the wait for a signal, and a supervisor then restarts the server.
+  // When the device is given up, a signal ends the wait below, and a supervisor then restarts the
+  // server.
   const auto given_up = std::make_shared<absl::Status>();
   server_options.render_loop.on_device_given_up = [given_up](const absl::Status& why) {
     *given_up = why;

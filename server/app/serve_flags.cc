@@ -59,11 +59,11 @@ constexpr std::array kRarelyChanged = {
 constexpr char kHowMuch[] = "Limits; what is beyond them is refused with the time to try again";
 
 constexpr std::size_t kMinBudget = std::size_t{64} << 20U;
-// Defaults if the system does not report the amount of memory.
+// Default budgets for a system that does not report its memory.
 constexpr std::size_t kSomeMemory = std::size_t{4} << 30U;
 constexpr std::size_t kGpuMemory = std::size_t{4} << 30U;
-// The share of the budget that is kept for GL objects if no GPU draws. Fields share the budget with
-// them and would otherwise leave no memory.
+// The share of the memory budget that is kept for GL objects if the CPU draws. Storm fields use the
+// same budget and would otherwise leave no memory for these objects.
 constexpr double kKeptForDrawing = 0.4;
 
 bool IsLoopback(const std::string& host) {
@@ -297,7 +297,7 @@ absl::Status CompleteFlags(ServeFlags& flags) {
     THUNDERHEAD_RETURN_IF_ERROR(access::ReadSecretFile(flags.tls.key).status());
   }
   flags.limits.max_render_time = std::chrono::milliseconds(std::lround(1e3 * flags.max_render_s));
-  // The largest value of the flag is the schema's limit, which is not a round number.
+  // The flag's maximum stands for the schema's limit, which is not a round number of megapixels.
   flags.limits.max_pixels =
       std::min(flags.limits.max_pixels, static_cast<std::uint64_t>(1e6 * flags.max_megapixels));
   flags.limits.max_samples = static_cast<std::uint64_t>(1e6 * flags.max_megasamples);

@@ -1,4 +1,4 @@
-// The flags of `thunderhead serve`, and their meaning for access and limits.
+// The flags of `thunderhead serve`, and what they imply for access control and limits.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +33,7 @@ struct ServeFlags {
   std::string page;
   std::string clouds;
   std::string state;
-  std::string roster_timeouts;         // for tests
+  std::string roster_timeouts;         // file with roster timeouts, for tests
   std::uint64_t memory_bytes = 0;      // 0 means a share of the machine's memory
   std::uint64_t gpu_memory_bytes = 0;  // 0 means the value that the driver reports
   double read_deadline_s = 60.0;
@@ -68,7 +68,7 @@ struct ServeFlags {
   int max_unsent_mib = 512;
 };
 
-// The budgets of --memory-budget and --gpu-memory-budget.
+// The memory budgets that --memory-budget and --gpu-memory-budget set.
 struct Budgets {
   std::shared_ptr<base::MemoryBudget> memory;
   std::shared_ptr<base::MemoryBudget> gpu;
@@ -77,14 +77,14 @@ Budgets BudgetsOf(const ServeFlags& flags);
 
 void AddServeFlags(CLI::App& serve, ServeFlags& flags);
 
-// Creates the access control from --auth and the flags that belong to it.
+// Creates the access control from --auth and the related flags.
 absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags);
 
-// Fills in dependent settings: limits in the units of the code, hosts, and TLS.
+// Fills in settings that depend on others: limits in the units of the code, allowed hosts, and TLS.
 absl::Status CompleteFlags(ServeFlags& flags);
 
 // Returns INVALID_ARGUMENT if another machine could reach a port without access control or without
-// encryption, unless --insecure accepts that. The operator port is always without both.
+// encryption, unless --insecure allows this. The operator port always has neither.
 absl::Status CheckReach(const ServeFlags& flags, const Address& http, const Address& grpc);
 
 }  // namespace thunderhead::app

@@ -13,7 +13,8 @@ namespace thunderhead::app {
 namespace {
 
 constexpr int kMaxResponseBytes = 128 << 20;
-// The delay is short, so that a restarted server is found soon.
+// Maximum delay between attempts to reconnect. It is short, so that a restarted server is found
+// soon.
 constexpr int kMaxReconnectBackoffMs = 2000;
 
 }  // namespace

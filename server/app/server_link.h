@@ -1,5 +1,5 @@
-// A running server as commands call it: --server and its related flags, one channel, and errors as
-// statuses.
+// A running server, as commands call it: the flag --server and its related flags, one gRPC channel,
+// and errors as absl::Status.
 #pragma once
 
 #include <chrono>
@@ -27,8 +27,7 @@ void AddServerFlags(CLI::App& command, ServerFlags& flags);
 
 class ServerLink {
  public:
-  // Creates the link without waiting for the server. The error INVALID_ARGUMENT names the wrong
-  // flag.
+  // Creates the link without waiting for the server. INVALID_ARGUMENT names the wrong flag.
   static absl::StatusOr<std::unique_ptr<ServerLink>> Open(const ServerFlags& flags);
 
   v1::ThunderheadService::Stub& Service() { return *service_; }
@@ -37,7 +36,7 @@ class ServerLink {
   const std::string& Token() const { return token_; }
   const std::string& Address() const { return address_; }
 
-  // Calls a unary rpc with the token: Call(&Stub::ListStorms of Service(), ...). Returns
+  // Calls a unary rpc with the token, for example Call(Service(), &Stub::ListStorms, ...). Returns
   // UNAVAILABLE after a timeout if the server does not respond.
   template <typename Stub, typename Method, typename Request, typename Response>
   absl::Status Call(Stub& stub, Method method, const Request& request, Response* response) {
@@ -47,11 +46,11 @@ class ServerLink {
     return StatusOf((stub.*method)(&context, request, response));
   }
 
-  // Adds the token to the call.
+  // Adds the access token to the call.
   void Prepare(grpc::ClientContext& context) const;
 
-  // Returns a status with the same code and message. The message for a lost connection also has the
-  // server's name.
+  // Converts a gRPC status to one with the same code and message. If the connection was lost, the
+  // message also names the server.
   absl::Status StatusOf(const grpc::Status& status) const;
 
  private:

@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr char kNone[] = "none";
 constexpr char kFile[] = "sessions.db";
-// Timeout after which the folder's storage counts as hanging. A disk may be busy with other data
-// for some seconds.
+// Timeout after which the folder's storage counts as hanging. Less would be too short, because a
+// disk may be busy with other data for some seconds.
 constexpr std::chrono::seconds kPatience{10};
 
 std::string Variable(const char* name) {
@@ -31,12 +31,12 @@ std::string Variable(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-// Returns the default folder; empty if the environment names none.
+// Returns the default folder; empty if the environment does not determine one.
 std::string DefaultFolder() {
   // systemd separates several folders by colons; the first one is used.
   const std::string given = Variable("STATE_DIRECTORY");
   if (!given.empty()) return given.substr(0, given.find(':'));
-  // A relative path must be ignored (XDG Base Directory Specification).
+  // A relative path in XDG_STATE_HOME must be ignored (XDG Base Directory Specification).
   const std::string state = Variable("XDG_STATE_HOME");
   if (fs::path(state).is_absolute()) return state + "/thunderhead";
   const std::string home = Variable("HOME");

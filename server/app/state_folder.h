@@ -1,4 +1,4 @@
-// The folder in which `serve` keeps the state that outlives it.
+// The folder in which `serve` keeps the state that must survive a restart.
 #pragma once
 
 #include <memory>
@@ -11,18 +11,20 @@
 
 namespace thunderhead::app {
 
-// State that outlives the server. Each store is null if its state ends with the server.
+// The state that survives a restart. A null store means that its state is lost when the server
+// ends.
 struct State {
   std::shared_ptr<session::SessionStore> sessions;
   std::shared_ptr<jobs::JobStore> jobs;
-  std::string folder;  // empty for none
-  // Reports whether the folder's storage hangs. Both stores then return UNAVAILABLE.
+  std::string folder;  // empty if no state is kept
+  // Calls to the folder's storage. While they hang, both stores return UNAVAILABLE.
   std::shared_ptr<base::PatientCalls> calls;
 };
 
-// Opens the state in the folder, which is created for this user only. For "none" there is no state.
-// An empty `folder` means the service manager's ($STATE_DIRECTORY) or the user's. If that one
-// cannot be created, there is no state, and a warning is logged.
+// Opens the state in the folder, which is created for this user only. If `folder` is "none", no
+// state is kept. If it is empty, the folder of the service manager ($STATE_DIRECTORY) or of the
+// user is used. If such a default folder cannot be created, no state is kept, and a warning is
+// logged.
 absl::StatusOr<State> OpenState(const std::string& folder);
 
 }  // namespace thunderhead::app

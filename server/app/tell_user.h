@@ -1,4 +1,4 @@
-// Messages of a command to its user, which are not log lines.
+// Messages of a command to its user. They are not log lines.
 #pragma once
 
 #include <iostream>

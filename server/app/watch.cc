@@ -31,7 +31,7 @@
 namespace thunderhead::app {
 namespace {
 
-// Interval of searches, for file systems without change events.
+// Interval at which the folder is scanned, for file systems without change events.
 constexpr absl::Duration kRescan = absl::Seconds(30);
 
 struct WatchFlags {
@@ -42,8 +42,8 @@ struct WatchFlags {
   PipelineFlags pipeline;
 };
 
-// The conditions for ending: never, after some files, or at a time. The one that comes first
-// applies.
+// The conditions for ending the watch: after a number of files, or at a time. Whichever comes first
+// applies. Without both, the watch never ends.
 struct End {
   std::optional<int> files;
   absl::Time at = absl::InfiniteFuture();
@@ -74,7 +74,7 @@ absl::StatusOr<End> ParseUntil(const std::vector<std::string>& until) {
                    "2030-05-20T06:00:00Z, or both"));
 }
 
-// Returns the pictures of all ready files. Pictures of files that are done count as made.
+// Returns a plan of the pictures of all ready files. Pictures of files that are done count as made.
 absl::StatusOr<std::vector<PlannedPicture>> PlanWatched(
     const PictureRunOptions& options, const std::vector<FolderStorm>& storms,
     const std::vector<storm_store::CataloguedStorm>& catalogue, const WatchedFolder& folder) {
@@ -95,7 +95,7 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanWatched(
 }
 
 // Settles files. A file is done if all its pictures are made, and bad if it cannot be drawn. If the
-// error names another file, it is retried without that file.
+// error of a picture names another file, the picture is retried without that file.
 void Settle(const std::vector<PlannedPicture>& pictures, WatchedFolder& folder) {
   for (const std::string& path : folder.Unsettled()) {
     bool made = true;
@@ -110,15 +110,14 @@ void Settle(const std::vector<PlannedPicture>& pictures, WatchedFolder& folder) 
   }
 }
 
-// Returns true for the name of a picture, as opposed to a file made from pictures or for making
-// them.
+// Returns true for the name of a picture, as opposed to a movie or another file.
 bool IsPicture(const PictureRunOptions& options, const std::string& file) {
   return std::filesystem::path(file).extension() ==
          std::filesystem::path(options.product.Text()).extension();
 }
 
-// Returns the view of a picture that an earlier run made as this one would; null for other
-// products.
+// Returns the view of a picture that an earlier run made in the same way as this run would. Returns
+// null for other products.
 const View* ViewOf(const PictureRun& run, const pipeline::ManifestEntry& entry) {
   const std::vector<View>& views = run.Options().views;
   const auto view = std::ranges::find(views, entry.view, &View::name);
@@ -130,8 +129,8 @@ const View* ViewOf(const PictureRun& run, const pipeline::ManifestEntry& entry) 
   return &*view;
 }
 
-// Counts files that earlier runs have drawn in every view towards --until, even if they have been
-// moved away since.
+// Marks files of which earlier runs have drawn every view as done, so that they count towards
+// --until. They may have been moved away since.
 void RememberDone(const PictureRun& run, WatchedFolder& folder) {
   std::map<std::string, std::map<std::string, std::size_t>> views;  // by input and valid time
   std::map<std::string, pipeline::InputFile> inputs;
@@ -149,9 +148,9 @@ void RememberDone(const PictureRun& run, WatchedFolder& folder) {
   }
 }
 
-// Returns pictures that earlier runs made as this one would and that are not in `planned`. Their
-// files are not ready again, or are gone. A movie includes them too, so that it does not shrink
-// when `watch` is restarted.
+// Returns pictures that are not in `planned`, and that earlier runs made in the same way as this
+// run would. Their files are gone or are not ready again. Movies include these pictures too, so
+// that a movie does not become shorter when `watch` is restarted.
 std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
                                        const std::vector<PlannedPicture>& planned) {
   const pipeline::Manifest& records = run.Records();
@@ -175,8 +174,8 @@ std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
   return pictures;
 }
 
-// Logs the assumptions about the storms, such as which of two files with one time is drawn. Each
-// note is logged once and then added to `told`.
+// Logs the assumptions about the storms, for example which of two files with the same time is
+// drawn. Each note is logged once and then added to `told`.
 void TellNotes(const std::vector<FolderStorm>& storms, std::set<std::string>& told) {
   for (const FolderStorm& storm : storms) {
     for (const std::string& note : storm.storm.notes) {

@@ -18,7 +18,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-// Each check is a call that reads no storm, unless there is a new time.
+// Interval of checks. Each check is a call that reads no storm, unless there is a new time.
 constexpr std::chrono::seconds kLook{2};
 constexpr std::chrono::seconds kWatchPatience{60};
 
@@ -70,7 +70,7 @@ class Watching {
       }
       if (absl::IsDataLoss(picture.outcome)) bad_ = picture.outcome;
     }
-    // If a picture failed and may succeed later, the times are checked again.
+    // If a picture failed in a way that may pass, the same times are checked again.
     if (all_settled) seen_ = times;
     for (PlannedPicture& picture : pictures) {
       if (settled_.contains(picture.path)) picture.outcome = absl::OkStatus();
@@ -87,7 +87,7 @@ class Watching {
   PictureRun& run_;
   RunProgress& progress_;
   std::optional<int> seen_;
-  std::set<std::string> settled_;  // paths of settled pictures
+  std::set<std::string> settled_;  // paths of pictures that are made or cannot be made
   absl::Status bad_;
 };
 

@@ -1,5 +1,5 @@
-// Implements `thunderhead watch` for a storm of a running server. It draws each of the storm's
-// times when the server's catalogue offers it. The server's rules decide when a time is complete.
+// Implements `thunderhead watch` for a storm of a running server. It draws each time of the storm
+// once the server's catalogue lists it. The server decides when a time's file is complete.
 #pragma once
 
 #include <functional>
@@ -16,14 +16,14 @@ namespace thunderhead::app {
 
 struct ServerWatch {
   std::string storm;
-  // Returns whether to end once `times` are drawn.
+  // Returns true if the watch should end once `times` times are drawn.
   std::function<bool(int times)> is_over;
-  // Called with the pictures of all times after new pictures were made.
+  // Called after new pictures were made, with the pictures of all times.
   std::function<absl::Status(const std::vector<PlannedPicture>&)> after_new;
 };
 
-// Returns when the watch is over, with the worst error of any picture. Returns CANCELLED after
-// `stop`, and UNAVAILABLE if the server cannot be reached for a minute.
+// Watches until the watch is over, and returns the worst error of any picture. Returns CANCELLED if
+// `stop` is requested, and UNAVAILABLE if the server cannot be reached for a minute.
 absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRun& run,
                          RunProgress& progress, const std::stop_token& stop);
 

@@ -42,7 +42,7 @@ absl::Status WatchedFolder::List(std::vector<pipeline::SeenFile>& files,
     seen.name = name;
     seen.bytes = static_cast<std::uint64_t>(stamp->size_bytes);
     seen.modified_ns = stamp->modified_ns;
-    // The later time is used, because `cp -p` and rsync set the modification time back.
+    // The later of the two times is used, because `cp -p` and rsync set the modification time back.
     See((fs::path(folder_) / name).string(), seen, std::max(stamp->modified_ns, stamp->changed_ns),
         now);
   }
@@ -109,8 +109,8 @@ void WatchedFolder::Open(const std::string& path, File& file, RunProgress& progr
     file.state = State::kReady;
     return;
   }
-  // The file may be open in another program. That can pass without a change of the file, so it is
-  // not marked as refused.
+  // The file may be open in another program. It may become readable without a change, so it is not
+  // marked as refused.
   if (absl::IsUnavailable(storm.status())) return;
   file.refused = true;
   if (absl::IsInvalidArgument(storm.status())) file.state = State::kOther;

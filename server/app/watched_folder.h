@@ -1,4 +1,5 @@
-// A folder that a model writes to. It finds the complete files and groups them as times of storms.
+// A folder that a model writes to. Finds its complete files and groups them into storms with their
+// times.
 #pragma once
 
 #include <chrono>
@@ -19,7 +20,7 @@
 
 namespace thunderhead::app {
 
-// A storm of a folder, with a name that stays the same as more files arrive.
+// A storm of the folder. Its name stays the same when more files arrive.
 struct FolderStorm {
   std::string name;
   storm_store::CataloguedStorm storm;
@@ -31,29 +32,29 @@ class WatchedFolder {
   WatchedFolder(std::string folder, std::string files, pipeline::ReadinessPolicy policy)
       : folder_(std::move(folder)), files_(std::move(files)), policy_(std::move(policy)) {}
 
-  // Checks the folder and opens the files that have become ready. A file that changes starts again.
-  // Returns UNAVAILABLE if the folder cannot be listed.
+  // Scans the folder and opens the files that have become ready. A file that has changed is treated
+  // as new. UNAVAILABLE if the folder cannot be listed.
   absl::Status Look(RunProgress& progress);
 
   // Returns the storms of all files that are ready.
   std::vector<FolderStorm> Storms() const;
 
-  // Returns the files that are ready and not settled yet, by path.
+  // Returns the paths of the files that are ready but not settled yet.
   std::vector<std::string> Unsettled() const;
-  // Settles a file: all of its pictures are made. If `bad`, they cannot be made until the file
-  // changes.
+  // Settles a file: all its pictures are made or, if `bad`, cannot be made until the file changes.
   void Settle(const std::string& path, bool bad);
 
-  // Counts a file as done because an earlier run has drawn it. That ends if the file appears again.
+  // Counts a file as done because an earlier run has drawn it. If the file is found in the folder
+  // again, it is treated as a new file.
   void RememberDone(const pipeline::InputFile& file);
 
   bool IsDone(const std::string& path) const;
-  // Returns the number of files that are done. Drawn files that were removed, for example into an
-  // archive, count as well.
+  // Returns the number of files that are done. Drawn files that were removed, for example to an
+  // archive, are included.
   int DoneCount() const;
   // Returns the number of files that cannot be drawn in their current state.
   int BadCount() const;
-  // Returns the number of existing files that are not ready or not settled.
+  // Returns the number of existing files that are not ready yet or not settled yet.
   int WaitingCount() const;
 
  private:
@@ -64,16 +65,17 @@ class WatchedFolder {
   struct File {
     pipeline::SeenFile seen;
     Time unchanged_since;
-    bool gone = false;  // true if it was drawn or found bad before it was removed
+    bool gone = false;  // true if the file was removed after it was drawn or found bad
     State state = State::kWaiting;
-    bool refused = false;  // true if it does not open, so that it waits for a change
+    // True if the file could not be opened, so that it is not tried again until it changes.
+    bool refused = false;
     std::optional<storm_files::StormFile> storm;
   };
 
   absl::Status List(std::vector<pipeline::SeenFile>& files, std::vector<std::string>& names,
                     Time now);
   void See(const std::string& path, pipeline::SeenFile& seen, std::int64_t changed_ns, Time now);
-  // Marks files that are not in `there` as gone. Removes those that are not settled, and those that
+  // Marks files that are not in `there` as gone. Forgets those that are not settled, and those that
   // now exist under another name.
   void ForgetGone(const std::set<std::string>& there);
   void Open(const std::string& path, File& file, RunProgress& progress) const;

@@ -5,7 +5,7 @@
 namespace thunderhead::base {
 namespace {
 
-// Maximum number of names with a bucket. Beyond it, Allowances drops buckets that are full.
+// When this many names have a bucket, Allowances drops full buckets before it adds another.
 constexpr std::size_t kMaxCounted = 4096;
 
 }  // namespace

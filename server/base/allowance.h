@@ -1,6 +1,6 @@
-// Rate limits, for one client or for many. Each is a token bucket that refills with time and holds
-// two seconds' worth of tokens. A client that has paused can therefore send a burst of twice its
-// rate.
+// Rate limits by token buckets, for one client or for many. A bucket refills at a constant rate and
+// holds at most the tokens of two seconds. After a pause of two seconds, a client can therefore
+// make the requests of two seconds at once.
 #pragma once
 
 #include <chrono>
@@ -17,11 +17,12 @@ class Allowance {
   Allowance(double per_second, Time now)
       : per_second_(per_second), left_(kBurst_s * per_second), at_(now) {}
 
-  // Takes one token. If there is none, returns the time until the next one.
+  // Takes one token and returns nothing. If the bucket has no token, returns the time until the
+  // next token.
   std::optional<std::chrono::milliseconds> Take(Time now);
   // Returns the number of tokens at `now`.
   double LeftAt(Time now) const;
-  // Returns whether nothing was taken for so long that the bucket is as full as a new one.
+  // Returns whether the bucket is full, like a new bucket.
   bool IsFull(Time now) const { return LeftAt(now) >= kBurst_s * per_second_; }
 
  private:
@@ -32,17 +33,17 @@ class Allowance {
   Time at_;
 };
 
-// A rate limit for each name. It must be used by one thread at a time.
+// A token bucket for each client name. The object must be used by one thread at a time.
 class Allowances {
  public:
   using Time = Allowance::Time;
 
-  // With `per_second` = 0 there is no limit.
+  // `per_second` is the rate for each name. 0 means no limit.
   explicit Allowances(double per_second) : per_second_(per_second) {}
 
-  // Like Allowance::Take, from the bucket of `who`.
+  // Takes one token from the bucket of the client `who`, like Allowance::Take.
   std::optional<std::chrono::milliseconds> Take(const std::string& who, Time now);
-  // Returns false if the bucket of `who` has no token left.
+  // Returns whether the bucket of the client `who` has a token. Takes no token.
   bool HasAny(const std::string& who, Time now) const;
 
   double PerSecond() const { return per_second_; }

@@ -18,7 +18,7 @@ constexpr char kRetryAfterMs[] = "thunderhead/retry_after_ms";
 constexpr char kPermanent[] = "thunderhead/permanent";
 constexpr char kMetadata[] = "thunderhead/metadata/";  // followed by the key
 
-// The time that a restart of the server process takes.
+// The retry delay for clients of a server that is stopping. A restart takes about this time.
 constexpr std::chrono::seconds kRestart{5};
 
 void AddPayload(absl::Status& status, const std::string& name, const std::string& text) {

@@ -17,15 +17,17 @@ namespace thunderhead::base {
 // Each part may be absent.
 struct ErrorDetails {
   std::string reason = {};       // UPPER_SNAKE_CASE
-  std::string field = {};        // its path in the request, e.g. "scene.fields[1].radius_m"
-  std::string description = {};  // what is wrong with it; else see the message
-  std::map<std::string, std::string> metadata = {};  // e.g. "maximum" of "0.1" and "unit" of "m"
+  std::string field = {};        // path of the invalid field in the request, e.g.
+                                 // "scene.fields[1].radius_m"
+  std::string description = {};  // what is wrong with the field; if empty, the status's message
+                                 // describes it
+  std::map<std::string, std::string> metadata = {};  // e.g. {"maximum", "0.1"} and {"unit", "m"}
   std::optional<std::chrono::milliseconds> retry_after = {};
   bool permanent = false;  // the same request will be refused again, so a retry does not help
 };
 
-// Returns `status` with the details that it does not have yet. Details that it already has stay,
-// because the code that found the error knows most about it. OK stays OK.
+// Returns `status` with the details that it does not have yet. Details that `status` already has
+// stay, because the code that found the error knows most about the error. OK stays OK.
 absl::Status WithDetails(absl::Status status, const ErrorDetails& details);
 
 ErrorDetails DetailsOf(const absl::Status& status);
@@ -35,10 +37,11 @@ absl::Status InvalidField(const std::string& field, const std::string& descripti
                           const std::string& reason,
                           const std::map<std::string, std::string>& metadata = {});
 
-// Returns UNAVAILABLE because the server is stopping. Another server may soon replace it.
+// Returns UNAVAILABLE with the reason SHUTTING_DOWN, for requests to a server that is stopping.
 absl::Status ShuttingDown();
 
-// Returns RESOURCE_EXHAUSTED for a connection over the limits, which will be closed.
+// Returns RESOURCE_EXHAUSTED. The server sends this error on a connection that exceeds the limits,
+// before it closes the connection.
 absl::Status TooManyConnections();
 // Returns the same error for a client address that starts TLS handshakes too often.
 absl::Status TooManyHandshakes();

@@ -17,10 +17,11 @@
 namespace thunderhead::base {
 namespace {
 
-// A task is a read or the encoding of an image. A few threads finish hundreds of them in this time.
+// The retry delay when the queue is full. A task reads a file or encodes an image, so a few threads
+// finish hundreds of tasks in this time.
 constexpr std::chrono::seconds kQueueRetryAfter{10};
 
-// How long a worker that had no memory to start a task waits before it tries again.
+// The time after which a worker tries again to start a task, if it lacked the memory to start it.
 constexpr std::chrono::milliseconds kMemoryPause{100};
 
 absl::Status Full(const char* of_whom, std::size_t max_waiting) {
@@ -140,7 +141,8 @@ std::optional<Executor::Task> Executor::Take(Shared& shared, Worker& worker) {
   ++running;
   worker.owner = *std::move(owner);
   worker.busy_since = shared.time.Now();
-  // The typical time is charged until the task's real time is known.
+  // The duration of the previous task is charged as an estimate. End replaces it by this task's own
+  // duration.
   worker.charged_ms = shared.typical_ms;
   shared.shares.Used(worker.owner, worker.charged_ms);
   return task;
@@ -182,7 +184,8 @@ void Executor::Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr
     std::optional<Task> task = WaitFor(*shared, *worker, lock);
     if (!task.has_value()) break;
     lock.unlock();
-    // The watch thread must update the time at which it checks whether this task hangs.
+    // The notification wakes the watch thread, which must then wait until this task would count as
+    // hanging.
     shared->changed.notify_all();
     try {
       const absl::Status failed = Guarded([&] {
@@ -191,7 +194,7 @@ void Executor::Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr
       });
       if (!failed.ok()) LogError(failed);
     } catch (const std::bad_alloc&) {
-      // There is no memory for a log line either.
+      // The failure is not logged, because there is no memory for the log line.
     }
     task.reset();
     lock.lock();
@@ -212,7 +215,8 @@ void Executor::Replace(Clock::time_point now) {
     if (hanging >= shared_->limits.max_hanging) return;
     if (worker->hangs || !worker->busy_since.has_value()) continue;
     if (now - *worker->busy_since < shared_->limits.hangs_after) continue;
-    // The thread is added first, because this can fail for lack of memory.
+    // The new thread is added before the worker is marked as hanging, because adding a thread can
+    // fail for lack of memory.
     AddWorker();
     worker->hangs = true;
     Leave(*shared_, worker->owner);
@@ -246,7 +250,7 @@ void Executor::Watch() {
     std::vector<Task> late;
     try {
       late = TakeLate(*shared_, now);
-      // Another thread is needed only if tasks are waiting.
+      // A hanging thread needs a replacement only if tasks are waiting.
       if (!shared_->waiting.empty()) Replace(now);
     } catch (const std::exception& no_memory_or_thread) {
       spdlog::warn("cannot look after requests: {}", no_memory_or_thread.what());

@@ -1,7 +1,7 @@
 // A few threads that run blocking work for callers that must not block, with a bounded queue.
 // Owners of work get equal shares of the threads' time. No owner can fill the queue or occupy every
-// thread. When a task hangs, for example because its storage is gone, another thread replaces its
-// thread after a while.
+// thread. When a task hangs, for example because its storage is unreachable, a new thread replaces
+// the task's thread after Limits::hangs_after.
 #pragma once
 
 #include <chrono>
@@ -46,20 +46,20 @@ class Executor {
     std::chrono::milliseconds max_wait = std::chrono::seconds(60);
   };
 
-  // `time` must outlive it.
+  // `time` must outlive the executor.
   explicit Executor(const Limits& limits, const TimeSource& time = SteadyTime());
   ~Executor();
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
-  // Queues a task. `owner` is the identity that asked for it. An empty owner is the server itself,
-  // which may fill the queue and take every thread.
+  // Queues a task. `owner` is the identity that requested the task. An empty owner means the server
+  // itself, which may fill the queue and occupy every thread.
   void Submit(const std::string& owner, Task task);
   // Returns how many tasks hang now.
   int Hanging() const;
 
   // Refuses waiting and later tasks. Then waits for the running tasks to end, for
-  // LooseThread::kPatience in total, and abandons those that do not end.
+  // LooseThread::kPatience in total, and abandons threads whose tasks have not ended by then.
   void Stop();
 
  private:
@@ -69,7 +69,7 @@ class Executor {
     Task task;
     Clock::time_point since;
   };
-  // A thread and its task.
+  // The state of a thread of the executor and of the task that it runs.
   struct Worker {
     std::optional<Clock::time_point> busy_since;
     std::string owner;  // the task's owner
@@ -84,11 +84,12 @@ class Executor {
     const TimeSource& time;
     std::mutex mutex;
     std::condition_variable changed;
-    std::map<std::string, std::deque<Waiting>> waiting;  // by owner; no queue is empty
+    std::map<std::string, std::deque<Waiting>> waiting;  // queues by owner; an empty queue is
+                                                         // removed
     std::size_t waiting_count = 0;
-    std::map<std::string, int> running;  // by owner, without hanging tasks
+    std::map<std::string, int> running;  // number of running tasks by owner, without hanging tasks
     FairShare shares;
-    double typical_ms = 1.0;  // how long the last task took
+    double typical_ms = 1.0;  // duration in ms of the last task that did not hang
     std::list<std::shared_ptr<Worker>> workers;
     bool stopping = false;
   };
@@ -99,7 +100,7 @@ class Executor {
   static void Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr<Worker>& worker);
   // The functions below require the mutex.
   //
-  // Returns the next task for the worker, from the owner who has used the least time. Returns
+  // Takes the next task for the worker, from the owner that has used the least time. Returns
   // nothing if no task may start. Every owner must leave one thread free for others.
   static std::optional<Task> Take(Shared& shared, Worker& worker);
   static void End(Shared& shared, Worker& worker);
@@ -112,7 +113,7 @@ class Executor {
   void Watch();
 
   const std::shared_ptr<Shared> shared_;
-  std::list<LooseThread> threads_;  // requires the mutex
+  std::list<LooseThread> threads_;  // access requires Shared::mutex
   std::thread watch_;
 };
 

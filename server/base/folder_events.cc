@@ -68,7 +68,7 @@ bool FolderEvents::WaitUntil(std::chrono::steady_clock::time_point deadline) {
   }
 }
 
-// Returns whether anything was read.
+// Reads all available data from the descriptor. Returns whether there was any.
 bool FolderEvents::Drain() {
   alignas(inotify_event) std::array<char, 16 * 1024> buffer{};
   bool any = false;

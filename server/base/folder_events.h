@@ -1,6 +1,7 @@
-// Notifications from the kernel (inotify) that something has happened in some folders. The caller
-// must scan the folders to find out what has happened. Events can be merged, too frequent or lost.
-// A network file system sends none for changes that other machines make.
+// Receives notifications from the kernel (inotify) about changes in folders. The caller must scan
+// the folders to find out what has happened. The kernel can merge or lose events, and can send more
+// events than there are changes. A network file system sends no events for changes that other
+// machines make.
 #pragma once
 
 #include <chrono>
@@ -16,8 +17,9 @@ class FolderEvents {
   FolderEvents(const FolderEvents&) = delete;
   FolderEvents& operator=(const FolderEvents&) = delete;
 
-  // Watches the folder itself, but not its subfolders. A repeated call does no harm. Returns true
-  // if the folder was not watched before. Only the first folder that cannot be watched is logged.
+  // Watches the folder, but not its subfolders. A repeated call for the same folder does nothing.
+  // Returns true if the folder was not watched before. Only the first folder that cannot be watched
+  // is logged.
   bool Watch(const std::string& folder);
 
   // Waits for an event, for Wake or until `deadline`. An event is a file that was written and
@@ -31,8 +33,8 @@ class FolderEvents {
  private:
   bool Drain();
 
-  int events_ = -1;  // inotify's descriptor
-  int wake_ = -1;    // eventfd's
+  int events_ = -1;  // descriptor of inotify
+  int wake_ = -1;    // descriptor of the eventfd that Wake writes to
   std::map<int, std::string> folders_;
   bool warned_ = false;
 };

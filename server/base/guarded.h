@@ -13,9 +13,9 @@
 
 namespace thunderhead::base {
 
-// A failed allocation with a known reason: the memory budget refuses it, or the device has no
-// memory. It is thrown where no status can be returned, for example by constructors of GL objects.
-// Only Guarded catches it.
+// The exception for a failed allocation whose reason is known: the memory budget refused it, or the
+// device has no memory left. It is thrown by code that cannot return a status, for example by
+// constructors of GL objects. Only Guarded catches it.
 class FailedAllocation : public std::bad_alloc {
  public:
   explicit FailedAllocation(absl::Status why) : why_(std::move(why)) {}
@@ -32,8 +32,8 @@ inline absl::Status OutOfMemory() {
                      {.reason = "OUT_OF_MEMORY", .retry_after = std::chrono::seconds(30)});
 }
 
-// Returns INTERNAL for an exception that no code expects, and logs what it says. A caller is told
-// only that the server failed, because the text may name files.
+// Logs the text `what` of an unexpected exception and returns INTERNAL. The returned message says
+// only that the server failed, because `what` may contain file names.
 absl::Status UnexpectedFailure(const char* what);
 
 // Returns the status or StatusOr of `work`. Returns RESOURCE_EXHAUSTED if an allocation or a thread

@@ -1,4 +1,4 @@
-// IEEE half-precision floats, as textures store them.
+// Conversion between floats and IEEE half-precision floats, which textures store.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@ inline std::uint16_t HalfFromFloat(float value) {
   if (std::isnan(value)) return kNotANumber;
   const float size = std::min(std::abs(value), kLargestHalf);
   const auto bits = std::bit_cast<std::uint32_t>(size);
-  // Adding 0.5 aligns a half's subnormal step with a float's last bit, so the addition itself
-  // rounds.
+  // For values that become subnormal halves, adding 0.5 aligns the half's smallest step with the
+  // float's last bit. The addition therefore rounds to the nearest half.
   const std::uint32_t subnormal = std::bit_cast<std::uint32_t>(size + 0.5F) - 0x3F000000U;
   const std::uint32_t normal = (bits + 0xFFFU + ((bits >> 13U) & 1U) - 0x38000000U) >> 13U;
   const std::uint32_t sign = (std::bit_cast<std::uint32_t>(value) >> 16U) & 0x8000U;
@@ -27,7 +27,8 @@ inline std::uint16_t HalfFromFloat(float value) {
 
 // Returns the value of a half float that is a number and not negative. Infinity becomes 65536.
 inline float FloatFromHalf(std::uint16_t half) {
-  // Moves the exponent from a half's bias to a float's, subnormal halves included.
+  // The multiplication converts the exponent from the bias of a half to that of a float. It is also
+  // right for subnormal halves.
   return std::bit_cast<float>(static_cast<std::uint32_t>(half) << 13U) * 0x1p112F;
 }
 

@@ -1,6 +1,6 @@
 // Limits how many lines are logged per second about events that clients can trigger as often as
-// they like. A plain value type to which the caller passes the time. Callers that share it must
-// lock.
+// they like. It is a plain value type; the caller passes the time. Threads that share an object
+// must hold a lock.
 #pragma once
 
 #include <chrono>
@@ -16,8 +16,8 @@ class LineLimit {
 
   explicit LineLimit(int lines_per_second) : most_(lines_per_second) {}
 
-  // Returns how many lines have been dropped since the last line that was allowed. Returns nothing
-  // if the line of `now` must be dropped, too.
+  // Decides whether a line may be written at `now`. If it may, returns how many lines were dropped
+  // since the last allowed line. Otherwise returns nothing, and the caller drops the line.
   std::optional<std::uint64_t> Take(TimePoint now) {
     const auto second = std::chrono::floor<std::chrono::seconds>(now);
     if (second != second_) {
@@ -32,7 +32,7 @@ class LineLimit {
  private:
   const int most_;
   std::chrono::sys_seconds second_{};
-  int lines_ = 0;  // logged in second_
+  int lines_ = 0;  // lines requested in second_
   std::uint64_t left_out_ = 0;
 };
 

@@ -19,19 +19,22 @@ namespace thunderhead::base {
 
 class LineWriter {
  public:
-  // Writes a line. `left_out` is the number of lines that were dropped just before it. Called with
-  // an empty line at the end if the last lines were dropped. If it throws, the line counts as
-  // dropped. It may hang, so it must own everything it uses.
+  // A function that writes a line. `left_out` is the number of lines that were dropped just before
+  // the line. If the last lines were dropped, the function is called once more at the end, with an
+  // empty line. If the function throws, the line counts as dropped. The function may hang, so it
+  // must own everything it uses.
   using WriteLine = std::function<void(const std::string& line, std::uint64_t left_out)>;
 
-  // Drops new lines when `max_waiting` lines are waiting. `time` must outlive this.
+  // Creates a writer that drops new lines while `max_waiting` lines are waiting. `time` must
+  // outlive this object.
   LineWriter(std::size_t max_waiting, WriteLine write, const TimeSource& time = SteadyTime());
-  // Writes the waiting lines, unless writing hangs.
+  // Waits until the waiting lines are written, but no longer than LooseThread::kPatience.
   ~LineWriter();
   LineWriter(const LineWriter&) = delete;
   LineWriter& operator=(const LineWriter&) = delete;
 
-  // Returns at once. Safe from any thread.
+  // Queues a line to be written, or drops it if too many lines are waiting. Does not block. Safe
+  // from any thread.
   void Write(std::string line);
   // Waits up to `time` until all waiting lines are written. Returns whether they are.
   bool Flush(std::chrono::milliseconds time);

@@ -1,4 +1,5 @@
-// Logs errors whose full text no client may see, one line each.
+// Logs errors in full, one line each. Clients get a shorter text, because the full text may contain
+// confidential names.
 #pragma once
 
 #include "absl/status/status.h"

@@ -54,7 +54,7 @@ void Looks::Run(const std::shared_ptr<Shared>& shared) {
       const SlowCall slow(shared->path);
       shared->look();
     } catch (const std::bad_alloc&) {
-      // The next check may have enough memory.
+      // The check is skipped, because the next check may have enough memory.
     }
     lock.lock();
     shared->done = asked;

@@ -1,5 +1,6 @@
-// Checks something whose storage may hang, such as a file that may have changed. The checks run one
-// after another on a separate thread, so that callers do not have to wait for the storage.
+// Runs checks of something on a storage that may hang, for example of whether a file has changed.
+// The checks run one after another on a separate thread, so that callers do not have to wait for
+// the storage.
 #pragma once
 
 #include <chrono>
@@ -21,8 +22,9 @@ class Looks {
  public:
   static constexpr std::chrono::seconds kPatience{1};
 
-  // Each check calls `look`, which must own everything it uses, because it may outlive this object.
-  // `path` names in the log what is checked. `time` must outlive this.
+  // Creates an object whose checks call `look`. `look` must own everything it uses, because a
+  // hanging check can outlive the object. In the log, `path` names the checked file or folder.
+  // `time` must outlive this object.
   Looks(const std::string& path, std::function<void()> look,
         std::chrono::milliseconds patience = kPatience, const TimeSource& time = SteadyTime())
       : Looks(path, std::move(look), patience, std::nullopt, time) {}
@@ -36,8 +38,8 @@ class Looks {
   Looks(const Looks&) = delete;
   Looks& operator=(const Looks&) = delete;
 
-  // Waits for a check that started after this call, but not longer than the object's patience.
-  // While a check hangs, it returns at once. Safe from any thread.
+  // Requests a check and waits until it has ended, but no longer than the object's patience. While
+  // an earlier check hangs, the function returns at once. Safe from any thread.
   void LookAgain();
 
  private:
@@ -49,7 +51,7 @@ class Looks {
     std::mutex mutex;
     std::condition_variable changed;
     std::uint64_t asked = 0;
-    std::uint64_t done = 0;  // the newest request for which a check has ended
+    std::uint64_t done = 0;  // number of the newest request for which a check has ended
     bool hangs = false;
     bool stopping = false;
   };

@@ -1,5 +1,6 @@
-// A thread that may hang in a system call that nothing can interrupt, for example because its
-// storage is gone. A hanging thread is abandoned, so what it runs must own everything it uses.
+// A thread that may hang in a system call that nothing can interrupt, for example because a storage
+// is unreachable. A hanging thread is detached and left running (abandoned). Its function must
+// therefore own everything it uses.
 #pragma once
 
 #include <chrono>
@@ -16,13 +17,14 @@ class LooseThread {
  public:
   using Time = TimeSource::Clock::time_point;
 
-  // How long an owner waits for a thread to end after it has told the thread to end.
+  // The time for which an owner waits for a thread to end, after it has requested the end.
   static constexpr std::chrono::seconds kPatience{5};
 
   LooseThread() = default;
   // `time` measures the wait for the thread's end and must outlive this.
   LooseThread(std::string name, std::function<void()> run, const TimeSource& time = SteadyTime());
-  // Waits kPatience for the thread to end. The owner must have told it to end before.
+  // Waits up to kPatience for the thread to end, and then abandons it. The owner must have
+  // requested the end before.
   ~LooseThread();
   LooseThread(LooseThread&&) noexcept = default;
   LooseThread& operator=(LooseThread&&) = delete;
@@ -31,17 +33,17 @@ class LooseThread {
   bool EndsBy(Time deadline) const;
   bool HasEnded() const;
 
-  // Rethrows the thread's exception, if there is one. Waits for the thread to end.
+  // Waits for the thread to end. If its function threw an exception, throws it again.
   void Rethrow() const { ended_.get(); }
 
-  // Joins the thread if it has ended, and otherwise abandons it. For owners that have already
-  // waited.
+  // Joins the thread if it has ended, and otherwise abandons it without waiting. It is for owners
+  // that have already waited.
   void LetGo() { LetGoBy(Time::min()); }
   // Waits for the thread to end until `deadline`, and then abandons it.
   void LetGoBy(Time deadline);
 
-  // Returns whether this process has abandoned a thread. It must then end by _exit, because the
-  // thread may wake up while the objects that it uses are being destroyed.
+  // Returns whether this process has abandoned a thread. If so, the process must end by _exit,
+  // because the thread may wake up while static objects that it uses are being destroyed.
   static bool AnyLeftBehind();
 
  private:

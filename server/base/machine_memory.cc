@@ -37,7 +37,8 @@ std::uint64_t TotalBytes(const std::string& root) {
   return kUnlimited;
 }
 
-// Returns the lowest limit in `file`, over the group's folder and its parent folders.
+// Returns the lowest limit that the files named `file` contain, in the group's folder and its
+// parent folders.
 std::uint64_t LeastAlong(const std::string& hierarchy, std::string group, const char* file) {
   std::uint64_t least = kUnlimited;
   while (true) {

@@ -1,5 +1,5 @@
-// How much memory this process may use: the machine's memory, or the limit of its cgroup if that is
-// lower.
+// Determines how much memory this process may use: the machine's memory, or the memory limit of the
+// process's cgroup if that is lower.
 #pragma once
 
 #include <cstddef>

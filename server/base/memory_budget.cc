@@ -14,11 +14,13 @@
 namespace thunderhead::base {
 namespace {
 
-// Retry delay: viewers leave, or switch to another storm, within seconds or not at all.
+// The retry delay of a refusal. Memory is freed when viewers leave or switch to another storm. They
+// usually do this within seconds or not for a long time.
 constexpr std::chrono::seconds kMemoryRetryAfter{10};
 constexpr char kTooLarge[] = "TOO_LARGE_FOR_MEMORY";
 
-// The longest wait for memory. It covers one turn of drawing, which frees unused memory at its end.
+// The longest wait of a kPatient reservation. It is long enough for the drawing thread to finish
+// its turn, at whose end it frees unused memory.
 constexpr std::chrono::seconds kLongestPatience{2};
 
 std::size_t IndexOf(MemoryUse use) { return static_cast<std::size_t>(use); }
@@ -107,7 +109,8 @@ std::size_t MemoryBudget::LimitOf(MemoryUse use) const {
 bool MemoryBudget::Take(MemoryUse use, std::size_t bytes) {
   const std::lock_guard lock(counting_);
   const std::size_t used = std::accumulate(used_.begin(), used_.end(), std::size_t{0});
-  // Drawing fills its own reserve first. Other uses are not charged for memory within it.
+  // Drawing uses the part of the budget that is reserved for it first. Memory within that part does
+  // not reduce what is left for other uses.
   const std::size_t drawing = used_[IndexOf(MemoryUse::kDrawing)];
   const std::size_t counted =
       use == MemoryUse::kDrawing ? used : used - std::min(drawing, options_.kept_for_drawing);

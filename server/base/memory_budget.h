@@ -1,6 +1,7 @@
-// The budget of memory that the process may use for its clients' requests, accounted by use. Each
-// use is a reservation with an owner, made before the memory is allocated. If the budget is full,
-// cached objects are evicted first, beginning with the least recently used. Safe from any thread.
+// A budget for the memory that the process uses for its clients' requests, counted separately for
+// each kind of use. Memory is reserved before it is allocated, and released when the
+// MemoryReservation is destroyed. If the budget is full, cached objects are evicted first,
+// beginning with the least recently used. Safe from any thread.
 #pragma once
 
 #include <array>
@@ -29,13 +30,15 @@ inline constexpr std::array kMemoryUses{MemoryUse::kFields, MemoryUse::kReading,
                                         MemoryUse::kDrawing, MemoryUse::kTracing,
                                         MemoryUse::kPictures};
 
-// DescriptionOf is for people ("fields of storms"), LabelOf for metrics ("fields").
+// DescriptionOf returns a name for messages ("fields of storms"), and LabelOf a label for metrics
+// ("fields").
 std::string_view DescriptionOf(MemoryUse use);
 std::string_view LabelOf(MemoryUse use);
 
 class MemoryBudget;
 
-// Memory that is accounted for while this object lives. An empty reservation accounts for none.
+// A reservation of memory. The memory counts as used while this object lives. An empty reservation
+// has a size of 0.
 class MemoryReservation {
  public:
   MemoryReservation() = default;
@@ -66,21 +69,24 @@ class MemoryReservation {
 class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
  public:
   enum class Urgency {
-    kAwaited,  // a caller waits for the result: a refusal counts, and is returned at once
-    kPatient,  // the same, but the caller can wait until others have freed memory
-    kAhead,    // no caller waits for it yet: a refusal does not count
+    kAwaited,  // a caller waits for the result: a refusal increases Refusals() and is returned at
+               // once
+    kPatient,  // like kAwaited, but Reserve first waits a short time for other threads to free
+               // memory
+    kAhead,    // no caller waits for the result: a refusal does not increase Refusals()
   };
 
   struct Options {
-    std::string name = "memory";  // for messages: "memory", "GPU memory"
+    std::string name = "memory";  // the budget's name in messages, such as "GPU memory"
     std::string flag = "--memory-budget";
     std::size_t bytes = std::numeric_limits<std::size_t>::max();
-    // The part of `bytes` reserved for drawing, so that storm fields leave memory to draw them.
+    // The part of `bytes` that only MemoryUse::kDrawing may use, so that storm fields do not take
+    // the memory needed to draw them.
     std::size_t kept_for_drawing = 0;
   };
 
-  // A cache of objects that are not in use at the moment. It is called by the thread that makes a
-  // reservation.
+  // A cache whose unused objects the budget may evict. Its functions are called on the thread that
+  // makes a reservation.
   class Cache {
    public:
     virtual std::optional<std::chrono::steady_clock::time_point> OldestUnused() = 0;
@@ -90,8 +96,8 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
     ~Cache() = default;
   };
 
-  // Registers a cache. While this object lives, the budget can evict the cache's objects. The
-  // destructor waits for a call in progress.
+  // The registration of a cache. While this object lives, the budget can evict objects of the
+  // cache. The destructor waits until a running call of the cache has returned.
   class Member {
    public:
     Member() = default;
@@ -108,30 +114,30 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   };
 
   static std::shared_ptr<MemoryBudget> Make(Options options);
-  // Returns a budget that counts but refuses nothing.
+  // Returns a budget that counts reservations but never refuses one.
   static std::shared_ptr<MemoryBudget> Unlimited();
 
   // Reserves memory, and evicts cached objects if necessary. Returns RESOURCE_EXHAUSTED, with the
-  // current uses of the memory, if that does not free enough. `what` names the purpose ("storm
-  // 'anvil'"). The caller must not hold a lock that a cache takes.
+  // current uses of the memory, if that does not free enough. `what` names the purpose in the error
+  // message ("storm 'anvil'"). The caller must not hold a lock that a registered cache also takes.
   absl::StatusOr<MemoryReservation> Reserve(MemoryUse use, std::size_t bytes, std::string_view what,
                                             Urgency urgency = Urgency::kAwaited);
   // Changes the size of `reservation` to `bytes`. An increase is reserved like in Reserve.
   absl::Status Resize(MemoryReservation& reservation, std::size_t bytes, std::string_view what);
 
   std::size_t Bytes() const { return options_.bytes; }
-  // Returns whether `bytes` more fit into `share` of the budget at the current use. Does not evict
-  // anything.
+  // Returns whether the used memory plus `bytes` is at most `share` times the budget. Does not
+  // evict anything.
   bool HasRoom(std::size_t bytes, double share = 1.0) const;
   std::size_t Used() const;
   std::size_t Used(MemoryUse use) const;
   // Returns how many awaited reservations have been refused for lack of memory so far. When the
-  // number grows, a thread frees what only it can free, and calls Answer. For example, only their
-  // own thread may delete GL objects.
+  // number grows, a thread frees memory that only this thread can free, such as GL objects of its
+  // context. It then calls Answer.
   std::uint64_t Refusals() const { return refusals_; }
   void Answer(std::uint64_t refusals);
-  // Sets the listener that is called when Refusals has grown, on the thread that lacks memory. An
-  // empty function removes the listener.
+  // Sets the listener that is called each time Refusals() grows, on the thread whose reservation
+  // was refused. An empty function removes the listener.
   void OnPressure(std::function<void()> listener);
 
  private:
@@ -144,7 +150,8 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   void GiveBack(MemoryUse use, std::size_t bytes);
   // Returns false if caches cannot free enough memory.
   bool MakeRoomAndTake(MemoryUse use, std::size_t bytes);
-  // Reports the refusal. If `patient`, waits for an answer, up to a maximum time.
+  // Increases Refusals() and calls the listener. If `patient`, it then waits until another thread
+  // calls Answer, up to a maximum time.
   void Press(bool patient);
   absl::Status Refusal(MemoryUse use, std::size_t bytes, std::string_view what) const;
 
@@ -159,13 +166,13 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   std::vector<Cache*> caches_;
 };
 
-// Returns whether `refused` says that a request is larger than the whole budget, so that waiting
-// does not help.
+// Returns whether `refused` is the error of Reserve for a request that is larger than the whole
+// budget, so that waiting does not help.
 bool IsTooLargeForMemory(const absl::Status& refused);
 
 // Makes the allocator of the whole process take blocks of 256 KiB and more from the system, and
-// return them when they are freed. Otherwise the arena of one thread would keep them, and other
-// threads could not use them.
+// return them when they are freed. Otherwise the allocator's arena of one thread would keep the
+// freed blocks, and other threads could not use them.
 void ShareFreedBlocks();
 // Returns memory that the process has freed to the system. Takes a few milliseconds.
 void GiveBackFreedMemory();

@@ -16,7 +16,8 @@ namespace {
 
 // Returns the smaller of the machine's memory and the process's address space limit.
 std::size_t MostBytes() {
-  // A confined process cannot read the machine's memory. Its own limit applies then.
+  // A confined process cannot open the files that report the machine's memory, so only its address
+  // space limit applies.
   static const std::size_t machine = base::MachineMemoryBytes();
   const std::size_t most = machine > 0 ? machine : std::numeric_limits<std::size_t>::max();
   rlimit limit{};

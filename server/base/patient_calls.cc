@@ -31,7 +31,7 @@ absl::Status PatientCalls::Run(const std::string& storage, const std::function<v
     const std::lock_guard lock(mutex_);
     if (Hangs(storage)) return NoAnswer(storage);
   }
-  // The time is taken before the call begins.
+  // `since` is read before the call begins, so that the timeout includes the start of the thread.
   const auto since = time_.Now();
   std::optional<LooseThread> thread;
   try {

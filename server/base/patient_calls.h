@@ -1,5 +1,5 @@
-// Calls with a timeout to a storage that may hang. Each call runs on a separate thread, and its
-// caller waits no longer than the timeout.
+// Calls, with a timeout, functions that use a storage which may hang. Each call runs on a separate
+// thread, and its caller waits no longer than the timeout.
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@
 
 namespace thunderhead::base {
 
-// The reason in the error's details.
+// The reason in the details of the error for a call that timed out.
 inline constexpr char kStorageHangs[] = "STORAGE_HANGS";
 
 class PatientCalls {
@@ -27,20 +27,20 @@ class PatientCalls {
   // `time` must outlive this.
   explicit PatientCalls(std::chrono::milliseconds patience, const TimeSource& time = SteadyTime())
       : patience_(patience), time_(time) {}
-  // Abandons the calls that hang.
+  // Abandons the threads of calls that hang.
   ~PatientCalls();
   PatientCalls(const PatientCalls&) = delete;
   PatientCalls& operator=(const PatientCalls&) = delete;
 
-  // Runs `call`, which must own everything it uses, because it may outlive this object. If it does
-  // not return in time, returns DEADLINE_EXCEEDED with the reason STORAGE_HANGS and a retry delay.
-  // While an earlier call for the same storage hangs, returns that error at once. `storage` names
-  // the storage in the message, such as a folder. Rethrows what `call` throws. Safe from any
-  // thread.
+  // Runs `call`, which must own everything it uses, because it may outlive this object. If `call`
+  // does not return within the timeout, returns DEADLINE_EXCEEDED with the reason STORAGE_HANGS and
+  // a retry delay. While an earlier call for the same storage hangs, returns that error at once.
+  // `storage` identifies the storage, for example by a folder, and appears in the error message.
+  // Rethrows what `call` throws. Safe from any thread.
   absl::Status Run(const std::string& storage, const std::function<void()>& call);
 
   // Does the same for a call that returns a Status or a StatusOr. Returns the call's result, or the
-  // reason why there is none.
+  // error of Run if the call timed out.
   template <typename Call>
   std::invoke_result_t<Call> Ask(const std::string& storage, Call call) {
     const auto answer = std::make_shared<std::optional<std::invoke_result_t<Call>>>();
@@ -66,7 +66,7 @@ class PatientCalls {
   const std::chrono::milliseconds patience_;
   const TimeSource& time_;
   std::mutex mutex_;
-  std::multimap<std::string, Hanging> hanging_;  // by storage
+  std::multimap<std::string, Hanging> hanging_;  // hanging calls by the name of their storage
 };
 
 }  // namespace thunderhead::base

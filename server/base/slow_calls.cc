@@ -20,7 +20,7 @@ double Seconds(SlowCalls::Clock::duration time) {
 SlowCalls::SlowCalls(std::chrono::milliseconds patience,
                      std::function<void(const std::string&)> say, const TimeSource& time)
     : patience_(patience), say_(std::move(say)), time_(time) {
-  // Blocks all signals in the new thread, because other threads wait for them.
+  // All signals are blocked in the new thread, because other threads wait for them.
   sigset_t all;
   sigset_t before;
   sigfillset(&all);

@@ -1,5 +1,6 @@
-// Reports which files and folders take long to respond. A call to a storage that hangs does not
-// return, so its caller cannot report it. This class only reports; patient_calls.h adds timeouts.
+// Reports file system calls that take long, with their file or folder. A call to a storage that
+// hangs does not return, so the calling thread cannot report the delay itself. This class only
+// reports; patient_calls.h adds timeouts.
 #pragma once
 
 #include <chrono>
@@ -19,8 +20,9 @@ class SlowCalls {
  public:
   using Clock = TimeSource::Clock;
 
-  // Reports each call that takes longer than `patience`, from a separate thread. It reports the
-  // call again each time its duration has doubled, and once it returns. `time` must outlive this.
+  // Creates an object that reports each call that takes longer than `patience`. It passes each
+  // report to `say`, on a separate thread. A call is reported again each time its duration has
+  // doubled, and when it returns. `time` must outlive this object.
   SlowCalls(std::chrono::milliseconds patience, std::function<void(const std::string&)> say,
             const TimeSource& time = SteadyTime());
   // The object must outlive its calls.
@@ -28,7 +30,7 @@ class SlowCalls {
   SlowCalls(const SlowCalls&) = delete;
   SlowCalls& operator=(const SlowCalls&) = delete;
 
-  // Returns the instance of the process, which logs calls that take longer than 10 s.
+  // Returns the instance that the whole process shares. It logs calls that take longer than 10 s.
   static SlowCalls& OfProcess();
 
  private:
@@ -53,7 +55,8 @@ class SlowCalls {
   std::jthread thread_;
 };
 
-// A call to the storage of `path`, in progress while this object lives.
+// Marks a call to the storage of `path` as in progress while this object lives, so that SlowCalls
+// can report it.
 class SlowCall {
  public:
   explicit SlowCall(std::string path, SlowCalls& watch = SlowCalls::OfProcess())

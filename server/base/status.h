@@ -1,6 +1,6 @@
-// Status values and the macros that pass them on. An error from input or the environment is an
-// absl::Status that says what went wrong, where, and what to do next. A broken invariant of the
-// program itself is a THUNDERHEAD_CHECK. No library lets an exception escape.
+// Functions and macros for status values. An error from input or the environment is an absl::Status
+// that says what went wrong, where, and what to do next. A broken invariant of the program itself
+// is a THUNDERHEAD_CHECK. No library lets an exception escape.
 #pragma once
 
 #include <string>
@@ -11,7 +11,8 @@
 
 namespace thunderhead::base {
 
-// Returns `status` with `prefix` and ": " put before its message, and its payloads. OK stays OK.
+// Returns `status` with `prefix` and ": " inserted before its message. Payloads are kept, and OK
+// stays OK.
 absl::Status Annotate(const absl::Status& status, std::string_view prefix);
 
 // Prints the failed condition, its place in the source and `detail`, then aborts.
@@ -20,7 +21,7 @@ absl::Status Annotate(const absl::Status& status, std::string_view prefix);
 
 }  // namespace thunderhead::base
 
-// Returns from the function when `expression` is not OK.
+// Returns the status `expression` from the calling function if it is not OK.
 #define THUNDERHEAD_RETURN_IF_ERROR(expression)                                     \
   do {                                                                              \
     if (absl::Status thunderhead_status = (expression); !thunderhead_status.ok()) { \
@@ -31,7 +32,8 @@ absl::Status Annotate(const absl::Status& status, std::string_view prefix);
 #define THUNDERHEAD_CONCATENATE_INNER(a, b) a##b
 #define THUNDERHEAD_CONCATENATE(a, b) THUNDERHEAD_CONCATENATE_INNER(a, b)
 
-// THUNDERHEAD_ASSIGN_OR_RETURN(auto value, Function()): returns the error, or assigns the value.
+// Assigns the value of a StatusOr, or returns its error from the calling function. Use it like
+// this: THUNDERHEAD_ASSIGN_OR_RETURN(auto value, Function()).
 // NOLINTBEGIN(bugprone-macro-parentheses): a declaration cannot stand in parentheses.
 #define THUNDERHEAD_ASSIGN_OR_RETURN(declaration, expression)                      \
   auto THUNDERHEAD_CONCATENATE(thunderhead_or_, __LINE__) = (expression);          \

@@ -1,4 +1,4 @@
-// Wall time in milliseconds on a steady clock.
+// A stopwatch: measures elapsed time in milliseconds on the steady clock.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,7 @@ namespace thunderhead::base {
 
 class Stopwatch {
  public:
-  // Milliseconds since construction or the last Restart.
+  // Returns the milliseconds since construction or the last Restart.
   double ElapsedMs() const {
     return std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
   }

@@ -1,4 +1,4 @@
-// Scheduling priorities of threads.
+// Lowers the scheduling priority of threads.
 #pragma once
 
 namespace thunderhead::base {

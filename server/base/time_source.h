@@ -1,6 +1,6 @@
-// The monotonic time that waiting code reads. Code that compares times, or that waits until a time,
-// is given a TimeSource. A test can then move the time by hand (tests/support/manual_time.h)
-// instead of sleeping.
+// An interface to a monotonic clock. Code that compares times, or that waits until a time, reads
+// the clock through a TimeSource. A test can then pass a source whose time it sets by hand
+// (tests/support/manual_time.h), so that it does not have to sleep.
 #pragma once
 
 #include <chrono>
@@ -16,8 +16,8 @@ class TimeSource {
 
   virtual Clock::time_point Now() const = 0;
 
-  // Returns the time of std::chrono::steady_clock at which a thread that waits until `deadline`
-  // must look at Now() again. It is never later than `deadline` on the real clock.
+  // Returns when a thread that waits until `deadline` must call Now() again. The result is a time
+  // of std::chrono::steady_clock, and is never later than `deadline`.
   virtual Clock::time_point LookAgainAt(Clock::time_point deadline) const = 0;
 };
 

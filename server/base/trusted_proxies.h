@@ -17,15 +17,17 @@ class TrustedProxies {
  public:
   // Trusts no proxy.
   TrustedProxies() = default;
-  // Parses addresses and networks: "127.0.0.1", "10.1.0.0/16", "2001:db8::/32". INVALID_ARGUMENT
-  // names the first text that is neither.
+  // Parses addresses and networks: "127.0.0.1", "10.1.0.0/16", "2001:db8::/32". For a text that is
+  // neither, returns INVALID_ARGUMENT with the text.
   static absl::StatusOr<TrustedProxies> Parse(const std::vector<std::string>& networks);
 
-  // Returns whether `peer` is trusted. It is "1.2.3.4:80" or "[::1]:80".
+  // Returns whether `peer` is a trusted proxy. `peer` is an address with a port, such as
+  // "1.2.3.4:80" or "[::1]:80".
   bool Holds(std::string_view peer) const;
-  // Returns the client on whose behalf `peer` calls, in the form of `peer` and with port 0. The
-  // client is the last address in `forwarded_for` that is not a trusted proxy. Returns `peer`
-  // itself if it is not trusted or names no address.
+  // Returns the address of the client on whose behalf `peer` calls, in the same form as `peer` and
+  // with port 0. This is the last address in `forwarded_for`, the value of the header, that is not
+  // a trusted proxy. Returns `peer` if it is not a trusted proxy, or if `forwarded_for` contains no
+  // valid client address.
   std::string ClientOf(const std::string& peer, std::string_view forwarded_for) const;
 
  private:

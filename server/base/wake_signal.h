@@ -1,5 +1,6 @@
 // Wakes one thread that waits for work. A notification that arrives while the thread is busy is
-// kept until its next wait, so none is lost. Several notifications are merged into one.
+// kept until the thread waits again, so no notification is lost. Several notifications are merged
+// into one.
 #pragma once
 
 #include <chrono>
@@ -21,7 +22,8 @@ class WakeSignal {
     changed_.notify_one();
   }
 
-  // Returns after a notification, or at `deadline` by `time` if there is one.
+  // Waits for a notification, or until `deadline` has passed by `time`. Without a deadline, waits
+  // for a notification only.
   void Wait(const std::optional<std::chrono::steady_clock::time_point>& deadline,
             const TimeSource& time = SteadyTime()) {
     std::unique_lock lock(mutex_);

@@ -27,7 +27,8 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
 
   int Number() const { return number_; }
-  // Returns zero, or an error that was delayed until now, which network file systems do.
+  // Returns zero or an error. Network file systems report delayed write errors only when the file
+  // is closed.
   int Close() { return close(std::exchange(number_, -1)); }
 
  private:
@@ -52,7 +53,7 @@ bool WriteAll(int file, std::string_view bytes) {
   return true;
 }
 
-// Removes the partial file and returns the error because of which it is useless.
+// Removes the partial file after an error, and returns the error.
 absl::Status Drop(const std::string& path) {
   absl::Status status = NotWritten(path);
   unlink(PartialPath(path).c_str());

@@ -1,6 +1,6 @@
 // Reads and writes whole files. A written file appears completely or not at all, even after a power
-// failure. It is written under a temporary name in the same folder, flushed to the disk, and then
-// renamed.
+// failure. For this purpose the file is written under a temporary name in the same folder, flushed
+// to the disk, and then renamed.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ namespace thunderhead::base {
 
 absl::StatusOr<std::string> ReadWholeFile(const std::string& path);
 
-// Returns the temporary name of a file that is not complete yet. It is in the same folder, so that
-// the file can be renamed.
+// Returns the temporary path under which the file at `path` is written until it is complete. The
+// path is in the same folder, so that the complete file can be renamed.
 std::string PartialPath(std::string_view path);
 
 // Writes the whole file. Returns FAILED_PRECONDITION if its folder is missing or not writable.

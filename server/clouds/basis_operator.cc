@@ -16,7 +16,7 @@ constexpr int kBallsAChunk = 64;
 // Eight partial sums, which the compiler can keep in one vector register.
 constexpr std::size_t kLanes = 8;
 
-// The values of one row of a ball: basis(x) for x in [0, count).
+// The values of a ball in one row of cells along x, for x from 0 to count - 1.
 struct GaussianRow {
   float scale;
   const float* factors;
@@ -92,8 +92,9 @@ void BasisOperator::AddFootprint(const Metaball& ball) {
   footprints_.push_back(footprint);
 }
 
-// Calls row(values, offset of its first cell, count) for each row of cells of the ball with z in
-// [first_z, last_z).
+// Calls `row` for each row of cells that the ball reaches, for z from first_z to last_z - 1. The
+// arguments are the ball's values in the row, the index of the row's first cell, and the number of
+// cells.
 template <typename Row>
 void BasisOperator::ForRows(const Footprint& ball, int first_z, int last_z, const Row& row) const {
   const float* x_table = tables_.data() + ball.tables;
@@ -143,7 +144,8 @@ void BasisOperator::Apply(const std::vector<double>& weights, std::vector<float>
   });
 }
 
-// Adds up sum(values, offset, count) over the rows of each ball.
+// Returns for each ball the sum of sum(values, offset, count) over the ball's rows. ForRows defines
+// the arguments of `sum`.
 template <typename Sum>
 std::vector<double> BasisOperator::SumOverRows(const Sum& sum) const {
   std::vector<double> sums(footprints_.size(), 0.0);

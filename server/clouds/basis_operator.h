@@ -1,6 +1,6 @@
-// The linear map from metaballs' weights to a field on a grid, and its transpose. They are applied
-// without storing a matrix, row by row of the cells that each ball reaches. The result is the same
-// for any number of threads.
+// The linear map A from the weights of metaballs to a field on a grid, and its transpose A^T. The
+// matrix A is never stored. Instead, the values of each ball are computed row by row in the cells
+// that the ball reaches. The result is the same for any number of threads.
 #pragma once
 
 #include <vector>
@@ -15,18 +15,19 @@ class BasisOperator {
   BasisOperator(const volume::RegularGrid& grid, const std::vector<Metaball>& balls, Basis basis,
                 double overlap, int threads);
 
-  // Computes the sum of all balls at every cell's centre: A v.
+  // Computes A v, the weighted sum of all balls at every cell's centre. v is `weights`.
   void Apply(const std::vector<double>& weights, std::vector<float>* field) const;
 
-  // Computes for each ball the sum over cells of its value times the field's: A^T r.
+  // Computes A^T r: for each ball, the sum over cells of the ball's value times the field's value.
+  // r is `field`.
   void ApplyTransposed(const std::vector<float>& field, std::vector<double>* sums) const;
 
-  // Returns for each ball the sum over cells of its squared value: the diagonal of A^T A.
+  // Returns the diagonal of A^T A: for each ball, the sum over cells of the ball's squared value.
   std::vector<double> SquaredNorms() const;
 
  private:
-  // The box of cells that a ball reaches, and the start of its tables. They hold one value for each
-  // x, y and z in the box.
+  // The box of cells that a ball reaches, and the index in tables_ at which the ball's values
+  // begin. There is one value for each x, each y and each z of the box.
   struct Footprint {
     glm::ivec3 low{0};
     glm::ivec3 high{0};  // one past the last
@@ -48,8 +49,8 @@ class BasisOperator {
   double overlap_;
   int threads_;
   std::vector<Footprint> footprints_;
-  // Values along each axis: for a Gaussian its factor, for Wyvill's field the squared distance over
-  // R^2.
+  // Values of each ball along each axis. For a Gaussian they are factors of the product, and for
+  // Wyvill's field squared distances divided by R^2.
   std::vector<float> tables_;
   std::vector<std::vector<std::uint32_t>>
       slabs_;  // indices of the balls that reach each slab of layers

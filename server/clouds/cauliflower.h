@@ -1,5 +1,5 @@
-// Surfaces of cumulus made from a seed. They are a heap of bubbles with smaller bubbles on them,
-// the ellipsoids of a generator's preset with bubbles on them, or a single ellipsoid. The result
+// Makes surfaces of cumulus clouds from a seed. There are three kinds: a heap of bubbles, the
+// ellipsoids of a cloud preset, or a single ellipsoid, each with smaller bubbles on top. The result
 // has the same bits on every machine.
 #pragma once
 
@@ -18,8 +18,8 @@ struct CauliflowerOptions {
 
 inline constexpr int kMaxScales = 5;
 
-// Makes a surface about 2.4 km wide on a flat base at sea level. Returns INVALID_ARGUMENT unless
-// scales is 1 to kMaxScales.
+// Makes a surface about 2.4 km wide on a flat base at sea level. All three functions return
+// INVALID_ARGUMENT unless `scales` is 1 to kMaxScales.
 absl::StatusOr<CumulusSurface> Cauliflower(const CauliflowerOptions& options);
 
 // Makes the ellipsoids of a preset (clouds/presets.h), with bubbles on them if `scales` is 2 or
@@ -27,7 +27,8 @@ absl::StatusOr<CumulusSurface> Cauliflower(const CauliflowerOptions& options);
 absl::StatusOr<CumulusSurface> SurfaceOfPreset(std::string_view preset,
                                                const CauliflowerOptions& options);
 
-// Makes one ellipsoid, as in the paper's figure 6, with bubbles on it if `scales` is 2 or more.
+// Makes one ellipsoid, as in figure 6 of Neyret's paper (clouds/cumulus_surface.h), with bubbles on
+// it if `scales` is 2 or more.
 absl::StatusOr<CumulusSurface> LoneEllipsoid(const CauliflowerOptions& options);
 
 }  // namespace thunderhead::clouds

@@ -1,4 +1,4 @@
-// Writes a generated cloud as a storm file, with its parameters as an attribute.
+// Writes a generated cloud as a storm file, which contains the cloud's parameters as an attribute.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,14 @@ struct CloudOrigin {
   std::uint64_t seed = 1;
 };
 
-// Generates the cloud and writes it to `path`, a CF netCDF file. No file is left if it fails or is
-// stopped. Errors are those of Generate and of writing the file.
+// Generates the cloud and writes it to `path`, a CF netCDF file. If the function fails or is
+// stopped, it leaves no file. Errors are those of Generate and of writing the file.
 absl::Status WriteGenerated(const CloudShape& shape, const CloudOrigin& origin,
                             const std::string& path, const GenerateObserver& observer,
                             const std::stop_token& stop);
 
-// Returns whether WriteGenerated wrote the file, by its `source` attribute.
+// Returns whether the file at `path` was written by WriteGenerated, according to its `source`
+// attribute.
 bool IsGenerated(const std::string& path);
 
 }  // namespace thunderhead::clouds

@@ -1,5 +1,4 @@
-// The parameters of a generated cloud: grid, noise, ellipsoids and amount of water. They are plain
-// values.
+// The parameters of a generated cloud: grid, noise, ellipsoids and amount of water.
 #pragma once
 
 #include <optional>
@@ -21,22 +20,23 @@ struct Ellipsoid {
   glm::dvec3 rotation_deg{0.0};
 };
 
-// Returns the rotation matrix. Its columns are the unit vectors of the rotated axes.
+// Returns the rotation matrix for Ellipsoid::rotation_deg. Its columns are the unit vectors of the
+// rotated axes.
 glm::dmat3 AxesOf(const glm::dvec3& rotation_deg);
 
 struct CloudShape {
   volume::RegularGrid grid;
   NoiseParameters noise;
   double feature_m = 400.0;           // size of the coarsest octave's lattice cells
-  double threshold = 0.1;             // t: density below this counts as zero
-  double dynamics = 1.0;              // d: scales the whole range of density
-  double water_kg_per_m3 = 2e-3;      // amount at density 1
-  std::optional<double> base_m;       // the cloud is cut off below it
+  double threshold = 0.1;             // t of eq. 10: a density below this counts as zero
+  double dynamics = 1.0;              // d of eq. 10: factor of all densities
+  double water_kg_per_m3 = 2e-3;      // amount of water at density 1
+  std::optional<double> base_m;       // height of the flat base; the cloud is cut off below it
   std::vector<Ellipsoid> ellipsoids;  // the cloud is their union
 };
 
-// Q of eq. 8 for one ellipsoid: 1 at its centre, 0 on its surface, below 0 outside. Its constants
-// q_0 to q_9 are those of 1 - (p - c)^T M (p - c).
+// The quadric Q of eq. 8 for one ellipsoid. Its value is 1 at the ellipsoid's centre, 0 on its
+// surface and negative outside. Q at a point p is 1 - (p - c)^T M (p - c), where c is the centre.
 class Quadric {
  public:
   explicit Quadric(const Ellipsoid& ellipsoid);

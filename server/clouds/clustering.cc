@@ -15,8 +15,9 @@
 namespace thunderhead::clouds {
 namespace {
 
-// Number of points that are assigned together, to the centres at that moment. Within a group, a
-// centre would move by only a small part of its cluster. Larger groups keep more threads busy.
+// The least number of points in a group. All points of a group are assigned to centres before the
+// centres move. This is a good approximation, because a centre moves only a little within one
+// group. Larger groups can use more threads.
 constexpr std::size_t kGroup = 8192;
 
 // Finds the nearest centre, with a grid of cells that hold about two centres each.
@@ -42,7 +43,7 @@ class NearestCentre {
     std::uint32_t nearest = 0;
     const int farthest = std::max({cells_.x, cells_.y, cells_.z});
     for (int ring = 0; ring <= farthest; ++ring) {
-      // This is a lower bound of the distance to the cells of this ring.
+      // The distance to all cells of this ring is at least this value.
       const double aoffset_m = (ring - 1) * cell_m_;
       if (ring > 0 && aoffset_m > 0.0 && aoffset_m * aoffset_m > best) break;
       SearchRing(home, ring, point_m, &best, &nearest);
@@ -100,7 +101,8 @@ class NearestCentre {
     for (std::uint32_t i = starts_[cell]; i < starts_[cell + 1]; ++i) {
       const glm::dvec3 offset_m = centres_m_[members_[i]] - point_m;
       const double square = glm::dot(offset_m, offset_m);
-      // Ties go to the lowest index, so that the order of the search does not matter.
+      // If several centres have the same distance, the one with the lowest index is chosen, so that
+      // the order of the search does not matter.
       if (square < *best || (square == *best && members_[i] < *nearest)) {
         *best = square;
         *nearest = members_[i];
@@ -129,7 +131,8 @@ std::vector<std::uint32_t> Shuffled(std::size_t count, std::uint64_t seed, std::
   return order;
 }
 
-// Writes to `nearest` the centre nearest to each of points[order[first..last)].
+// Writes to `nearest` the index of the centre that is nearest to each of the points order[first] to
+// order[last - 1].
 void Assign(const std::vector<glm::vec3>& points_m, const std::vector<std::uint32_t>& order,
             std::size_t first, std::size_t last, const std::vector<glm::dvec3>& centres_m,
             int threads, std::vector<std::uint32_t>* nearest) {
@@ -168,8 +171,8 @@ class Adaptation {
   // Runs one epoch. Returns false if it was stopped.
   bool RunEpoch(int epoch, const std::function<void(double)>& observer,
                 const std::stop_token& stop) {
-    // n(t) of eq. 22 is the number of points assigned to the centre in all earlier epochs. The
-    // first epoch uses a running count.
+    // For n(t) of eq. 22, the number of points that were assigned to the centre in all earlier
+    // epochs is used. The first epoch uses a running count instead.
     const std::vector<std::int64_t> before = assigned_;
     const std::vector<std::uint32_t> order =
         Shuffled(points_m_.size(), options_.seed, static_cast<std::uint64_t>(epoch) + 1);

@@ -1,6 +1,6 @@
-// The first two phases of Man's approximator: centres by adaptive k-means (eq. 21-22) and their
-// sizes (eq. 23). The clustering is unsupervised and uses positions only. The result is the same
-// for any number of threads.
+// The first two phases of Man's approximator. They find the centres of clusters by adaptive k-means
+// (eq. 21-22), and the sizes of the clusters (eq. 23). Only the positions of the points are used.
+// The result is the same for any number of threads.
 #pragma once
 
 #include <functional>
@@ -23,15 +23,16 @@ struct ClusteringOptions {
 
 struct Clusters {
   std::vector<glm::dvec3> centres_m;
-  std::vector<double> sigmas_m;  // root mean square distances; never below `min_sigma_m`
+  std::vector<double> sigmas_m;  // root mean square distance of each cluster's points from its
+                                 // centre, at least `min_sigma_m`
   int epochs = 0;
 };
 
-// A function that is called from time to time with the share done.
+// A function that is called from time to time with the part of the work done, 0 to 1.
 using ClusteringObserver = std::function<void(double share)>;
 
-// Clusters the points. There must be at least as many points as centres. If asked to stop, it
-// returns the centres found so far.
+// Clusters the points. There must be at least as many points as centres. If `stop` requests it, the
+// function ends early with the centres found so far.
 Clusters Cluster(const std::vector<glm::vec3>& points_m, double min_sigma_m,
                  const ClusteringOptions& options, const ClusteringObserver& observer,
                  const std::stop_token& stop);

@@ -16,14 +16,14 @@ using physics::CounterRandom;
 
 // Minimum ratio of a parent's radius to its child's.
 constexpr double kClearlyLarger = 1.4;
-// A bubble is hidden if its centre is inside another bubble, closer to that bubble's centre than
-// this share of its radius.
+// A bubble counts as hidden if its centre is closer to another bubble's centre than this fraction
+// of the other bubble's radius.
 constexpr double kBuried = 0.82;
-// Minimum distance of two bubbles of one parent, over the sum of their radii.
+// Minimum distance between two bubbles of one parent, divided by the sum of their radii.
 constexpr double kCloseness = 0.55;
-// Depth of a bubble's centre below its parent's surface, in the bubble's own radii.
+// Depth of a bubble's centre below its parent's surface, divided by the bubble's radius.
 constexpr double kSunken = 0.4;
-// Attempts (darts thrown) for each bubble that fits.
+// Number of random positions (darts) that are tried for each bubble that would fit.
 constexpr int kDarts = 8;
 
 glm::dvec3 NormalAt(const Bubble& bubble, const glm::dvec3& point_m) {
@@ -47,7 +47,7 @@ glm::dvec3 HalfExtent_m(const Bubble& bubble) {
   return half_m;
 }
 
-// Returns the direction away from the bubbles that this one touches.
+// Returns the direction that points away from the bubbles that bubble `self` touches.
 glm::dvec3 AwayFromNeighbours(const std::vector<Bubble>& bubbles, std::size_t self) {
   const Bubble& bubble = bubbles[self];
   const double radius_m = RadiusOf(bubble);
@@ -178,7 +178,7 @@ void LayOnLarger(CumulusSurface* surface) {
     Bubble& bubble = bubbles[i];
     bubble.parent = -1;
     const double radius_m = RadiusOf(bubble);
-    // The last match is the smallest bubble, which belongs to the next larger scale.
+    // Bubbles are sorted by size, so the last match is the smallest bubble that is clearly larger.
     for (std::size_t j = 0; j < i; ++j) {
       const double other_m = RadiusOf(bubbles[j]);
       if (other_m < kClearlyLarger * radius_m) break;

@@ -1,6 +1,6 @@
-// A cumulus as a surface: ellipsoids on ellipsoids at several scales (F. Neyret 2000, "A
-// Phenomenological Shader for the Rendering of Cumulus Clouds", 4.3, figure 4 right). This code
-// does not depend on storms, shading or GL.
+// The surface of a cumulus cloud as ellipsoids (bubbles) on larger ellipsoids, at several scales
+// (F. Neyret 2000, "A Phenomenological Shader for the Rendering of Cumulus Clouds", 4.3, figure 4
+// right). This code does not depend on storms, shading or GL.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +16,13 @@ namespace thunderhead::clouds {
 // One ellipsoid of the surface.
 struct Bubble {
   glm::dvec3 centre_m{0.0};
-  glm::dmat3 semi_axes_m{1.0};        // columns
-  glm::dvec3 outward{0.0, 0.0, 1.0};  // N_sh: normal of its parent at this bubble; 0 if it has none
-  int parent = -1;  // index of the bubble on which it is, which comes earlier; -1: none
+  glm::dmat3 semi_axes_m{1.0};        // the columns are the semi-axes
+  glm::dvec3 outward{0.0, 0.0, 1.0};  // N_sh in the paper: normal of the parent at this bubble; 0
+                                      // if undefined
+  int parent = -1;  // index of the larger bubble on which this bubble is; -1 if there is none
 };
 
-// Returns the radius of a ball of the same volume.
+// Returns the radius of a ball with the same volume as the bubble.
 double RadiusOf(const Bubble& bubble);
 // Returns the transformation of world coordinates that makes the bubble the unit ball around the
 // origin.
@@ -31,7 +32,7 @@ Bubble BallOf(const glm::dvec3& centre_m, double radius_m);
 
 struct CumulusSurface {
   std::vector<Bubble> bubbles;   // parents come before their children
-  std::optional<double> base_m;  // everything below is cut off
+  std::optional<double> base_m;  // height of the flat base; everything below is cut off
   double finest_m = 0.0;         // radius of the finest bubbles
 
   bool Empty() const { return bubbles.empty(); }
@@ -47,24 +48,28 @@ SurfaceBox BoxOf(const CumulusSurface& surface);
 
 // Sorts bubbles by size, largest first, and sets every bubble's parent and outward direction. The
 // parent is the smallest clearly larger bubble that the bubble touches. The outward direction is
-// the parent's normal. Without a parent, it points away from the bubbles that the bubble touches.
+// the parent's normal. For a bubble without a parent, it points away from the bubbles that this
+// bubble touches.
 void LayOnLarger(CumulusSurface* surface);
 
 // Parameters of the bubbles that grow on existing bubbles.
 struct Sprouting {
-  double relative_radius = 0.34;  // child's radius over parent's; varied by up to a third
+  double relative_radius = 0.34;  // radius of a new bubble divided by its parent's radius; varied
+                                  // by up to a third
   double cover = 0.8;             // share of the parent's upper side that bubbles cover
-  double lowest_sine = -0.6;      // sine of the normal's elevation; nothing grows below it
-  double min_radius_m = 0.0;      // smaller parents get no bubbles
-  int max_bubbles = 20000;        // limit of the surface; near it, each parent gets fewer
+  double lowest_sine = -0.6;      // the smallest sine of the normal's elevation angle at which
+                                  // bubbles grow
+  double min_radius_m = 0.0;      // parents that are smaller than this get no bubbles
+  int max_bubbles = 20000;        // maximum number of bubbles of the surface; close to it, each
+                                  // parent gets fewer
   std::uint64_t seed = 1;
 };
 
-// Grows bubbles on all visible bubbles from index `first` on. Parents must be set. A seed gives the
-// same bits on every machine.
+// Adds bubbles to all visible bubbles from index `first` on. The parents of these bubbles must be
+// set (LayOnLarger). The result for a seed has the same bits on every machine.
 void Sprout(const Sprouting& sprouting, std::size_t first, CumulusSurface* surface);
 
-// Moves and uniformly scales the surface to fit a box, standing on its floor.
+// Moves and uniformly scales the surface so that it fits into `box` and stands on the box's floor.
 void FitInto(const SurfaceBox& box, CumulusSurface* surface);
 
 }  // namespace thunderhead::clouds

@@ -18,11 +18,12 @@ constexpr std::size_t kMaxCells = std::size_t{1} << 28;
 constexpr int kMaxOctaves = 16;
 constexpr double kMaxWater_kg_per_m3 = 0.05;
 
-// Detail finer than this share of a cell is not visible, and its lattice would be large.
+// The smallest allowed lattice cell of the finest octave, in cells of the grid. Finer detail is not
+// visible, and its lattice would need much memory.
 constexpr double kFinestDetail_cells = 0.25;
 
-// Returns the error. `field` is the parameter's name on the command line and in requests, if it has
-// one there.
+// Returns the error for a parameter that is out of range. `field` is the parameter's name on the
+// command line and in requests, or empty if it has none there.
 absl::Status Wrong(const std::string& what, double value, const std::string& wanted,
                    const std::string& field = "") {
   return base::WithDetails(
@@ -103,7 +104,8 @@ double Middle_m(const volume::RegularGrid& grid, int axis, int cell) {
   return grid.low_corner_m[axis] + (cell + 0.5) * grid.spacing_m[axis];
 }
 
-// Computes the maximum of all ellipsoids' modulations on the slice. It is 0 outside all ellipsoids.
+// Computes the modulation of the noise in slice `z`: the maximum of all ellipsoids' quadrics, or 0
+// outside all ellipsoids.
 void Modulate(const volume::RegularGrid& grid, const std::vector<Quadric>& quadrics, int z,
               std::vector<double>* modulation) {
   std::fill(modulation->begin(), modulation->end(), 0.0);

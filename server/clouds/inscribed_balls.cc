@@ -11,9 +11,11 @@
 namespace thunderhead::clouds {
 namespace {
 
-constexpr float kFar = 1e18F;         // squared metres
-constexpr float kFlatness = 3.0F;     // width over height of the ellipsoids of layers
-constexpr double kMinInCells = 0.75;  // so that neighbours of one cell each touch
+constexpr float kFar = 1e18F;         // initial squared distance in m^2, larger than any distance
+                                      // in the grid
+constexpr float kFlatness = 3.0F;     // width divided by height of the flat ellipsoids
+constexpr double kMinInCells = 0.75;  // minimum radius in cells, with which balls of neighbouring
+                                      // cells touch
 
 // Computes the lower envelope of parabolas along one line of squared distances.
 class LinePass {
@@ -25,8 +27,9 @@ class LinePass {
         places_(line_.size()),
         starts_(line_.size() + 1) {}
 
-  // Runs the pass. `squared` holds `count` values, `stride` apart. Beyond both ends the distance is
-  // 0, because cells there are outside.
+  // Replaces squared distances along one line. `squared` holds `count` values that are `stride`
+  // apart. Beyond both ends of the line the distance is 0, because cells there count as outside the
+  // region.
   void Run(float* squared, std::size_t stride) {
     line_.front() = line_.back() = 0.0F;
     for (int i = 0; i < count_; ++i) line_[Index(i + 1)] = squared[Index(i) * stride];
@@ -53,7 +56,7 @@ class LinePass {
  private:
   static std::size_t Index(int i) { return static_cast<std::size_t>(i); }
 
-  // Returns the intersection of the parabolas rooted at two cells, in cells.
+  // Returns the position, in cells, at which the parabolas of the cells `a` and `b` intersect.
   float Meeting(int a, int b) const {
     const float scale = spacing_m_ * spacing_m_;
     const auto p = static_cast<float>(a);
@@ -75,8 +78,9 @@ struct Candidate {
   std::size_t cell;
 };
 
-// Returns for each cell the larger of two shapes, by volume: the biggest ball and the biggest flat
-// ellipsoid that fit around it. They are sorted from large to small.
+// Returns one shape for each cell inside the region: the biggest ball or the biggest flat ellipsoid
+// that fits around the cell's centre, whichever has the larger volume. The shapes are sorted from
+// large to small.
 std::vector<Candidate> CandidatesOf(const volume::RegularGrid& grid,
                                     const std::vector<float>& values, float level) {
   std::vector<Candidate> candidates;
@@ -107,8 +111,9 @@ glm::dvec3 MiddleOf(const volume::RegularGrid& grid, const glm::ivec3& cell) {
   return grid.low_corner_m + (glm::dvec3(cell) + 0.5) * grid.spacing_m;
 }
 
-// Makes the bubble. The distance ends at the centre of an outside cell, but the cloud ends half a
-// cell before that. No bubble is smaller than a cell.
+// Makes the bubble of a candidate. The candidate's radius reaches to the centre of an outside cell,
+// but the cloud ends half a cell earlier, so the bubble is smaller by half a cell. No bubble is
+// smaller than kMinInCells.
 Bubble BubbleOf(const Candidate& candidate, const volume::RegularGrid& grid) {
   const double flatness = candidate.flatness;
   const double height_m = candidate.radius_m / std::cbrt(flatness * flatness);
@@ -121,7 +126,7 @@ Bubble BubbleOf(const Candidate& candidate, const volume::RegularGrid& grid) {
   return bubble;
 }
 
-// Marks the cells whose centres are in `bubble` scaled by `spacing`.
+// Marks the cells in `covered` whose centres are inside `bubble`, scaled by `spacing`.
 void Cover(const volume::RegularGrid& grid, const Bubble& bubble, double spacing,
            std::vector<bool>* covered) {
   const glm::dvec3 radii_m(bubble.semi_axes_m[0][0], bubble.semi_axes_m[1][1],

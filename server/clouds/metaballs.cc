@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::string_view kFirstLine = "thunderhead balls 1";
 
-// Cut-off radius in units of the Gaussian's s. Values beyond it are less than 1.3e-4 of the
-// centre's.
+// Cut-off radius in units of the Gaussian's s. Beyond it, values are less than 1.3e-4 times the
+// value at the centre.
 constexpr double kGaussianReach = 3.0;
 
 }  // namespace
@@ -31,7 +31,8 @@ double BasisValue(Basis basis, double overlap, double sigma_m, double distance_m
   }
   const double a = distance_m / (overlap * sigma_m);
   const double square = a * a;
-  // The scan of the paper prints the signs of eq. 12 wrongly. The field must fall from 1 to 0.
+  // In the scan of the paper, the signs of eq. 12 are wrong. These signs make the field fall from 1
+  // to 0.
   return 1.0 + square * (-22.0 / 9.0 + square * (17.0 / 9.0 - square * (4.0 / 9.0)));
 }
 

@@ -56,7 +56,8 @@ std::array<double, 4> InterpolationWeights(NoiseInterpolation interpolation, dou
     case NoiseInterpolation::kCubic:
       break;
   }
-  // These are P x^3 + Q x^2 + R x + S of eq. 6, gathered by value.
+  // These are the terms P x^3 + Q x^2 + R x + S of eq. 6, rearranged as factors of the four lattice
+  // values.
   const double square = x * x;
   const double cube = square * x;
   return {2.0 * square - cube - x, cube - 2.0 * square + 1.0, square + x - cube, cube - square};

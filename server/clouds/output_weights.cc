@@ -6,7 +6,7 @@
 namespace thunderhead::clouds {
 namespace {
 
-constexpr int kGainOver = 10;  // iterations over which the gain is measured
+constexpr int kGainOver = 10;  // number of iterations over which the decrease of H is measured
 constexpr int kPowerIterations = 16;
 
 // This margin is needed because the power method underestimates the largest eigenvalue.
@@ -53,7 +53,8 @@ void Residual(const BasisOperator& basis, const std::vector<float>& target,
   for (std::size_t i = 0; i < target.size(); ++i) (*field)[i] = target[i] - (*field)[i];
 }
 
-// Takes projected gradient steps of 1 / eigenvalue, from weights extrapolated by `momentum`.
+// Takes projected gradient steps with the step size 1 / (largest eigenvalue). With `momentum`, each
+// step starts from extrapolated weights.
 OutputWeights Descend(const BasisOperator& basis, const std::vector<float>& target,
                       const WeightOptions& options, bool momentum, const WeightObserver& observer) {
   std::vector<double> sums;
@@ -135,8 +136,8 @@ OutputWeights ByLeastSquares(const BasisOperator& basis, const std::vector<float
       direction[k] = scaled[k] + (gamma / before) * direction[k];
     }
   }
-  // The residual is computed anew, because rounding errors accumulate when it is updated step by
-  // step.
+  // The final residual is computed anew, because rounding errors accumulate in the residual that
+  // the iterations update.
   Residual(basis, target, result.weights, &residual);
   result.errors.back() = SumOfSquares(residual);
   return result;

@@ -1,5 +1,6 @@
-// The third phase of Man's approximator: the metaballs' weights that approximate a field best, by
-// least squares. This code does not depend on the clustering.
+// The third phase of Man's approximator: finds the weights of metaballs with which their sum
+// approximates a field best, in the sense of least squares. H is the sum of squared differences
+// (eq. 20). This code does not depend on the clustering.
 #pragma once
 
 #include <functional>
@@ -13,19 +14,21 @@ namespace thunderhead::clouds {
 struct WeightOptions {
   bool non_negative = false;
   int max_iterations = 200;
-  double min_gain = 1e-4;  // ends when H falls by less than this share in ten iterations
+  double min_gain = 1e-4;  // iterations end when H falls by less than this fraction in ten
+                           // iterations
 };
 
 struct OutputWeights {
   std::vector<double> weights;
-  std::vector<double> errors;  // H after each iteration; the first is that of no balls at all
+  std::vector<double> errors;  // H after each iteration; the first value is H for weights of 0
 };
 
-// A function that is called after each iteration with H. If it returns false, the iteration ends.
+// A function that is called after each iteration with H (`error`). If it returns false, the
+// iterations end.
 using WeightObserver = std::function<bool(int iteration, double error)>;
 
 // Finds the weights by gradient descent on H (eq. 24), with a step size that cannot overshoot. If
-// weights must not be negative, each step ends with a projection.
+// weights must not be negative, negative weights are set to 0 after each step.
 OutputWeights ByGradient(const BasisOperator& basis, const std::vector<float>& target,
                          const WeightOptions& options, const WeightObserver& observer);
 

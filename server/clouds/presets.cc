@@ -17,7 +17,7 @@ double Between(CounterRandom* random, double low, double high) {
   return low + (high - low) * random->Next();
 }
 
-// Returns a grid centred on the origin, from sea level up.
+// Returns a grid that is horizontally centred on the origin and begins at sea level.
 volume::RegularGrid GridOf(const glm::ivec3& cells, double spacing_m) {
   volume::RegularGrid grid;
   grid.cells = cells;
@@ -26,7 +26,7 @@ volume::RegularGrid GridOf(const glm::ivec3& cells, double spacing_m) {
   return grid;
 }
 
-// One heap of bubbles on a flat base: wide ones below, turrets above.
+// The parameters of one heap of bubbles on a flat base, with wide bubbles below and turrets above.
 struct Heap {
   glm::dvec2 middle_m{0.0};
   double base_m = 1000.0;
@@ -36,7 +36,7 @@ struct Heap {
 };
 
 void AddHeap(const Heap& heap, CounterRandom* random, std::vector<Ellipsoid>* ellipsoids) {
-  // The body reaches below the base, which cuts it flat.
+  // The body ellipsoid reaches below the base height, where the cloud is cut off flat.
   ellipsoids->push_back({{heap.middle_m.x, heap.middle_m.y, heap.base_m + 0.1 * heap.height_m},
                          {heap.radius_m, 0.85 * heap.radius_m, 0.55 * heap.height_m},
                          {0.0, 0.0, Between(random, 0.0, 180.0)}});
@@ -96,7 +96,7 @@ CloudShape CumulusField(std::uint64_t seed) {
   CounterRandom random(seed, 3);
   for (int i = 0; i < 60; ++i) {
     Heap heap;
-    // The cube makes many small clouds and few large ones.
+    // The third power of a uniform random number gives many small clouds and few large ones.
     const double size = random.Next();
     heap.radius_m = 220.0 + 700.0 * size * size * size;
     heap.height_m = heap.radius_m * Between(&random, 0.8, 1.3);

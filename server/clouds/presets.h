@@ -1,4 +1,5 @@
-// Named clouds: unions of ellipsoids laid out from a seed. They are the same on every machine.
+// Named cloud shapes (presets): unions of ellipsoids whose positions follow from a seed. The result
+// is the same on every machine.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,8 @@ namespace thunderhead::clouds {
 // Returns "congestus", "cumulus-field" and "fair-weather-cumulus".
 std::vector<std::string> PresetNames();
 
-// Returns the preset. INVALID_ARGUMENT lists the names.
+// Returns the preset with that name. For an unknown name, returns INVALID_ARGUMENT with a list of
+// the names.
 absl::StatusOr<CloudShape> PresetNamed(std::string_view name, std::uint64_t seed);
 
 }  // namespace thunderhead::clouds

@@ -15,13 +15,13 @@
 namespace thunderhead::clouds {
 namespace {
 
-// A margin of empty cells around the cloud also counts in H, so that balls do not spread into clear
-// air.
+// The width, in cells, of a margin of empty cells around the cloud. The margin is part of the
+// fitted box, so that balls do not spread into clear air.
 constexpr int kBorderCells = 2;
 
 struct Training {
   volume::RegularGrid grid;         // the box
-  std::vector<float> values;        // y of eq. 20, over the box
+  std::vector<float> values;        // y of eq. 20, for each cell of the box
   std::vector<glm::vec3> points_m;  // centres of the cells above 0, from the box's middle
   glm::dvec3 middle_m{0.0};
 };

@@ -1,7 +1,8 @@
 // Man's approximator: represents any field on a grid as a sum of metaballs. It uses a network of
 // radial basis functions in three phases (eq. 11-24). The paper leaves the third phase, the output
-// weights, to future work. Here they are found by its gradient rule or by least squares (conjugate
-// gradients). The result is the same for any number of threads.
+// weights, to future work. Here the weights are found by the paper's gradient rule (kGradient) or
+// by least squares with conjugate gradients (kDirect). The result is the same for any number of
+// threads.
 #pragma once
 
 #include <functional>
@@ -20,13 +21,14 @@ enum class Solver { kGradient, kDirect };
 struct FitOptions {
   int balls = 1000;
   Basis basis = Basis::kGaussian;
-  double overlap = 2.5;  // u of eq. 16; the paper has 2
+  double overlap = 2.5;  // u of eq. 16; the paper uses 2
   Solver solver = Solver::kDirect;
   bool non_negative = false;  // weights are 0 or more
   int max_iterations = 200;   // maximum for the third phase
-  double min_gain = 1e-4;     // it ends when H falls by less than this share in ten iterations
+  double min_gain = 1e-4;     // the third phase ends when H falls by less than this fraction in ten
+                              // iterations
   std::uint64_t seed = 1;
-  int threads = 0;  // 0: as many as the machine has
+  int threads = 0;  // number of threads; 0 means one for each processor
 };
 
 // Progress of the fit. `error` is H of eq. 20, or 0 before the third phase.
@@ -38,17 +40,17 @@ struct FitProgress {
 
 struct FitResult {
   MetaballCloud cloud;
-  double error = 0.0;           // H, eq. 20: over all cells of the box, including empty ones
-  double relative_error = 0.0;  // sqrt(H / sum of squares)
+  double error = 0.0;           // H of eq. 20, over all cells of the box, including empty cells
+  double relative_error = 0.0;  // square root of H divided by the sum of the squared values
   std::vector<double> errors;   // H after each iteration of the third phase
-  std::size_t cells = 0;        // K of eq. 20
+  std::size_t cells = 0;        // number of cells in the box, K of eq. 20
   std::size_t cloudy_cells = 0;
-  int epochs = 0;  // epochs of the first phase
+  int epochs = 0;  // number of epochs of the first phase
 };
 
-// Approximates `values` (grid.CellCount(), x fastest, at least 0). Returns INVALID_ARGUMENT if no
-// value is above 0, or if there are more balls than such cells. If `stop` asks to stop, returns the
-// best result so far, or CANCELLED if no centres were found yet.
+// Approximates `values`, one for each cell of `grid`, x fastest, none negative. Returns
+// INVALID_ARGUMENT if no value is above 0, or if there are more balls than cells above 0. If `stop`
+// requests it, returns the best result so far, or CANCELLED if no centres were found yet.
 absl::StatusOr<FitResult> Fit(const volume::RegularGrid& grid, const std::vector<float>& values,
                               const FitOptions& options,
                               const std::function<void(const FitProgress&)>& observer,

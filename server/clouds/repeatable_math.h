@@ -1,5 +1,6 @@
-// Sine, cosine and cube root from the four basic operations only. They are the same, bit for bit,
-// on every machine with IEEE doubles, unlike those of the C library. They are accurate to 1e-15.
+// Sine, cosine and cube root, computed with the four basic operations only. In contrast to the C
+// library's functions, they return the same bits on every machine with IEEE doubles. Their error is
+// at most 1e-15.
 #pragma once
 
 #include <cmath>
@@ -9,8 +10,8 @@ namespace thunderhead::clouds {
 
 // Returns the sine of `degrees`, any finite number.
 inline double SineOfDegrees(double degrees) {
-  // std::remainder is exact. It reduces the angle to within 180 degrees of 0, and the next lines to
-  // within 90.
+  // std::remainder is exact. It reduces the angle to the range from -180 to 180 degrees. The next
+  // lines reduce it to the range from -90 to 90 degrees.
   double rest = std::remainder(degrees, 360.0);
   if (rest > 90.0) rest = 180.0 - rest;
   if (rest < -90.0) rest = -180.0 - rest;

@@ -1,5 +1,5 @@
-// AVIF by libavif: stills with 10 bits per channel without chroma subsampling, so that a clear sky
-// shows no banding. Pure functions, safe from any thread.
+// Encodes and decodes AVIF pictures by libavif. They have 10 bits per channel and no chroma
+// subsampling, so that a clear sky shows no banding. Pure functions, safe from any thread.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace thunderhead::codec {
 
 struct AvifOptions {
   int quantizer = 8;  // 0 (lossless) to 63
-  int speed = 9;      // of the encoder, 0 (slowest) to 10
+  int speed = 9;      // speed of the encoder, 0 (slowest) to 10
 };
 
 absl::StatusOr<std::string> EncodeAvif(const frame::FineImage& image,

@@ -19,7 +19,8 @@ namespace {
 constexpr int kMaxVp9Side_px = 16384;
 constexpr int kVp9Channels = 3;
 constexpr double kPicturesPerSecond = 30.0;
-// Measured in decision 28: a finer quantizer costs bytes without a visible gain in moving pictures.
+// The range of quantizers. Measurements (decision 28) show that a finer quantizer costs bytes
+// without a visible gain in moving pictures.
 constexpr unsigned kFinestQuantizer = 24;
 constexpr unsigned kCoarsestQuantizer = 56;
 // The fastest speed of libvpx.
@@ -32,7 +33,8 @@ absl::Status VpxError(const char* action, vpx_codec_ctx_t* codec) {
                                           detail == nullptr ? "" : detail));
 }
 
-// Uses one thread, because each encoder thread serves many streams.
+// Returns the encoder's configuration. It uses one thread, because each encoder thread serves many
+// streams.
 vpx_codec_enc_cfg_t ConfigFor(int width_px, int height_px) {
   vpx_codec_enc_cfg_t config{};
   vpx_codec_enc_config_default(vpx_codec_vp9_cx(), &config, 0);
@@ -45,7 +47,7 @@ vpx_codec_enc_cfg_t ConfigFor(int width_px, int height_px) {
   // Droppable pictures may never reach the decoder. Without this option, each picture depends on
   // the one before it even if it does not refer to it. The option costs 2 % of the bytes.
   config.g_error_resilient = VPX_ERROR_RESILIENT_DEFAULT;
-  config.kf_mode = VPX_KF_DISABLED;  // only on demand
+  config.kf_mode = VPX_KF_DISABLED;  // key pictures only when they are requested
   config.rc_end_usage = VPX_CBR;
   config.rc_target_bitrate = static_cast<unsigned>(
       std::ceil(Vp9Encoder::BitsPerPicture(width_px, height_px) * kPicturesPerSecond / 1000.0));
@@ -53,14 +55,15 @@ vpx_codec_enc_cfg_t ConfigFor(int width_px, int height_px) {
   config.rc_max_quantizer = kCoarsestQuantizer;
   config.rc_undershoot_pct = 50;
   config.rc_overshoot_pct = 50;
-  config.rc_buf_sz = 1000;  // milliseconds, as in the next two lines
+  config.rc_buf_sz = 1000;  // in milliseconds, as in the next two lines
   config.rc_buf_initial_sz = 500;
   config.rc_buf_optimal_sz = 600;
   config.rc_dropframe_thresh = 0;
   return config;
 }
 
-// Returns the flags for references to and updates of LAST, the only buffer that is used.
+// Returns the flags that say which buffers a picture uses and updates. Only the buffer LAST is
+// used.
 vpx_enc_frame_flags_t FlagsOf(Vp9Kind kind) {
   if (kind == Vp9Kind::kKey) return VPX_EFLAG_FORCE_KF;
   constexpr vpx_enc_frame_flags_t kOnlyLast =
@@ -144,8 +147,8 @@ absl::StatusOr<Vp9Picture> Vp9Encoder::Encode(const frame::RgbImage& picture, Vp
                     image.planes[VPX_PLANE_V], image.stride[VPX_PLANE_V], width_px_, height_px_);
   vpx_codec_ctx_t* const codec = &state_->codec;
   const vpx_enc_frame_flags_t flags = FlagsOf(count_ == 0 ? Vp9Kind::kKey : kind);
-  // Timestamps pretend a regular rate, so that the size of a picture does not depend on the actual
-  // rate.
+  // The timestamps pretend a regular rate. Otherwise the size of a picture would depend on the
+  // actual rate.
   if (vpx_codec_encode(codec, &image, count_++, 1, flags, VPX_DL_REALTIME) != VPX_CODEC_OK) {
     return VpxError("cannot encode the picture as VP9", codec);
   }

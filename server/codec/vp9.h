@@ -1,5 +1,6 @@
-// VP9 by libvpx: one stream of moving pictures that WebCodecs can decode. Colours are those of
-// JPEG: sRGB as full-range BT.601 4:2:0. An encoder or decoder is used by one thread at a time.
+// VP9 by libvpx: one stream of moving pictures that the browsers' WebCodecs can decode. Colours are
+// encoded as in JPEG: sRGB as full-range BT.601 4:2:0. An encoder or decoder is used by one thread
+// at a time.
 #pragma once
 
 #include <cstddef>
@@ -26,12 +27,12 @@ struct Vp9Picture {
 
 class Vp9Encoder {
  public:
-  // Returns the bits of a picture, on average over a second of 30 pictures: at most 2 Mbit/s at
-  // 1280 x 720.
+  // Returns the number of bits per picture that the encoder aims at, as an average over a second of
+  // 30 pictures. For 1280 x 720 pixels it is at most 2 Mbit per second.
   static double BitsPerPicture(int width_px, int height_px);
 
-  // Returns the approximate memory of an encoder for that size. Measured: 27, 78 and 112 MiB at 640
-  // x 360, 1280 x 720 and 1600 x 900.
+  // Returns the approximate memory of an encoder for that size, in bytes. Measured values are 27
+  // MiB at 640 x 360, 78 MiB at 1280 x 720 and 112 MiB at 1600 x 900 pixels.
   static std::size_t BytesFor(int width_px, int height_px);
 
   // Creates an encoder. Both sides must be 1 to 16384 pixels.

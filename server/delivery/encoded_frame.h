@@ -1,4 +1,4 @@
-// An encoded frame, and the reason why a scene has no frame. Plain values.
+// A frame that is ready to be sent, or the reason why a scene has no frame. Plain values.
 #pragma once
 
 #include <chrono>
@@ -18,16 +18,16 @@ namespace thunderhead::delivery {
 
 // A frame ready to be sent.
 struct EncodedFrame {
-  std::uint64_t sequence = 0;  // number of the frame in its session, from 1; set by the hub
+  std::uint64_t sequence = 0;  // number of the frame in its session, counted from 1; set by the hub
   std::uint64_t scene_revision = 0;
-  // The encoded picture, in one of these encodings.
+  // The encoded picture. At most one of these three is not empty.
   std::string jpeg;
   std::string vp9;
   std::string avif;
-  bool key_frame = false;  // whether vp9 holds a key picture
+  bool key_frame = false;  // whether vp9 holds a key picture, which needs no earlier picture
   int width_px = 0;
   int height_px = 0;
-  int full_width_px = 0;  // width of the scene's picture at rest; 0: width_px
+  int full_width_px = 0;  // width of the same scene's picture at rest; 0 means width_px
   scene::Camera camera;
   scene::View view;
   scene::Sun sun;
@@ -36,15 +36,16 @@ struct EncodedFrame {
   bool refined = false;
   bool at_rest = false;  // drawn after the scene had not changed for a while
   int tier = 0;
-  std::optional<Refinement> refinement;  // set for a picture by the reference
+  std::optional<Refinement> refinement;  // set if the Monte Carlo reference drew the picture
   std::optional<AccuracyReport> accuracy;
-  // The time of the scene change that the frame shows. Absent if the scene has changed again since.
+  // The time of the scene change that the frame shows. Absent if the scene has changed again
+  // meanwhile.
   std::optional<std::chrono::steady_clock::time_point> changed_at;
-  // The memory reservation of its pixels and bytes. It is held while a frame made of the picture is
-  // kept or waits to be sent.
+  // The memory reservation for the picture's pixels and encoded bytes. It is held as long as a
+  // frame with this picture is kept or waits to be sent.
   std::shared_ptr<const base::MemoryReservation> memory;
-  // The serialized frame without its sequence. The service serializes it once for all viewers; it
-  // is opaque here.
+  // The message with the frame, without its sequence number. The service serializes it once for all
+  // viewers; the hub only passes it on.
   std::string serialized;
 };
 
@@ -63,9 +64,11 @@ struct Problem {
   Code code = Code::kInternal;
 };
 
-// Returns the problem of a scene that could not be drawn, and counts it among the refusals.
+// Returns the Problem for a scene that could not be drawn because of `why`. Counts it among the
+// server's refused requests.
 Problem ProblemOf(std::uint64_t scene_revision, const absl::Status& why);
-// Returns the problem of a scene whose storm could not be read, and counts it among the refusals.
+// Returns the Problem for a scene whose storm could not be read because of `why`. Counts it among
+// the server's refused requests.
 Problem UnreadableStorm(std::uint64_t scene_revision, const absl::Status& why);
 
 }  // namespace thunderhead::delivery

@@ -5,13 +5,16 @@
 namespace thunderhead::delivery {
 namespace {
 
-// Frames that take little longer than the fastest one do not queue behind one another.
+// A round trip of at most kFree times the shortest one plus kFree_ms means that frames do not queue
+// on the link.
 constexpr double kFree = 1.3;
 constexpr double kFree_ms = 15.0;
-// Frames that take this much longer than the fastest one queue.
+// A round trip of more than kQueued times the shortest one plus kQueued_ms means that frames queue
+// on the link.
 constexpr double kQueued = 2.0;
 constexpr double kQueued_ms = 40.0;
-// The shortest round trip is forgotten slowly because the path may become longer.
+// Factor by which the shortest round trip grows with each acknowledgement, because the network path
+// may become longer.
 constexpr double kForget = 1.005;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The content of a frame and how it was made. Plain values that travel with the frame.
+// What a frame shows and how it was drawn. Plain values that are sent with the frame.
 #pragma once
 
 #include <cstdint>
@@ -20,15 +20,15 @@ struct Modelled {
   renderers::Content content;
   int slices = 0;
   std::uint64_t device_bytes = 0;
-  std::int64_t traced_paths = 0;  // paths that corrected the light
+  std::int64_t traced_paths = 0;  // number of traced paths that corrected the light
   double exposure_ev = 0.0;
 };
 
-// Progress of a picture by the reference.
+// Progress of a picture that the Monte Carlo reference refines.
 struct Refinement {
-  int samples_per_pixel = 0;  // of each pixel
-  // Root of the mean squared standard error, divided by the mean radiance. Absent if there are too
-  // few samples.
+  int samples_per_pixel = 0;  // number of samples of each pixel
+  // Root mean square of the pixels' standard errors, divided by their mean radiance. Absent if the
+  // pixels have too few samples to estimate it.
   std::optional<double> relative_error;
 
   bool operator==(const Refinement&) const = default;

@@ -11,7 +11,7 @@ namespace {
 
 using telemetry::Counted;
 
-// Ranks forms of the same frame; a form with a larger value replaces one with a smaller value.
+// Ranks the forms of a frame. A form with a larger value replaces one with a smaller value.
 int Worth(const FrameForm& form) {
   int worth = kTiers - form.tier;
   if (form.kind == FrameForm::Kind::kJpeg) worth += kTiers;
@@ -36,7 +36,7 @@ absl::StatusOr<std::uint64_t> FrameHub::Join(std::shared_ptr<Viewer> viewer,
     }
     watches_[id].viewer = std::move(viewer);
     watches_[id].wants = wants;
-    // Step 0 is plain JPEG; the further steps are video in each tier.
+    // Step 0 of the estimate is full-size JPEG. The further steps are video in the tiers.
     if (TakesVideo(watches_[id])) watches_[id].link = LinkEstimate(1 + kTiers);
     SetLeastSteps(time_.Now());
   }
@@ -52,7 +52,7 @@ void FrameHub::SetWants(std::uint64_t viewer_id, const ViewerWants& wants) {
   watch.wants = wants;
   watch.waits_until.reset();
   SetLeastSteps(time_.Now());
-  // Lets the viewer take the newest picture again if its own is too small now.
+  // If the viewer's picture is now too small, this lets the viewer take the newest frame again.
   if (frame_ != nullptr && IsTooSmall(watch, *frame_)) watch.last_sequence = 0;
 }
 
@@ -66,7 +66,8 @@ bool FrameHub::IsTooSmall(const Watch& watch, const PublishedFrame& frame) {
     case FrameForm::Kind::kVideo:
       break;
   }
-  return false;  // video needs no resend: the next picture follows on its own, and JPEG at rest
+  // A lower video tier needs no resend: the next video picture follows soon, and JPEG at rest.
+  return false;
 }
 
 void FrameHub::Leave(std::uint64_t viewer_id) {
@@ -103,8 +104,8 @@ std::optional<int> FrameHub::VideoTier(const Watch& watch, const PictureWidth& w
 }
 
 bool FrameHub::KeepsStill(const Watch& watch, const EncodedFrame& next, Time now) const {
-  // Reference frames come too fast to wait for stills. On a busy machine stills of any frame may be
-  // late.
+  // Frames by the Monte Carlo reference come too fast to wait for their stills. The stills of other
+  // frames may be late on a busy machine, so the wait is limited.
   if (next.refinement.has_value()) return false;
   if (stills_due_since_.has_value() && now - *stills_due_since_ > kLongestForStill) return false;
   const int for_window = TierForWindow(WidthOf(next), watch.wants.window_width_px);
@@ -130,8 +131,8 @@ std::optional<FrameHub::Offer> FrameHub::VideoFor(const Watch& watch, const Publ
       watch.place.CanTake(tier, picture)) {
     return Offer{newest, form, picture};
   }
-  // Offers the base picture that the viewer has missed, because it can decode no newer picture
-  // without it.
+  // Offers the base picture that the viewer has missed. Without it, the viewer can decode no newer
+  // picture.
   const VideoStream& stream = streams_[static_cast<std::size_t>(tier)];
   const VideoPicture& base = stream.NewestBase();
   // The base may be a key picture that no viewer requested, for example after a change of size.
@@ -162,8 +163,8 @@ std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedF
   const bool awaits_still = watch.wants.takes_stills && frame.StillFollows();
   if (frame.Rests() && !awaits_still) return if_wanted(jpeg);
   if (auto video = VideoFor(watch, frame, *video_tier); video.has_value()) return video;
-  // Sends small JPEG pictures until the next key picture. A viewer with the stream's newest base
-  // picture needs none.
+  // The viewer gets small JPEG pictures until the next key picture. A viewer that has the stream's
+  // base picture needs none.
   if (watch.place.BaseOf(*video_tier) != 0 || !is_new) return std::nullopt;
   return Offer{
       described.sequence,
@@ -230,7 +231,7 @@ std::optional<FrameEvent> FrameHub::NotMade(std::uint64_t viewer_id, const Offer
   return event;
 }
 
-// Runs without the lock because a tier that no viewer needed before is encoded now.
+// Runs without the lock, because a JPEG tier that no viewer has needed so far is encoded here.
 std::shared_ptr<const EncodedFrame> FrameHub::Made(const Offer& offer, PublishedFrame& published) {
   switch (offer.form.kind) {
     case FrameForm::Kind::kVideo:
@@ -251,7 +252,8 @@ bool FrameHub::Took(Watch& watch, const Offer& offer, Time now) {
   }
   const EncodedFrame& frame = is_video ? *offer.picture.frame : frame_->Described();
   if (!VideoTier(watch, WidthOf(frame_->Described())).has_value()) watch.place.Leave();
-  // A new viewer has missed no frames, and a better form of the same frame is not another frame.
+  // Only a viewer that has received a frame can miss one. A better form of the same frame is not
+  // another frame.
   const bool has_had_any = watch.last_sequence > 0;
   if (has_had_any && offer.sequence > watch.last_sequence) {
     Counted().frames_skipped.Add(offer.sequence - watch.last_sequence - 1);

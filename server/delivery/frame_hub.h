@@ -1,9 +1,9 @@
 // Distributes a session's newest frame to its viewers. Each viewer has at most two unacknowledged
 // JPEG frames or eight video frames. A slow viewer skips frames and never slows another viewer. A
-// viewer with a slow link gets video if it can decode it, or else smaller pictures. Each form of a
-// frame is encoded once for all viewers. The hub keeps only one frame, one problem and the newest
-// base picture of each video stream. Safe from any thread. Does not know how frames are drawn,
-// encoded or sent.
+// viewer with a slow link gets video if its client can decode video, or else smaller pictures. Each
+// form (encoding and size) of a frame is encoded once for all viewers. The hub keeps only the
+// newest frame, the newest problem and the newest base picture of each video stream. Safe from any
+// thread. Does not know how frames are drawn, encoded or sent.
 #pragma once
 
 #include <algorithm>
@@ -35,27 +35,27 @@ using FrameEvent = std::variant<std::shared_ptr<const EncodedFrame>, Problem>;
 
 // A viewer's settings for the frames that it receives.
 struct ViewerWants {
-  int window_width_px = 0;         // 0: the width that the scene asks for
-  double frames_per_second = 0.0;  // maximum rate; 0: unlimited
+  int window_width_px = 0;         // 0 means the width that the scene asks for
+  double frames_per_second = 0.0;  // maximum rate; 0 means no limit
   bool adapts = false;             // accepts smaller pictures on a slow link
-  bool takes_video = false;        // accepts VP9 video if `adapts` is set
-  bool takes_stills = false;       // accepts AVIF
+  bool takes_video = false;        // accepts VP9 video; has an effect only if `adapts` is set
+  bool takes_stills = false;       // accepts AVIF stills (frames at rest in higher quality)
   bool saves_bytes = false;        // prefers video even on a fast link
 
   bool operator==(const ViewerWants&) const = default;
 };
 
-// A viewer of the session. The hub calls Wake when Take may return something or when the hub has
-// closed. It does so from any thread and without its lock.
+// A viewer of the session. The hub calls Wake when Take may return something, or when the hub has
+// closed. It calls Wake from any thread, without holding its lock.
 class Viewer {
  public:
   virtual ~Viewer() = default;
   virtual void Wake() = 0;
 };
 
-// A picture that was encoded for a stream.
+// A picture that was encoded for a video stream.
 struct EncodedVideo {
-  VideoOrder order;  // may be a key picture although another kind was ordered
+  VideoOrder order;  // its kind may be kKey although another kind was ordered
   EncodedFrame frame;
 };
 
@@ -69,27 +69,31 @@ class FrameHub {
 
   // Maximum number of unacknowledged JPEG frames per viewer. Video uses FlightWindow.
   static constexpr std::size_t kMaxInFlight = 2;
-  // If at least this many viewers can decode video, all of them get video: one encoding then costs
-  // less than sending JPEG to all.
+  // If at least this many viewers can decode video, all of these get video. One video encoding then
+  // costs less than sending JPEG to each of them.
   static constexpr int kManyForVideo = 12;
-  // Maximum time that a viewer with a still waits for the next still of the same scene.
+  // Maximum time that a viewer that has a still keeps it while waiting for the next still of the
+  // same scene.
   static constexpr std::chrono::seconds kLongestForStill{2};
 
   // Both callbacks are called without the lock. The hub calls `on_demand` when a viewer joins,
-  // leaves or becomes ready for another frame. It calls `on_wait` when WakeWaiting must be called
-  // soon. `time` must outlive the hub; functions without an `at` argument read it.
+  // leaves or becomes ready for another frame. It calls `on_wait` when a caller must call
+  // WakeWaiting soon. `time` must outlive the hub. Functions use its current time if their argument
+  // `at` is absent.
   explicit FrameHub(
       std::function<void()> on_demand, std::function<void()> on_wait = [] {},
       const base::TimeSource& time = base::SteadyTime());
 
-  // Returns the viewer's id, or the reason given to Close. Does not call Wake.
+  // Adds a viewer and returns its id. Returns the reason given to Close if the hub is closed. Does
+  // not call Wake.
   absl::StatusOr<std::uint64_t> Join(std::shared_ptr<Viewer> viewer, const ViewerWants& wants = {});
   void SetWants(std::uint64_t viewer_id, const ViewerWants& wants);
   void Leave(std::uint64_t viewer_id);
 
-  // Returns the newest frame or problem that the viewer has not received. Returns none while too
-  // many of the viewer's frames are in flight (taken but not acknowledged), or if its maximum frame
-  // rate does not allow another frame yet. A frame that cannot be encoded is not in flight.
+  // Returns the newest frame or problem that the viewer has not received yet. Returns none while
+  // too many of the viewer's frames are in flight (taken but not acknowledged). Also returns none
+  // while the viewer's maximum frame rate does not allow another frame. A frame that cannot be
+  // encoded is not in flight.
   std::optional<FrameEvent> Take(std::uint64_t viewer_id, std::optional<Time> at = std::nullopt);
 
   // Acknowledges all frames up to `sequence`. Wakes the viewer only if it can now take something.
@@ -102,8 +106,8 @@ class FrameHub {
   // picture.
   void LoseVideo(std::uint64_t viewer_id, std::optional<Time> at = std::nullopt);
 
-  // Wakes the viewers with a limited frame rate whose next frame is due. Returns when the next
-  // viewer is due.
+  // Wakes the viewers with a limited frame rate whose next frame is due. Returns when the next of
+  // these viewers is due.
   std::optional<Time> WakeWaiting(Time now);
 
   // Returns the video pictures to encode of a frame before it is published. Viewers get a frame at
@@ -111,24 +115,25 @@ class FrameHub {
   // video if they have no still of the scene, and otherwise wait for the frame's still.
   std::vector<VideoOrder> OrderVideo(const EncodedFrame& described, bool still_follows,
                                      std::optional<Time> at = std::nullopt);
-  // Replaces the newest frame. `described` has no picture yet; `encode` makes one for each tier
-  // that a viewer needs now. Returns the frame's sequence.
+  // Replaces the newest frame and returns its sequence. `described` is the frame without a picture.
+  // `encode` makes the JPEG of each tier that a viewer needs.
   std::uint64_t Publish(EncodedFrame described, EncodeFrame encode = nullptr,
                         std::vector<EncodedVideo> video = {}, bool still_follows = false,
                         std::optional<Time> at = std::nullopt);
-  // These calls have an effect only if the newest frame has that sequence. AddStill adds its still
-  // in a tier. NoStills records that it gets no still. Rest records that no newer frame has come
-  // for a while.
+  // The next three calls have an effect only if the newest frame has that sequence. AddStill adds
+  // the frame's still in one tier. NoStills records that the frame gets no stills. Rest records
+  // that no newer frame has come for a while.
   void AddStill(std::uint64_t sequence, int tier, EncodedFrame still);
   void NoStills(std::uint64_t sequence);
   void Rest(std::uint64_t sequence);
-  // Replaces the newest problem. A frame of the same or a newer revision ends the problem.
+  // Replaces the newest problem. The problem ends when a frame of the same or a newer revision is
+  // published.
   void Publish(Problem problem);
-  // Does the same but wakes no viewer, because a viewer may be taking the frame that has the
-  // problem.
+  // Does the same as Publish(Problem) but wakes no viewer. It is called while a viewer takes the
+  // frame that turns out to have the problem.
   void Note(Problem problem);
 
-  // Drops the newest frame if there are no viewers. Returns true if a frame was dropped.
+  // Drops the newest frame if there are no viewers. Returns true if it dropped a frame.
   bool DropUnwatched();
 
   // Ends all viewers' streams with `why`. Later calls do not change the reason.
@@ -140,7 +145,8 @@ class FrameHub {
   std::size_t Viewers() const;
   // Returns true if a viewer can be sent another frame now.
   bool HasReadyViewer() const;
-  // Returns the tiers in which viewers of a frame of that width take stills now.
+  // Returns, for each tier, whether a viewer now takes stills in that tier. `width` is the width of
+  // the frame.
   std::array<bool, kTiers> StillTiers(const PictureWidth& width) const;
   bool IsNewest(std::uint64_t sequence) const;
 
@@ -148,10 +154,10 @@ class FrameHub {
   struct Sent {
     std::uint64_t sequence = 0;
     Time at;
-    bool moving = false;  // true for anything but a still picture
+    bool moving = false;  // true for every form except a still
     bool video = false;
     bool was_last = false;  // the window was full, so that no further frame could be sent meanwhile
-    std::optional<Time> changed_at;  // set for the first frame of a revision
+    std::optional<Time> changed_at;  // set if it is the first frame of its revision that was sent
   };
   struct Watch {
     std::shared_ptr<Viewer> viewer;
@@ -162,12 +168,12 @@ class FrameHub {
     std::deque<Sent> in_flight;  // oldest first
     std::uint64_t last_sequence = 0;
     FrameForm last_form;
-    std::optional<Time> waits_until;  // time of its next frame
+    std::optional<Time> waits_until;  // time at which its maximum frame rate allows the next frame
     std::uint64_t last_problem = 0;
     std::uint64_t last_revision = 0;
   };
 
-  // A frame that a viewer can take, and the form in which it takes it.
+  // A frame that a viewer can take, and the form in which the viewer takes it.
   struct Offer {
     std::uint64_t sequence = 0;
     FrameForm form;
@@ -176,7 +182,8 @@ class FrameHub {
 
   static bool TakesVideo(const Watch& watch);
   static int JpegTier(const Watch& watch, const PublishedFrame& frame);
-  // Returns true if the viewer's picture is smaller than the one that it would get now.
+  // Returns true if the newest picture that the viewer has is smaller than the one that it would
+  // get now.
   static bool IsTooSmall(const Watch& watch, const PublishedFrame& frame);
   // Returns the tier of the viewer's video stream for a frame of that width, or none if the viewer
   // gets JPEG.
@@ -185,19 +192,19 @@ class FrameHub {
   static bool IsReady(const Watch& watch, Time now);
   // The following functions need mutex_.
   //
-  // Returns true if the viewer has a still of the frame's scene and waits for the frame's own
-  // still. Any other form of the frame would look worse.
+  // Returns true if the viewer shows a still of the frame's scene and waits for the still of frame
+  // `next`. Until then, any other form of the frame would look worse.
   bool KeepsStill(const Watch& watch, const EncodedFrame& next, Time now) const;
   std::optional<Offer> OfferFor(const Watch& watch, PublishedFrame& frame, Time now) const;
   std::optional<Offer> VideoFor(const Watch& watch, const PublishedFrame& frame, int tier) const;
   std::optional<Offer> NextFor(const Watch& watch, Time now) const;
   bool HasFor(const Watch& watch, Time now) const;
   static std::shared_ptr<const EncodedFrame> Made(const Offer& offer, PublishedFrame& published);
-  // Returns the current problem, if any, in place of an offered frame that could not be made. Must
-  // be called without mutex_.
+  // Returns the current problem, if any, when an offered frame could not be encoded. Must be called
+  // without mutex_.
   std::optional<FrameEvent> NotMade(std::uint64_t viewer_id, const Offer& offer);
-  // Records what the viewer took. Returns true if the viewer must be woken later for its next
-  // frame.
+  // Records that the viewer took the offer. Returns true if the viewer must be woken later for its
+  // next frame.
   bool Took(Watch& watch, const Offer& offer, Time now);
   void SetLeastSteps(Time now);
   std::shared_ptr<PublishedFrame> Newest(std::uint64_t sequence) const;
@@ -210,13 +217,14 @@ class FrameHub {
   mutable std::mutex mutex_;
   std::map<std::uint64_t, Watch> watches_;
   std::shared_ptr<PublishedFrame> frame_;
-  // Set since frames of the newest scene have been published whose stills have not come.
+  // Set since frames of the newest scene were published whose stills have not arrived yet.
   std::optional<Time> stills_due_since_;
   std::array<VideoStream, kTiers> streams_;
   std::optional<Problem> problem_;
   std::uint64_t problem_count_ = 0;
   std::uint64_t frame_count_ = 0;
-  // Viewer ids are random because a client that knows an id could acknowledge frames for it.
+  // Viewer ids are random, because a client that guesses another viewer's id could acknowledge
+  // frames for it.
   std::random_device random_;
   absl::Status closed_because_;
 };

@@ -26,11 +26,12 @@ void LinkEstimate::SetLeast(int step, Time now) {
 }
 
 void LinkEstimate::Acknowledged(Time now, Time sent_at) {
-  // If a frame was in flight all the time, the sample is the time from one arrival to the next.
+  // If a frame was in flight since the last arrival, the sample is the time from that arrival to
+  // this one.
   const bool waited = last_acknowledged_.has_value() && sent_at < *last_acknowledged_;
   const double sample_ms = Milliseconds(waited ? now - *last_acknowledged_ : now - sent_at);
   last_acknowledged_ = now;
-  if (sent_at < changed_at_) return;  // the frame belongs to another step
+  if (sent_at < changed_at_) return;  // the frame was sent with another step
   constexpr double kWeight = 0.3;
   frame_ms_ = samples_ == 0 ? sample_ms : (1.0 - kWeight) * frame_ms_ + kWeight * sample_ms;
   if (++samples_ >= kFewestSamples) Judge(now);

@@ -1,8 +1,8 @@
-// Chooses by how much to reduce moving pictures for one viewer's link, from the times at which
-// frames were sent and acknowledged. A plain value; the time is an argument.
+// Chooses how much smaller the moving pictures for one viewer must be because of its link. It uses
+// the times at which frames were sent and acknowledged. A plain value; the time is an argument.
 //
-// A link with low bandwidth and one with a long delay look alike because frames take long on both.
-// So the estimate tries the next step and keeps it if it helps.
+// Frames take long both on a link with low bandwidth and on a link with a long delay. To tell the
+// two apart, the estimate tries the next smaller step and keeps it only if frames arrive faster.
 #pragma once
 
 #include <chrono>
@@ -18,25 +18,25 @@ class LinkEstimate {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // If frames take longer than this on a link, the next step is tried, so that at least 10 frames a
-  // second arrive.
+  // If frames take longer than this to arrive, the next step is tried. The aim is at least 10
+  // frames a second.
   static constexpr std::chrono::milliseconds kLongest{100};
-  // Time until the previous step is tried again. Each failed trial doubles it.
+  // Time until the larger pictures of the previous step are tried again. Each failed trial doubles
+  // the time.
   static constexpr std::chrono::seconds kShortestWait{4};
   static constexpr std::chrono::seconds kLongestWait{64};
 
-  // `steps` is the number of steps; each has fewer bytes than the one before. By default the steps
-  // are the tiers.
+  // `steps` is the number of steps. Each step has fewer bytes per picture than the step before. By
+  // default, the steps are the tiers.
   explicit LinkEstimate(int steps = kTiers) : steps_(steps) {}
 
-  // Sets the lowest step that may be used.
+  // Sets the first step (the largest pictures) that may be used.
   void SetLeast(int step, Time now);
 
   // Records that a frame sent at `sent_at` was acknowledged.
   void Acknowledged(Time now, Time sent_at);
 
-  // Returns the step for moving pictures. Stills are sent in full because they are worth waiting
-  // for.
+  // Returns the step for moving pictures. Stills ignore it, because they are worth waiting for.
   int step() const { return step_; }
 
  private:
@@ -53,8 +53,8 @@ class LinkEstimate {
   int steps_;
   int least_ = 0;
   int step_ = 0;
-  int samples_ = 0;        // samples of this step
-  double frame_ms_ = 0.0;  // smoothed time from one frame's arrival to the next
+  int samples_ = 0;        // number of frames acknowledged since this step began
+  double frame_ms_ = 0.0;  // smoothed time from one frame's arrival to the next, in ms
   std::optional<Time> last_acknowledged_;
   Time changed_at_;
   std::optional<Trial> trial_;
@@ -62,15 +62,15 @@ class LinkEstimate {
   std::optional<Time> shrink_again_at_;
 };
 
-// The width of a picture, and of the picture at rest that it stands for, which may be wider.
+// The width of a picture, and the width that the same picture has at rest, which may be larger.
 struct PictureWidth {
   int px = 0;
   int full_px = 0;
 };
 
-// Returns the tier of a picture for a window: the smallest one that fills it. It is 0 if the
-// window's width is unknown (0). A moving picture has the tier that it will have at rest, unless it
-// would then have less than half of the window's pixels.
+// Returns the tier of a picture for a window: the smallest size that still fills the window.
+// Returns 0 if `window_px` is 0 (unknown). A moving picture gets the tier that it will have at
+// rest, unless it would then have less than half of the window's pixels.
 int TierForWindow(const PictureWidth& picture, int window_px);
 
 }  // namespace thunderhead::delivery

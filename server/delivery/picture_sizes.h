@@ -1,4 +1,5 @@
-// A picture in the sizes of all tiers. Each size is made on its first use. Safe from any thread.
+// A picture in the sizes of all tiers (link_estimate.h). Each size is computed when it is first
+// used. Safe from any thread.
 #pragma once
 
 #include <array>

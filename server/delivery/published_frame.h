@@ -1,5 +1,6 @@
 // The newest frame of a session in all forms that viewers take: JPEG in several sizes, video
-// pictures, and stills of higher quality, which come a little later. Safe from any thread.
+// pictures, and stills. Stills have higher quality and are added a little later. Safe from any
+// thread.
 #pragma once
 
 #include <array>
@@ -14,8 +15,8 @@
 
 namespace thunderhead::delivery {
 
-// Makes a frame with its picture as JPEG in a tier (link_estimate.h). Returns none on failure,
-// which it reports itself.
+// Encodes a frame's picture as JPEG in a tier (link_estimate.h). Returns none on failure, after
+// reporting the failure itself.
 using EncodeFrame =
     std::function<std::optional<EncodedFrame>(const EncodedFrame& described, int tier)>;
 
@@ -35,24 +36,25 @@ struct FrameForm {
 class PublishedFrame {
  public:
   // `described` has no picture. Without `encode`, Jpeg returns `described` itself for every tier.
-  // If `still_follows`, a call of SetStill or NoStills must follow.
+  // If `still_follows` is true, a call of SetStill or NoStills must follow.
   PublishedFrame(EncodedFrame described, EncodeFrame encode, VideoPictures video = {},
                  bool still_follows = false);
 
   const EncodedFrame& Described() const { return described_; }
 
-  // Returns the frame as JPEG, encoded on its first use. Null if that fails.
+  // Returns the frame as JPEG, encoded when it is first used. Returns null if the encoding fails.
   std::shared_ptr<const EncodedFrame> Jpeg(int tier);
 
   const VideoPicture& Video(int tier) const { return video_[static_cast<std::size_t>(tier)]; }
 
   void SetStill(int tier, EncodedFrame still);
   std::shared_ptr<const EncodedFrame> Still(int tier) const;
-  // Records that there will be no stills after all.
+  // Records that the frame gets no stills although they were announced.
   void NoStills();
   bool StillFollows() const;
 
-  // Records that no newer frame has come for a while, so that viewers get this one in full quality.
+  // Records that no newer frame has come for a while, so that viewers get this frame in full
+  // quality.
   void Rest();
   bool Rests() const;
 
@@ -60,7 +62,7 @@ class PublishedFrame {
   const EncodedFrame described_;
   const EncodeFrame encode_;
   const VideoPictures video_;
-  std::mutex encoding_;  // held while a JPEG is made
+  std::mutex encoding_;  // held while a JPEG is encoded
   std::array<std::shared_ptr<const EncodedFrame>, kTiers> jpegs_;
   mutable std::mutex mutex_;  // guards the members below
   std::array<std::shared_ptr<const EncodedFrame>, kTiers> stills_;

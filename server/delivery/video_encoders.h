@@ -1,5 +1,5 @@
-// The encoders of a session's video streams, one per tier. They exist while there are viewers. Safe
-// from any thread; pictures are encoded one after another.
+// The encoders of a session's video streams, one per tier (link_estimate.h). They exist only while
+// there are viewers. Safe from any thread; pictures are encoded one after another.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ namespace thunderhead::delivery {
 
 class VideoEncoders {
  public:
-  // Encodes the picture, which must have the size of the order's tier. If the size is new, it
-  // becomes a key picture even if another kind was ordered, and `order` is updated.
+  // Encodes a picture, which must have the size of the order's tier. If that size is new to the
+  // encoder, the picture becomes a key picture whatever was ordered, and `order` is updated.
   // RESOURCE_EXHAUSTED if `memory` has too little memory left for an encoder.
   absl::StatusOr<codec::Vp9Picture> Encode(const frame::RgbImage& picture, VideoOrder* order,
                                            base::MemoryBudget& memory);

@@ -1,6 +1,6 @@
-// The order of a stream's pictures, and one viewer's place in it. A video picture needs the base
-// picture before it, so a viewer that missed one waits for a key picture. Plain values; the time is
-// an argument.
+// The order of the pictures of a video stream, and one viewer's place in the stream. A video
+// picture can be decoded only after its base picture. So a viewer that missed a base picture waits
+// for a key picture. Plain values; the time is an argument.
 #pragma once
 
 #include <chrono>
@@ -20,7 +20,7 @@ struct VideoOrder {
   codec::Vp9Kind kind = codec::Vp9Kind::kKey;
 };
 
-// A picture of a stream. Pictures are identified by the sequences of their frames.
+// A picture of a stream. It is identified by the sequence number of its frame.
 struct VideoPicture {
   std::shared_ptr<const EncodedFrame> frame;
   std::uint64_t needs = 0;  // sequence of the base picture that it needs; 0 for a key picture
@@ -33,21 +33,23 @@ class VideoPlace {
   using Time = std::chrono::steady_clock::time_point;
 
   // A viewer that lost the stream waits this long for its next key picture. The wait doubles with
-  // each loss within kSound of joining, because key pictures cost all viewers bandwidth.
+  // each loss that comes within kSound of joining the stream, because key pictures cost all viewers
+  // bandwidth.
   static constexpr std::chrono::seconds kShortestWait{2};
   static constexpr std::chrono::seconds kLongestWait{64};
   static constexpr std::chrono::seconds kSound{30};
 
   // Moves the viewer to the stream of that tier.
   void Enter(int tier);
-  // Returns the base picture of `tier` that the viewer has; 0: none.
+  // Returns the sequence of the base picture that the viewer has in the stream of `tier`; 0 if it
+  // has none.
   std::uint64_t BaseOf(int tier) const { return tier == tier_ ? base_ : 0; }
   bool CanTake(int tier, const VideoPicture& picture) const {
     return picture.needs == 0 || picture.needs == BaseOf(tier);
   }
   void Took(std::uint64_t sequence, const VideoPicture& picture, Time now);
 
-  // Records that the viewer leaves the stream; it rejoins with a key picture.
+  // Records that the viewer leaves the stream. It needs a key picture to rejoin.
   void Leave() { base_ = 0; }
   // Records that the viewer missed a base picture or could not decode one.
   void Lost(Time now);
@@ -61,28 +63,28 @@ class VideoPlace {
   std::chrono::seconds wait_ = kShortestWait;
 };
 
-// A stream of one tier.
+// The video stream of one tier.
 class VideoStream {
  public:
   using Time = VideoPlace::Time;
 
-  // Minimum time between key pictures that viewers ask for.
+  // Minimum time between key pictures that are encoded because viewers ask for them.
   static constexpr std::chrono::seconds kKeyPause{1};
-  // Maximum number of consecutive droppable pictures, which serve viewers that cannot take every
-  // picture.
+  // Maximum number of consecutive droppable pictures. Viewers that cannot take every picture skip
+  // these.
   static constexpr int kMaxDroppable = 3;
 
   // A viewer of the stream at the time when a picture is drawn.
   struct Follower {
     VideoPlace* place = nullptr;
-    bool is_ready = false;            // can take a frame now
-    std::uint64_t last_sequence = 0;  // last frame that it has taken, in any form
+    bool is_ready = false;            // whether it can take a frame now
+    std::uint64_t last_sequence = 0;  // sequence of the last frame that it has taken, in any form
   };
-  // Starts collecting the stream's followers with Ask; then Next returns the kind of picture to
-  // encode.
+  // Starts collecting the stream's followers, which are then added with Ask. After that, Next
+  // returns the kind of picture to encode.
   void Begin() { asked_ = Asked(); }
   void Ask(int tier, const Follower& follower, Time now);
-  // Returns none if no viewer could take the picture.
+  // Returns the kind of picture to encode, or none if no viewer could take a picture.
   std::optional<codec::Vp9Kind> Next(Time now) const;
 
   // Adds the picture that was encoded for the frame of that sequence.
@@ -90,7 +92,7 @@ class VideoStream {
                    std::shared_ptr<const EncodedFrame> frame, Time now);
 
   // Returns the newest base picture, for viewers that have not taken it yet. Its frame is null
-  // before the first.
+  // before the first base picture.
   const VideoPicture& NewestBase() const { return base_; }
   std::uint64_t NewestBaseSequence() const { return base_sequence_; }
 
@@ -104,7 +106,7 @@ class VideoStream {
   Asked asked_;
   VideoPicture base_;
   std::uint64_t base_sequence_ = 0;
-  int droppable_ = 0;  // number since the newest base picture
+  int droppable_ = 0;  // number of droppable pictures since the newest base picture
   std::optional<Time> key_at_;
 };
 

@@ -21,7 +21,7 @@ using reference::Optics;
 constexpr std::size_t kGroupsOfTexture = 4;
 constexpr std::size_t kMaxGroups = 8;
 
-// The layout of GroupOptics in paths/scattering.glsl.
+// A group's optics in the layout of GroupOptics in paths/scattering.glsl.
 struct GroupTexels {
   float albedo[3];
   float choice_albedo;
@@ -31,8 +31,8 @@ struct GroupTexels {
   std::int32_t colors;
 };
 
-// Returns the values of both optics interleaved. For a medium without similar optics, each value
-// appears twice.
+// Returns the values of the exact and the similar optics interleaved. If the medium has no similar
+// optics, each exact value appears twice.
 std::vector<float> Interleaved(const std::vector<float>& exact, const std::vector<float>& similar) {
   std::vector<float> both;
   both.reserve(2 * exact.size());
@@ -43,11 +43,12 @@ std::vector<float> Interleaved(const std::vector<float>& exact, const std::vecto
   return both;
 }
 
-// The tables of all phase functions one after another, preceded by their common angles.
+// The tables of all phase functions one after another. They are preceded by the angles, which all
+// tables have in common.
 class Tables {
  public:
-  // Adds the tables of a phase function. Returns the index at which its first colour begins, or -1
-  // if it has no table.
+  // Adds the tables of a phase function. Returns the index of the table of its first colour, or -1
+  // if the function has no table.
   std::int32_t Add(const reference::SampledPhase& phase) {
     if (phase.Tables() == 0) return -1;
     const auto [found, is_new] = firsts_.emplace(&phase, static_cast<std::int32_t>(values_.size()));

@@ -1,4 +1,5 @@
-// A reference medium on the device, in the layout that shaders/paths/ reads.
+// A medium of the path tracer (reference::Medium) on the device, in the layout that shaders/paths/
+// reads.
 #pragma once
 
 #include <vector>
@@ -21,7 +22,7 @@ class DeviceMedium {
   // Returns the defines of paths/trace.comp.
   gl::Defines Defines() const { return {{"GROUPS", groups_}}; }
   void Bind(const gl::Program& program) const;
-  // Converts world coordinates to units of bricks from the first brick's lower corner.
+  // Converts world coordinates to brick units relative to the lower corner of the first brick.
   glm::dvec3 InBricks(const glm::dvec3& point_m) const {
     return (point_m - brick_low_m_) / brick_m_;
   }
@@ -35,7 +36,7 @@ class DeviceMedium {
   int groups_;
   glm::dvec3 brick_low_m_;
   glm::dvec3 brick_m_;
-  glm::dvec3 box_low_;  // in bricks
+  glm::dvec3 box_low_;  // box corners in units of bricks
   glm::dvec3 box_high_;
   glm::ivec3 cells_;
   glm::ivec3 bricks_;

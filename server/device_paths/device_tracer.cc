@@ -22,17 +22,17 @@
 namespace thunderhead::device_paths {
 namespace {
 
-// The states of this many paths take at most 25 MB.
+// Number of paths traced at once. Their states take at most 25 MB.
 constexpr std::size_t kPathsOfChunk = 65536;
-// The guessed cost of a pass with kGroupsOfBlock work groups, until one is measured. GPUs run many
-// groups at a time. The last paths need only a few groups, so their cost per group must not stand
-// for that of a full pass.
+// The guessed cost of kGroupsOfBlock work groups, used until a cost was measured. GPUs run many
+// groups at the same time. The last paths need only a few groups. Their cost per group would
+// overestimate that of a full pass.
 constexpr gl::PieceCost kBlockOfPaths{"paths", 1e7};
 constexpr int kGroupsOfBlock = 64;
-// Number of paths that the host begins or ends per task.
+// Number of paths that the host begins or ends in one task.
 constexpr std::size_t kPathsOfTask = 256;
 
-// Runs work(i) for all i before `count` on `threads` threads.
+// Runs work(i) for i = 0 to `count` - 1 on `threads` threads.
 template <typename Work>
 void ForPaths(int threads, std::size_t count, const Work& work) {
   reference::ParallelForBlocks(threads, count, kPathsOfTask,
@@ -41,8 +41,8 @@ void ForPaths(int threads, std::size_t count, const Work& work) {
                                });
 }
 
-// Separates the host's random streams from the device's, which use the sample's number as their
-// last word.
+// A bit that separates the host's random streams from those of the device, which end with the
+// number of the sample.
 constexpr std::uint64_t kHostStreams = std::uint64_t{1} << 63U;
 
 glm::uvec3 StreamOf(std::size_t ray, std::uint32_t sample, std::uint32_t kind,
@@ -68,7 +68,8 @@ struct DeviceTracer::Begun {
 
 absl::StatusOr<std::unique_ptr<DeviceTracer>> DeviceTracer::Create(
     const reference::Medium& medium, std::shared_ptr<gl::ProgramCache> programs) {
-  // Preparing the data is work of this thread, so the device is free for other contexts meanwhile.
+  // The CPU prepares the data without the device turn, so that other contexts can draw in the
+  // meantime.
   absl::StatusOr<DeviceMedium> on_device = absl::InternalError("not made");
   THUNDERHEAD_RETURN_IF_ERROR(programs->Pieces().OffTurn([&] {
     on_device = DeviceMedium::Of(medium);
@@ -138,7 +139,7 @@ absl::StatusOr<std::vector<glm::dvec3>> DeviceTracer::Trace(
       return static_cast<std::uint32_t>(path % of_ray);
     };
 
-    // Distances at which the rays meet the medium's particles.
+    // The distances at which the rays meet the medium's particles, computed on the device.
     std::vector<PathState> met(count);
     std::vector<double> grounds_m(count);
     ForPaths(options.threads, count, [&](std::size_t i) {
@@ -151,7 +152,7 @@ absl::StatusOr<std::vector<glm::dvec3>> DeviceTracer::Trace(
     });
     THUNDERHEAD_RETURN_IF_ERROR(Run(surroundings, options, &met));
 
-    // The paths' first segments, and the states that continue from them.
+    // The first segments of the paths, and the states from which the device continues them.
     std::vector<Begun> begun(count);
     ForPaths(options.threads, count, [&](std::size_t i) {
       reference::RandomStream random(options.seed, kHostStreams | ray_of(i), sample_of(i));
@@ -182,7 +183,7 @@ void DeviceTracer::Begin(std::size_t ray, std::uint32_t sample, Begun* begun,
                          std::vector<PathState>* states) const {
   begun->first_state = states->size();
   const reference::EyeSegment& segment = begun->segment;
-  // The kinds of streams after those of states, one for each that a path may need.
+  // Each ray to trace has its own random stream. Their kinds follow after the kinds of states.
   std::uint32_t kind = shaders::kPathMissed;
   for (const reference::ThroughMedium& light : segment.shaded) {
     states->push_back(StateOf(light.ray, shaders::kPathShines, StreamOf(ray, sample, ++kind)));
@@ -200,8 +201,8 @@ void DeviceTracer::Begin(std::size_t ray, std::uint32_t sample, Begun* begun,
   states->push_back(state);
 }
 
-// Returns the sum of a path's first segment, of the light that its states have gathered, and of the
-// sky where they left.
+// Returns the radiance of a path. It is the sum of the path's first segment, of the light that its
+// states have gathered, and of the sky into which they left.
 glm::dvec3 DeviceTracer::End(const reference::Surroundings& surroundings, const Begun& begun,
                              const std::vector<PathState>& states) {
   const auto light_of = [&](const PathState& state) {
@@ -235,10 +236,10 @@ absl::Status DeviceTracer::Run(const reference::Surroundings& surroundings,
   return programs_->Pieces().During([&]() -> absl::Status {
     const std::size_t bytes = states->size() * sizeof(PathState);
     if (states_.Bytes() < bytes) {
-      // A list holds its length and the paths in it.
+      // A list of paths holds its length and then the indices of the paths.
       const std::size_t of_list = (states->size() + 1) * sizeof(std::uint32_t);
-      // The states are set last, because the size of states_ also implies that the lists are large
-      // enough.
+      // states_ is set last. Its size implies that the lists are large enough, even if an
+      // allocation fails.
       states_ = {};
       list_ = gl::Buffer(of_list, nullptr, GL_DYNAMIC_STORAGE_BIT);
       next_list_ = gl::Buffer(of_list, nullptr, GL_DYNAMIC_STORAGE_BIT);

@@ -1,8 +1,8 @@
-// The reference's paths on the device. Compute shaders (shaders/paths/trace.comp) trace the paths
-// through the medium, which takes most of the time. The reference's own functions compute sky, air
-// and ground as the eye sees them on the CPU. The result estimates the same radiance as
-// reference::TraceRays, with other random numbers. The tracer owns GL objects, so use it on the
-// context's thread.
+// Traces the paths of the Monte Carlo reference on the device. Compute shaders
+// (shaders/paths/trace.comp) trace the paths through the medium, which takes most of the time. On
+// the CPU, functions of reference/ compute sky, air and ground as the eye sees them. The result
+// estimates the same radiance as reference::TraceRays, with different random numbers. The tracer
+// owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -23,20 +23,21 @@
 
 namespace thunderhead::device_paths {
 
-// Returns whether the thread's device traces paths. It does only if THUNDERHEAD_PATHS is "device"
-// in the environment, because no GPU has been measured yet (docs/decisions/0057).
+// Returns whether the thread's device traces paths. It returns true only if THUNDERHEAD_PATHS is
+// "device" in the environment, because no GPU has been measured yet (docs/decisions/0057).
 bool TracesOnDevice();
 
 class DeviceTracer {
  public:
-  // Creates a tracer. `programs` links the programs and dispatches the paths in pieces. Fails as
-  // DeviceMedium::Of does.
+  // Creates a tracer. `programs` links the programs and dispatches the paths in pieces. Fails if
+  // DeviceMedium::Of fails.
   static absl::StatusOr<std::unique_ptr<DeviceTracer>> Create(
       const reference::Medium& medium, std::shared_ptr<gl::ProgramCache> programs);
 
-  // Returns the radiance along each of `rays`, the mean of its paths, like reference::TraceRays.
-  // The result on one device does not depend on how the work is cut into pieces. Takes and releases
-  // the device turn itself. Fails if it cannot draw, or as `options.wanted` does.
+  // Returns the mean radiance of the paths along each of `rays`, like reference::TraceRays. The
+  // result on one device does not depend on how the work is cut into pieces. The function takes and
+  // releases the device turn (gl/pieces.h) itself. It fails if the device cannot draw, or with an
+  // error of `options.wanted`.
   absl::StatusOr<std::vector<glm::dvec3>> Trace(const reference::Surroundings& surroundings,
                                                 const std::vector<reference::Ray>& rays,
                                                 const reference::TraceRaysOptions& options);
@@ -51,13 +52,13 @@ class DeviceTracer {
     glm::vec4 radiance{0.0F};
     glm::uvec4 counter{0U};
   };
-  struct Begun;  // the result of a ray's path on the host
+  struct Begun;  // the part of a path that the host has computed
 
   DeviceTracer(DeviceMedium medium, const gl::Program* program,
                std::shared_ptr<gl::ProgramCache> programs);
 
   PathState StateOf(const reference::Ray& ray, int what, const glm::uvec3& stream) const;
-  // Begins a path on the host and adds the states that the device must trace for it.
+  // Begins a path on the host and appends to `states` the rays that the device must trace for it.
   void Begin(std::size_t ray, std::uint32_t sample, Begun* begun,
              std::vector<PathState>* states) const;
   // Returns the radiance along the path's ray from the results of the device.
@@ -79,9 +80,9 @@ class DeviceTracer {
   gl::Buffer next_list_;
 };
 
-// Returns a factory of tracers. It traces on the device if TracesOnDevice and the device has memory
-// for the medium, otherwise on the CPU. Use it and its tracers on the thread of the context of
-// `programs`. Making a tracer fails if the device cannot draw.
+// Returns a factory of tracers. A tracer traces on the device if TracesOnDevice returns true and
+// the device has memory for the medium, otherwise on the CPU. Use the factory and its tracers on
+// the thread of the context of `programs`. Making a tracer fails if the device cannot draw.
 reference::MakesTracer TracersFor(std::shared_ptr<gl::ProgramCache> programs);
 
 }  // namespace thunderhead::device_paths

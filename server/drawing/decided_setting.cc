@@ -6,8 +6,8 @@
 namespace thunderhead::drawing {
 namespace {
 
-// The costs are learnt from drawn frames. After this many decisions they are known or do not
-// converge.
+// The costs are measured on drawn frames. After this many decisions, the costs are either known or
+// do not converge.
 constexpr int kMaxDecidedAgain = 3;
 
 }  // namespace

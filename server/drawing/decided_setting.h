@@ -1,6 +1,6 @@
-// The setting with which a session's scene is drawn. It is decided at once for the requested
-// accuracy or speed, and again at rest with the measured costs and discretisation error. A plain
-// value.
+// The setting (technique settings and image scale) with which a session's scene is drawn. It is
+// decided immediately for the requested accuracy or speed. It is decided again when the scene is at
+// rest, with the measured costs and discretisation error. A plain value.
 #pragma once
 
 #include <cstdint>
@@ -20,11 +20,12 @@ class DecidedSetting {
   // `offers` must outlive it.
   explicit DecidedSetting(const accuracy::Offers& offers) : offers_(offers) {}
 
-  // Returns the newest scene with its setting decided. An error is returned once for each revision;
-  // afterwards the result is none.
+  // Returns the newest scene with its setting decided. If no setting can be decided for a revision,
+  // returns the error the first time and none afterwards.
   absl::StatusOr<std::optional<session::NewestScene>> Decide(const session::NewestScene& asked);
 
-  // Returns true until Checked is called, if the setting can also be drawn with half the slices.
+  // Returns true if the setting can also be drawn with half the slices, and Checked has not been
+  // called yet.
   bool NeedsCheck() const;
   void Checked(double discretisation_error) {
     checked_ = true;
@@ -32,14 +33,14 @@ class DecidedSetting {
   }
   const std::optional<double>& discretisation_error() const { return discretisation_error_; }
 
-  // Decides again. Returns true if another setting is better now, which happens a few times at
-  // most.
+  // Decides again. Returns true if another setting is now better, which happens a few times per
+  // revision at most.
   bool DecideAgain(const session::NewestScene& asked);
 
-  // Takes the measured error of the whole picture, whose light must be completely traced if it is
-  // traced. Returns true if the error is certainly larger than the scene allows and another setting
-  // was decided. The measurement also counts for later scenes of the same storm with the same
-  // requested accuracy.
+  // Takes the measured error of the whole picture. If the light is traced, tracing must be
+  // complete. Returns true if the error is certainly larger than the scene allows and another
+  // setting was decided. The measurement also counts for later scenes of the same storm with the
+  // same requested accuracy.
   bool Measured(const accuracy::MeasuredError& error, const session::NewestScene& asked);
 
   // Returns true if the setting is final for this revision.
@@ -47,7 +48,7 @@ class DecidedSetting {
 
  private:
   bool ContinuesWith(const scene::Scene& asked) const;
-  // Returns true if another setting is better now, and gives it to the scene.
+  // Decides again. If another setting is now better, puts it into the scene and returns true.
   bool DecideAnew(const session::NewestScene& asked);
 
   const accuracy::Offers& offers_;

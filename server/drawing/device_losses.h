@@ -1,4 +1,5 @@
-// Decides when to reopen the device after it was lost, and when to give up. A plain value.
+// Decides when to reopen the rendering device after it was lost, and when to stop trying. A plain
+// value.
 #pragma once
 
 #include <chrono>
@@ -8,8 +9,8 @@
 namespace thunderhead::drawing {
 
 struct LossLimits {
-  // After the first loss within `window` the device is reopened at once. After the second it is
-  // reopened after `first_pause`, and each further loss doubles the pause.
+  // After the first loss within `window`, the device is reopened immediately. After the second loss
+  // it is reopened after `first_pause`. Each further loss doubles the pause.
   std::chrono::milliseconds first_pause{1000};
   int max_losses = 6;
   std::chrono::milliseconds window = std::chrono::minutes(10);
@@ -22,7 +23,7 @@ class DeviceLosses {
   explicit DeviceLosses(const LossLimits& limits) : limits_(limits) {}
 
   // Records that the device was lost or could not be opened. Returns when to open it, or none to
-  // give up: a device that is lost repeatedly needs an operator.
+  // stop trying: a device that is lost repeatedly needs an operator.
   std::optional<Time> Lost(Time now);
 
  private:

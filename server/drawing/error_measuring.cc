@@ -3,8 +3,9 @@
 namespace thunderhead::drawing {
 namespace {
 
-// A frame reports the error again when its interval is narrower by this factor or no longer
-// contains the reported value. During a measurement it is reported at most this often.
+// A frame reports the error again when the error's confidence interval is narrower by this factor,
+// or no longer contains the reported error. During a measurement, reports are at least
+// kMinBetweenErrors apart.
 constexpr double kToldNarrowing = 0.8;
 constexpr session::Clock::duration kMinBetweenErrors = std::chrono::seconds(1);
 
@@ -28,7 +29,8 @@ bool ErrorMeasuring::Measured(const accuracy::ErrorProgress& progress,
   ended_ = progress.ended;
   if (!progress.error.has_value()) return due_;
   const accuracy::Estimated& measured = progress.error->relative_rmse;
-  // Until the error is known to be above 0, the table's estimate is more informative.
+  // Until the measured error is certainly above 0, the estimate from the accuracy table is more
+  // informative.
   if (!ended_ && !(measured.low > 0.0)) return due_;
   error_ = progress.error;
   due_ = !told_.has_value() || ((ended_ || now - told_at_ >= kMinBetweenErrors) &&

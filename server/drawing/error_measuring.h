@@ -12,21 +12,21 @@ namespace thunderhead::drawing {
 
 class ErrorMeasuring {
  public:
-  // Starts again if the revision is new.
+  // Discards the measurement if `revision` is new.
   void BeginFor(std::uint64_t revision);
 
-  // Records progress. Returns true if a frame should report it.
+  // Records the progress of the measurement. Returns true if a frame should report the error now.
   bool Measured(const accuracy::ErrorProgress& progress, session::Clock::time_point now);
-  // Records that a frame reports the error measured so far.
+  // Records that a frame has reported the error measured so far.
   void Told(session::Clock::time_point now);
 
-  // Records that nothing is measured for the revision.
+  // Records that no error is measured for the revision.
   void GiveUp();
 
   const std::optional<accuracy::MeasuredError>& error() const { return error_; }
   // Returns true if a frame must report the error.
   bool due() const { return due_; }
-  // Returns true while nothing further is measured, unless the picture improves.
+  // Returns true if the measurement has ended. It continues only if the picture's light improves.
   bool ended() const { return ended_; }
 
  private:

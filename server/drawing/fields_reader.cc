@@ -88,7 +88,7 @@ void FieldsReader::ServeFirst(std::unique_lock<std::mutex>& lock) {
 void FieldsReader::ServeAhead(std::unique_lock<std::mutex>& lock) {
   const Asked work = std::move(ahead_.extract(ahead_.begin()).mapped());
   lock.unlock();
-  // An error will be reported by the request, if it follows.
+  // The result of a prefetch is ignored. If it failed, a later request will report the error.
   Read(work);
   lock.lock();
 }

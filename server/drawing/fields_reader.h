@@ -1,6 +1,6 @@
-// Reads storms' fields for the render loop on its own thread, so that a long read delays only the
-// session that waits for it. Each owner (a session) has at most one pending read, which bounds the
-// queue.
+// Reads storms' fields for the render loop on a separate thread, so that a long read delays only
+// the session that needs the fields. Each owner (a session) has at most one pending read, which
+// bounds the queue.
 #pragma once
 
 #include <condition_variable>
@@ -35,7 +35,7 @@ struct FieldsRead {
   double prepare_ms = 0.0;
 };
 
-// Prepares fields after they were read, on the same thread; may be empty.
+// Prepares fields after they were read, on the same thread. It may be empty (no preparation).
 using PrepareFields =
     std::function<absl::Status(const std::shared_ptr<const volume::HydrometeorFields>&)>;
 
@@ -48,10 +48,11 @@ class FieldsReader {
   FieldsReader(const FieldsReader&) = delete;
   FieldsReader& operator=(const FieldsReader&) = delete;
 
-  // Requests a read followed by `prepare`; replaces the owner's earlier request.
+  // Requests a read followed by `prepare`. It replaces an earlier request of the owner.
   void Ask(const std::string& owner, const FieldsKey& key, PrepareFields prepare = {});
-  // Prefetches what the owner may request next, when no request waits. There is no result: it only
-  // fills the caches of the store and of `prepare`. Replaces the owner's earlier prefetch.
+  // Reads fields that the owner may request next, when no other request waits. The read has no
+  // result: it only fills the caches of the store and of `prepare`. It replaces an earlier prefetch
+  // of the owner.
   void AskAhead(const std::string& owner, const FieldsKey& key, PrepareFields prepare);
   // Takes the result of the owner's read, if there is one.
   std::optional<FieldsRead> Take(const std::string& owner);
@@ -62,7 +63,7 @@ class FieldsReader {
   struct Asked {
     FieldsKey key;
     PrepareFields prepare;
-    std::uint64_t count = 0;  // identifies the request
+    std::uint64_t count = 0;  // number of the request, by which it is identified
   };
 
   FieldsRead Read(const Asked& work);

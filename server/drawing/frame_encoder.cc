@@ -14,11 +14,11 @@
 namespace thunderhead::drawing {
 namespace {
 
-// A coarse frame is blurred by its smaller buffer anyway and is soon replaced. Fewer bytes make it
-// arrive sooner.
+// The JPEG quality of a coarse frame. Its smaller buffer blurs it anyway, and it is soon replaced.
+// With fewer bytes it arrives sooner.
 constexpr int kCoarseJpegQuality = 75;
 
-// JPEG quality of smaller tiers, for slow links.
+// The JPEG quality of smaller tiers, which go to viewers with slow links.
 constexpr int kReducedJpegQuality = 70;
 
 using Pictures = delivery::PictureSizes<frame::RgbImage>;
@@ -100,8 +100,8 @@ absl::StatusOr<delivery::EncodedVideo> WithVideo(const delivery::EncodedFrame& d
   return delivery::EncodedVideo{order, std::move(frame)};
 }
 
-// Returns the video pictures that viewers wait for. A picture that fails is left out; its viewers
-// get JPEG.
+// Returns the video pictures that viewers wait for. If encoding fails, the picture is left out, and
+// its viewers get JPEG.
 std::vector<delivery::EncodedVideo> VideoOf(const delivery::EncodedFrame& described,
                                             session::Session& session, bool still_follows,
                                             Pictures& pictures, base::MemoryBudget& memory,
@@ -114,7 +114,8 @@ std::vector<delivery::EncodedVideo> VideoOf(const delivery::EncodedFrame& descri
     });
     if (encoded.ok()) {
       video.push_back(*std::move(encoded));
-    } else if (!absl::IsResourceExhausted(encoded.status())) {  // counted elsewhere
+      // Refusals for lack of memory are counted elsewhere.
+    } else if (!absl::IsResourceExhausted(encoded.status())) {
       base::LogError(base::Annotate(encoded.status(), "encoding video"));
     }
   }
@@ -161,7 +162,8 @@ void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, base::M
     stills.Make(std::move(still));
     return absl::OkStatus();
   });
-  if (!made.ok()) session->hub().NoStills(sequence);  // the picture is already published
+  // The frame is published already, so viewers must not wait for its still.
+  if (!made.ok()) session->hub().NoStills(sequence);
 }
 
 }  // namespace

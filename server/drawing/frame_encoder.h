@@ -1,6 +1,6 @@
-// Encodes sessions' frames as JPEG and video on separate threads and publishes them in the order in
-// which they were drawn. Stills of higher quality follow (still_maker.h). The render loop submits
-// at most two frames of a session at a time, which bounds the queue.
+// Encodes sessions' frames as JPEG and video on separate threads, and publishes them in the order
+// in which they were drawn. Stills of higher quality are published later (still_maker.h). The
+// render loop submits at most two frames of a session at a time, which bounds the queue.
 #pragma once
 
 #include <condition_variable>
@@ -27,10 +27,12 @@ struct DrawnFrame {
   std::uint64_t scene_revision = 0;
   scene::Scene scene;
   bool refined = false;
-  session::Clock::time_point rests_at;  // unless the scene changes earlier
+  // When the scene counts as at rest, unless it changes earlier.
+  session::Clock::time_point rests_at;
   DisplayFrame picture;
-  std::optional<frame::FineImage> fine;            // set if viewers take stills of higher quality
-  std::optional<delivery::Refinement> refinement;  // set for a picture by the reference
+  std::optional<frame::FineImage> fine;  // set if viewers take stills of higher quality
+  // Set if the Monte Carlo reference drew the picture.
+  std::optional<delivery::Refinement> refinement;
   scene::View view;
 };
 
@@ -38,8 +40,8 @@ class FrameEncoder {
  public:
   static constexpr int kMaxPending = 2;
 
-  // `on_encoded` is called on an encoding thread when a frame has been published. Video encoders
-  // reserve their memory in `memory`.
+  // `on_encoded` is called on an encoding thread when a frame has been published. The memory of
+  // video encoders is reserved in `memory`.
   FrameEncoder(int threads, SerializeFrame serialize, std::shared_ptr<base::MemoryBudget> memory,
                std::function<void()> on_encoded, const base::TimeSource& time = base::SteadyTime());
   // Waits for the frames being encoded and drops the queued ones.
@@ -64,7 +66,8 @@ class FrameEncoder {
   std::condition_variable changed_;
   bool stopping_ = false;
   std::deque<DrawnFrame> waiting_;
-  // Sessions with a frame being encoded. Each has at most one, which keeps the order.
+  // Sessions one of whose frames is being encoded. At most one frame per session is encoded at a
+  // time, which keeps the frames in order.
   std::vector<const session::Session*> encoding_;
   std::vector<std::thread> threads_;
 };

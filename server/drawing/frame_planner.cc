@@ -9,11 +9,11 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Number of steps between the coarsest and the full quality, all by the same factor. Steps keep
-// small changes of the estimate from changing the buffers' size.
+// The number of quality steps between the coarsest and the full quality, in equal ratios. Because
+// of the steps, a slightly changed prediction does not change the buffers' size.
 constexpr int kSteps = 8;
 
-// Returns `quality` at one of the steps.
+// Returns `quality` with image scale and slice share of that step.
 FrameQuality Step(int step, FrameQuality quality) {
   const double coarsest = quality.sparse ? kCoarsestSparse : kCoarsest;
   const double share = std::pow(coarsest, 1.0 - static_cast<double>(step) / kSteps);
@@ -22,16 +22,17 @@ FrameQuality Step(int step, FrameQuality quality) {
   return quality;
 }
 
-// Pictures are not made smaller than this for speed. Below this number of pixels, the number no
-// longer determines the cost of a frame.
+// Limits on making pictures smaller for speed. Below kLeastPixels, fewer pixels hardly reduce the
+// cost of a frame.
 constexpr double kLeastOutputScale = 0.5;
 constexpr double kLeastPixels = 640.0 * 360.0;
-// During a gesture the size changes only if the required size differs by more than this factor.
-// People see each change, and video needs a key frame for it.
+// During a gesture, the output scale changes only if the required scale differs by more than this
+// factor. People see each change of size, and each costs a video key frame.
 constexpr double kKept = 1.15;
 constexpr double kStep = 1.189207115;  // 2^(1/4)
 
-// Rounds the scale down to a step between 1 and the minimum for a picture of that many pixels.
+// Rounds the scale down to a step: at most 1, and at least the minimum for a picture of that many
+// pixels.
 double OutputStep(double scale, double pixels) {
   constexpr double kRounding = 1e-6;
   const double least = std::clamp(std::sqrt(kLeastPixels / pixels), kLeastOutputScale, 1.0);
@@ -42,7 +43,8 @@ double OutputStep(double scale, double pixels) {
 
 bool IsFull(const FrameQuality& quality) { return quality == FrameQuality{}; }
 
-// A finer frame is drawn even if the last drawn frame shows the same scene.
+// Returns the first stage to rerun for a frame at rest, which is drawn again even if the last frame
+// shows the same scene.
 scene::Stage FirstDirtyAtRest(const std::optional<LastDrawn>& last_drawn,
                               const scene::Scene& scene) {
   return std::min(FirstDirty(last_drawn, scene), scene::Stage::kView);
@@ -76,8 +78,8 @@ Decision FramePlanner::Decide(const session::NewestScene& newest, session::Clock
 FramePlan FramePlanner::Coarse(const scene::Scene& scene,
                                const std::optional<LastDrawn>& last_drawn) const {
   scene::Stage first_dirty = FirstDirty(last_drawn, scene);
-  // The chosen pixels of a sparse picture are not kept, so a changed tone redraws the picture. A
-  // sparse picture at rest takes too long for that, so a coarse one is drawn.
+  // A sparse picture's rays are not kept, so a changed tone map redraws the picture. Drawing a
+  // sparse picture at rest takes too long for this, so a coarse one is drawn.
   if (last_drawn.has_value() && last_drawn->quality.sparse && drawn_.refined) {
     first_dirty = std::min(first_dirty, scene::Stage::kView);
   }
@@ -98,7 +100,7 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
     const FrameQuality quality = Finest(scene, first_dirty, targets_.coarse_ms, moving);
     return {quality, IsFull(quality), speed_scale};
   }
-  // If only the tone changes, the linear frame is reused at its quality, at no cost.
+  // If only the tone map changes, the linear frame is reused with its quality, at no cost.
   const bool as_refined_as_before = drawn_.refined && drawn_.quality == last_drawn->quality;
   return {last_drawn->quality, IsFull(last_drawn->quality) || as_refined_as_before, speed_scale_};
 }
@@ -131,8 +133,8 @@ Decision FramePlanner::AtRest(const session::NewestScene& newest, session::Clock
   const double budget_ms =
       std::clamp(rested.count(), targets_.longest_ms, targets_.longest_at_rest_ms);
   const FrameQuality finest = Finest(*newest.scene, first_dirty, budget_ms);
-  // If there is no refined frame yet, the frame is drawn even if it is no finer. The estimate may
-  // stem from a moment when the machine was busy.
+  // If no refined frame was drawn yet, a frame is drawn even if it is no finer than the last. The
+  // prediction may stem from a moment when the machine was busy.
   if (!IsFiner(finest) && drawn_.refined) return {};
   return {FramePlan{finest, true}, std::nullopt};
 }
@@ -180,12 +182,11 @@ bool FramePlanner::IsFiner(const FrameQuality& quality) const {
 
 FrameQuality FramePlanner::FinestSoon(const scene::Scene& scene, scene::Stage first_dirty) const {
   const FrameQuality rayed = Finest(scene, first_dirty, targets_.refined_ms);
-  // In larger pictures the work per pixel on the CPU takes too long.
+  // Larger pictures are not drawn sparsely, because the work per pixel on the CPU takes too long.
   const bool sparse = accuracy::MovesSparsely(scene) && accuracy::MovingOutputScale(scene) >= 1.0;
   if (IsFull(rayed) || !sparse) return rayed;
   const FrameQuality fewer = Finest(scene, first_dirty, targets_.refined_ms, {.sparse = true});
-  // A frame at the full scale would be taken for a full-quality one, and no finer frame would
-  // follow.
+  // A frame at scale 1 would count as a full-quality frame, so that no finer frame would follow.
   return fewer.image_scale < 1.0 ? fewer : Step(kSteps - 1, fewer);
 }
 

@@ -1,6 +1,7 @@
-// The interface between the render loop and the drawing engine. Input is a scene and a storm's
-// fields; output is display pixels. The GL engine implements it; service tests use a fake one. A
-// FrameSource is created, used and destroyed on one thread; each drawing thread has its own.
+// The interface between the render loop and the drawing engine. The input is a scene and a storm's
+// fields, the output display pixels. The GL engine implements the interface; service tests use a
+// fake. A FrameSource is created, used and destroyed on one thread. Each drawing thread has its own
+// source.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +37,7 @@ using accuracy::AccuracyReport;
 using accuracy::FrameQuality;
 using scene::StageTime;
 
-// A finished picture: 8-bit sRGB, three bytes a pixel, rows from top to bottom.
+// A finished picture in 8-bit sRGB: three bytes per pixel, rows from top to bottom.
 struct DisplayFrame {
   int width_px = 0;
   int height_px = 0;
@@ -44,11 +45,11 @@ struct DisplayFrame {
   std::vector<StageTime> stages;
   delivery::Modelled modelled;
   std::optional<AccuracyReport> accuracy;
-  std::shared_ptr<const base::MemoryReservation> memory;  // memory of the pixels
+  std::shared_ptr<const base::MemoryReservation> memory;  // reservation of the pixels' memory
   std::optional<picture::LinearPicture> linear;  // before the tone map; set if it was requested
 };
 
-// A picture at full quality, and its difference from one with half the slices.
+// A picture at full quality, and its difference from the same picture drawn with half the slices.
 struct CheckedFrame {
   DisplayFrame frame;
   double discretisation_error = 0.0;  // accuracy::DiscretisationError
@@ -72,60 +73,65 @@ class FrameSource {
   // Returns the techniques in the order in which to offer them.
   virtual std::vector<scene::TechniqueInfo> Techniques() const = 0;
 
-  // Returns null if no scene needs preparation.
+  // Returns the object that prepares scenes before they are drawn, or null if no scene needs
+  // preparation.
   virtual std::shared_ptr<Preparation> PreparationOfScenes() const { return nullptr; }
 
-  // Draws `scene` from `fields` (of the scene's storm and time). Reruns only the stages that differ
-  // from the previous frame.
+  // Draws `scene` from `fields`, which must belong to the scene's storm and time. Reruns only the
+  // stages whose inputs differ from the previous frame's.
   virtual absl::StatusOr<DisplayFrame> Draw(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       const FrameQuality& quality) = 0;
 
-  // Draws at full quality and with half the slices. A scene with one slice cannot be checked.
+  // Draws the scene at full quality and with half the slices. The scene must have more than one
+  // slice.
   virtual absl::StatusOr<CheckedFrame> DrawChecked(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) = 0;
 
-  // Traces paths for a scene with traced light for about a tenth of a second. The paths improve
-  // what all sources of the same factory draw of the scene: at intervals, and once `wanted_paths`
-  // are traced. RESOURCE_EXHAUSTED while light is traced for too many other scenes. `claim` may be
-  // null; otherwise it receives a claim on the light traced for the scene.
+  // Traces paths for about a tenth of a second, for a scene with path-traced correction. The paths
+  // improve the light of that scene in all sources of the same factory: at intervals, and once
+  // `wanted_paths` are traced. RESOURCE_EXHAUSTED while light is traced for too many other scenes.
+  // If `claim` is not null, it receives a claim that keeps the light traced for the scene from
+  // being evicted.
   virtual absl::StatusOr<accuracy::LightProgress> TraceLight(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       std::int64_t wanted_paths, accuracy::LightClaim* claim) = 0;
 
-  // Measures the error of the scene's picture at full quality, with the light traced so far, for
-  // some tenths of a second. Traces paths, or draws the picture again if its light has become much
-  // better. RESOURCE_EXHAUSTED while too many other scenes are measured.
+  // Measures the error of the scene's full-quality picture with the light traced so far, for some
+  // tenths of a second. Each call traces paths through the picture, or draws the picture again if
+  // its light has become much better. RESOURCE_EXHAUSTED while the errors of too many other scenes
+  // are measured.
   virtual absl::StatusOr<accuracy::ErrorProgress> MeasureError(
       const scene::Scene& /*scene*/,
       const std::shared_ptr<const volume::HydrometeorFields>& /*fields*/) {
     return accuracy::ErrorProgress{.ended = true};
   }
 
-  // Tone maps a picture of `scene` computed elsewhere. Does not affect the stages that Draw keeps.
+  // Applies the tone map to a picture of `scene` that was computed elsewhere. Does not change the
+  // stages that Draw reuses.
   virtual absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                             const scene::Scene& scene) = 0;
 
-  // Returns the picture that Draw, DrawChecked or Tone produced last, with more than 8 bits. An
-  // error if it is not available.
+  // Returns the picture that the last call of Draw, DrawChecked or Tone produced, with more than 8
+  // bits per channel. Returns an error if it is not available.
   virtual absl::StatusOr<frame::FineImage> Fine() {
     return absl::UnimplementedError("this frame source has pictures of 8 bits only");
   }
 
-  // Returns the picture that Draw, DrawChecked or Tone produced last as linear radiance, with the
-  // storm's opacity.
+  // Returns the picture that the last call of Draw, DrawChecked or Tone produced, as linear
+  // radiance with the storm's opacity.
   virtual absl::StatusOr<picture::LinearPicture> Linear() {
     return absl::UnimplementedError("this frame source has tone-mapped pictures only");
   }
 
-  // Frees cached memory that was not used for drawing for that long.
+  // Frees cached memory that was not used for drawing during the last `unused_s` seconds.
   virtual void FreeUnused(double /*unused_s*/) {}
 };
 
-// Creates a source on the thread that will use it. The source takes `turn`, which must outlive it,
-// for each piece that it draws. If `turn` is null, it draws in one piece and its caller must hold
-// the turn.
+// Creates a source on the thread that will use it. The source takes `turn` for each piece that it
+// draws; `turn` must outlive the source. If `turn` is null, the source draws each picture in one
+// piece, and its caller must hold the device's turn.
 using FrameSourceFactory =
     std::function<absl::StatusOr<std::unique_ptr<FrameSource>>(base::DeviceTurn* turn)>;
 

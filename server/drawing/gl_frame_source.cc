@@ -21,7 +21,7 @@
 namespace thunderhead::drawing {
 namespace {
 
-// The state that the sources of one device share.
+// The state that all sources of one device share.
 struct Shared {
   std::shared_ptr<const renderers::TechniqueRegistry> registry =
       std::make_shared<renderers::TechniqueRegistry>(renderers::TechniqueRegistry::BuiltIn());
@@ -33,7 +33,7 @@ std::shared_ptr<base::MemoryBudget> OrUnlimited(const std::shared_ptr<base::Memo
   return budget != nullptr ? budget : base::MemoryBudget::Unlimited();
 }
 
-// Returns the budget for the GL objects of the thread's context.
+// Returns the budget for the GL objects in the context of the calling thread.
 std::shared_ptr<base::MemoryBudget> BudgetOf(const GlSourceOptions& options) {
   return OrUnlimited(gl::DrawsInSoftware() ? options.memory : options.gpu_memory);
 }
@@ -110,7 +110,8 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<accuracy::ErrorProgress> MeasureError(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
-    // If memory is scarce, pictures need it; the error from the table remains in use.
+    // If memory is scarce, pictures need it more. The error from the accuracy table is then still
+    // reported.
     if (!HasRoomToMeasure(scene, *fields)) return accuracy::ErrorProgress{.ended = true};
     const Correction correction = CorrectionOf(scene, fields);
     auto progress = base::Guarded([&] {
@@ -119,8 +120,8 @@ class GlFrameSource final : public FrameSource {
           THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
                                        renderers_.Draw(measured, fields, Applied(correction, {})));
           auto picture = frame::PictureOf(*linear.radiance, programs_->Pieces());
-          // If memory is scarce, unused renderers are freed, because the light's correction draws
-          // the storm with its own renderer.
+          // If memory is scarce, unused renderers are freed, because tracing the correction draws
+          // the storm with a separate renderer.
           if (!HasRoomToMeasure(scene, *fields)) renderers_.DropUnusedFor(0.0);
           return picture;
         });
@@ -191,7 +192,7 @@ class GlFrameSource final : public FrameSource {
     return frame;
   }
 
-  // The last drawn picture, until anything else is drawn.
+  // The picture that was drawn last; absent once anything else is drawn.
   struct Drawn {
     const gl::Texture2D* linear;
     frame::ToneMapper* mapper;
@@ -202,14 +203,14 @@ class GlFrameSource final : public FrameSource {
     completed_.reset();
   }
 
-  // Returns the device's fault since the last check, if any.
+  // Returns the fault that the device has had since the last check; OK if there was none.
   absl::Status Look() { return gl::StatusOf(watch_->Look()); }
 
-  // Returns true if half of the budget is still free after adding the storm with its light and a
+  // Returns true if half of the budget would still be free after adding the storm, its light and a
   // picture of the scene's size. Errors are measured only when memory is plentiful.
   bool HasRoomToMeasure(const scene::Scene& scene, const volume::HydrometeorFields& fields) const {
     constexpr std::size_t kBytesPerPixel = 64;
-    constexpr std::size_t kBytesPerCell = 160;  // 154 of five fields
+    constexpr std::size_t kBytesPerCell = 160;  // rounded up from 154 bytes for five fields
     const auto pixels = static_cast<std::size_t>(scene.output.width_px) *
                         static_cast<std::size_t>(scene.output.height_px);
     return BudgetOf(shared_.options)
@@ -221,8 +222,8 @@ class GlFrameSource final : public FrameSource {
   }
 
   // Returns the result of `draw`, or the device's fault. If the device is out of memory, frees
-  // everything kept for other pictures and retries once, because a renderer without all its memory
-  // is useless.
+  // everything that is kept for other pictures and tries once more. This is worthwhile because a
+  // renderer without all its memory is useless.
   template <typename Draw>
   auto Watched(const Draw& draw) -> decltype(draw()) {
     ForgetDrawn();
@@ -235,7 +236,7 @@ class GlFrameSource final : public FrameSource {
     }
   }
 
-  // The path-traced correction of a scene's light; null without traced paths.
+  // The path-traced correction of a scene's light; null if no paths were traced.
   using Correction = accuracy::TracedLights::Found;
 
   static renderers::DrawQuality Applied(const Correction& correction,
@@ -280,12 +281,13 @@ class GlFrameSource final : public FrameSource {
   std::unique_ptr<gl::Context> context_;  // must outlive the GL objects below
   const Shared shared_;
   const std::unique_ptr<gl::DeviceWatch> watch_;
-  const gl::DeviceMemory memory_;  // memory of the GL objects below
+  const gl::DeviceMemory memory_;  // counts the memory of the GL objects below
   std::shared_ptr<gl::ProgramCache> programs_;
   renderers::RendererPool renderers_{shared_.registry, programs_};
   accuracy::CorrectorPool correctors_{programs_, shared_.lights,
                                       OrUnlimited(shared_.options.memory)};
-  // Two at a time, because each holds its storm's fields and a copy of their extinction.
+  // At most two meters at a time, because each holds its storm's fields and a copy of their
+  // extinction.
   accuracy::ErrorMeters meters_{OrUnlimited(shared_.options.memory), 2, 3.0, 5.0,
                                 device_paths::TracersFor(programs_)};
   frame::ToneMapper tone_mapper_{programs_};

@@ -1,5 +1,5 @@
-// The engine that draws with OpenGL: implements FrameSource with a context, the scene renderers and
-// the tone mapper.
+// The drawing engine on OpenGL. It implements FrameSource with a GL context, the scene renderers
+// and the tone mapper.
 #pragma once
 
 #include <functional>
@@ -16,15 +16,16 @@
 namespace thunderhead::drawing {
 
 struct GlSourceOptions {
-  // The budget of GL objects is `memory` if the CPU draws, else `gpu_memory`. Null means no limit.
+  // GL objects are reserved in `memory` if the CPU draws, else in `gpu_memory`. Null means no
+  // limit.
   std::shared_ptr<base::MemoryBudget> memory;
   std::shared_ptr<base::MemoryBudget> gpu_memory;
   std::function<std::unique_ptr<gl::DeviceWatch>()> watch_device = gl::WatchDevice;
 };
 
-// Returns a factory of sources that draw on a device. Each source opens its own context
-// (gl::Context::Create) on the calling thread, which must remain the drawing thread. Light traced
-// by one source is shown by all of them.
+// Returns a factory of sources that draw on the device. Each source opens its own context
+// (gl::Context::Create) on the thread that calls the factory, and must be used on that thread. All
+// sources of the factory show the light that any of them has traced.
 FrameSourceFactory GlFrameSources(const std::string& device, GlSourceOptions options = {});
 
 }  // namespace thunderhead::drawing

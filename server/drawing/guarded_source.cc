@@ -9,11 +9,11 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Display pixels, and the same amount again while they are encoded.
+// The display pixels (3 bytes), and as much again while they are encoded.
 constexpr std::size_t kBytesPerPixel = 6;
-// The same for a picture with 16 bits per channel and its smaller sizes.
+// The same for a picture with 16 bits per channel, including its smaller tiers.
 constexpr std::size_t kFineBytesPerPixel = 16;
-// Radiance, opacity and optical depths.
+// For a linear picture: radiance, opacity and optical depths.
 constexpr std::size_t kLinearBytesPerPixel = 24;
 
 class GuardedSource final : public FrameSource {

@@ -1,5 +1,5 @@
-// A frame source that reserves memory for each picture before drawing it, and reports the loss of
-// its device.
+// A frame source that reserves memory for each picture before drawing it, and reports when its
+// device is lost.
 #pragma once
 
 #include <atomic>
@@ -14,15 +14,15 @@ namespace thunderhead::drawing {
 
 struct SourceGuard {
   std::shared_ptr<base::MemoryBudget> memory;
-  // Counts the devices opened so far. A source belongs to the device that was open when it was
-  // made.
+  // Number of devices opened so far. A source belongs to the device that was open when the source
+  // was created.
   const std::atomic<std::uint64_t>& generation;
-  // Called on the drawing thread, with the source's device, when a picture failed with
-  // gl::DeviceLost.
+  // Called on the drawing thread when a picture failed with gl::DeviceLost. `generation` identifies
+  // the source's device.
   std::function<void(std::uint64_t generation)> on_device_lost;
 };
 
-// Returns a factory of guarded sources made by `make`.
+// Returns a factory that wraps the sources of `make` in guarded sources.
 FrameSourceFactory GuardedSources(FrameSourceFactory make, SourceGuard guard);
 
 }  // namespace thunderhead::drawing

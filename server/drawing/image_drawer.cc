@@ -14,13 +14,12 @@
 namespace thunderhead::drawing {
 namespace {
 
-// A picture with at most this predicted time counts as quick and may use the lane for quick
-// pictures.
+// A picture whose predicted time is at most this may use the lane for quick pictures.
 constexpr double kQuick_ms = 5e3;
 // Maximum number of pictures that hold their fields while paths are traced for them.
 constexpr std::ptrdiff_t kMaxTraced = 8;
-// Ratio of the time limit of a picture to the longest allowed prediction, because predictions are
-// inexact.
+// The time limit of a picture, as a multiple of the longest allowed prediction, because predictions
+// are inexact.
 constexpr double kPatience = 2.0;
 
 bool AwaitsLight(const scene::Scene& scene) {
@@ -76,7 +75,7 @@ absl::Status ImageDrawer::Admit(ImageJob& job) const {
 
 void ImageDrawer::Begin(Lane& lane) {
   if (!lane.IsIdle()) return;
-  // Pictures that already hold their fields come first.
+  // Pictures that already hold their fields are started first.
   const auto ready = std::ranges::find_if(begun_, [&](const Begun& image) {
     const bool waits = image.phase == Phase::kToDraw || image.phase == Phase::kToRead;
     return waits && Suits(lane, image.quick);
@@ -103,7 +102,7 @@ void ImageDrawer::WorkIn(Lane& lane, Begun& image) {
   if (image.phase == Phase::kToDraw) image.phase = Phase::kDrawing;
   if (image.phase == Phase::kToRead) image.phase = Phase::kReading;
   const bool draws = image.phase == Phase::kDrawing || !IsTraced(image.job);
-  // The image stays in `begun_` until the lane is idle.
+  // `image` stays valid: it remains in `begun_` until the lane is idle.
   lane.Begin(
       [&image, draws, preparation = preparation_](const absl::StatusOr<FrameSource*>& source) {
         image.status = base::Guarded([&]() -> absl::Status {
@@ -142,8 +141,8 @@ absl::Status ImageDrawer::Draw(Begun& image, FrameSource& source) {
   return image.job.encode(*image.frame);
 }
 
-// A picture is retried if the device was lost, or if memory is held by others' renderers, which
-// free it by then. After several failures the picture itself may be the cause.
+// A picture is tried again if the device was lost, or if other renderers held the memory that it
+// needs, which they have freed by now. After several failures, the picture itself may be the cause.
 bool ImageDrawer::TriesAgain(Begun& image) {
   constexpr int kMaxAttempts = 3;
   const bool is_others = gl::IsDeviceLost(image.status) || absl::IsResourceExhausted(image.status);
@@ -184,7 +183,8 @@ void ImageDrawer::Trace(Begun& image) {
                             image.wanted_paths, true});
 }
 
-// If no table covers the technique, no error is reported, so none is measured.
+// No error is measured if no accuracy table covers the technique, because then no error is
+// reported.
 void ImageDrawer::Measure(Begun& image) {
   const bool tells = source_.Estimator().Report(*image.job.decided, {}, {}).has_value();
   if (image.job.error_seconds <= 0.0 || !tells) {

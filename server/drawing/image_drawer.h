@@ -1,5 +1,5 @@
-// Draws the pictures of an ImageQueue in lanes that run alongside the render loop. A picture that
-// waits for traced light releases its lane meanwhile. Used by the render loop's thread only.
+// Draws the pictures of an ImageQueue in lanes, which run alongside the render loop. A picture that
+// waits for traced light does not occupy a lane meanwhile. Used by the render loop's thread only.
 #pragma once
 
 #include <cstddef>
@@ -24,28 +24,30 @@
 namespace thunderhead::drawing {
 
 struct ImageLimits {
-  double max_predicted_s = 600.0;  // of one picture; pictures with a longer prediction are refused
+  // Maximum predicted drawing time of one picture; longer ones are refused.
+  double max_predicted_s = 600.0;
 };
 
 class ImageDrawer {
  public:
-  // Pictures with a short predicted time have a separate lane, so that they need not wait for long
-  // ones.
+  // Pictures with a short predicted time have a lane of their own, so that they do not wait for
+  // long ones.
   struct Lanes {
     Lane& quick;
     Lane& any;
   };
 
-  // All references must outlive it. The lanes' work must have ended before it is destroyed.
-  // `preparation` is null if no scene needs any.
+  // All references must outlive the drawer. The lanes' work must have ended before the drawer is
+  // destroyed. `preparation` is null if no scene needs preparation.
   ImageDrawer(const ImageLimits& limits, ImageQueue& queue, MeasuredSource& source,
               std::shared_ptr<Preparation> preparation, LightTracer& tracer, const Lanes& lanes,
               const base::TimeSource& time = base::SteadyTime());
 
-  // Completes finished and cancelled pictures, admits new ones, and starts those that can be
-  // started.
+  // Completes finished and cancelled pictures, admits new pictures, and starts pictures for which a
+  // lane is free.
   void Attend();
-  // Ends all started pictures; those not drawn yet get this error. The lanes' work must have ended.
+  // Ends all started pictures. Those that are not drawn yet get the error `why`. The lanes' work
+  // must have ended.
   void EndAll(const absl::Status& why);
 
  private:
@@ -54,16 +56,16 @@ class ImageDrawer {
   // A picture whose work has started.
   struct Begun {
     ImageJob job;
-    std::string name;  // its name in the tracer
+    std::string name;  // name in the light tracer
     bool quick = false;
     Phase phase = Phase::kReading;
-    Lane* lane = nullptr;  // lane that works on it
+    Lane* lane = nullptr;  // lane that works on it; null while no lane does
     std::shared_ptr<const volume::HydrometeorFields> fields;
-    std::vector<StageTime> stages;  // stages before drawing
+    std::vector<StageTime> stages;  // costs of the stages before drawing
     std::int64_t wanted_paths = 0;
     std::optional<accuracy::MeasuredError> error;
     accuracy::MeasuredErrors measured;
-    int refuted = 0;   // number of refuted settings
+    int refuted = 0;   // number of settings whose error turned out too large
     int attempts = 0;  // number of attempts to draw it
     base::TimeSource::Clock::time_point begun_at{};
     // Written by the lane.
@@ -83,13 +85,13 @@ class ImageDrawer {
   static bool TriesAgain(Begun& image);
   // Returns true if the picture is finished.
   bool Ends(Begun& image);
-  // Begin the picture's next phase before it is drawn.
+  // The following two functions begin the picture's next phase before it is drawn.
   void Trace(Begun& image);
   void Measure(Begun& image);
   bool EndsTracing(Begun& image);
   void TakeStep(Begun& image, const TracedStep& step);
-  // Returns true if the picture's error is too large for its scene; it then starts again with
-  // another setting.
+  // Returns true if the picture's error is too large for its scene. The picture then starts again
+  // with another setting.
   bool IsRefuted(Begun& image);
   void Report(const Begun& image, const accuracy::LightProgress& progress) const;
   absl::StatusOr<DisplayFrame> Drawn(Begun& image);

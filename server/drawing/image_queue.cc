@@ -13,7 +13,7 @@
 namespace thunderhead::drawing {
 namespace {
 
-// The time to draw a few pictures.
+// Retry delay when the queue is full: about the time to draw a few pictures.
 constexpr std::chrono::seconds kQueueRetryAfter{5};
 
 absl::Status TooManyWaiting(const char* of_whom, std::size_t waiting) {
@@ -65,7 +65,7 @@ std::deque<ImageJob> ImageQueue::Extract(const std::function<bool(const ImageJob
 }
 
 void ImageQueue::Admit(const std::function<absl::Status(ImageJob&)>& admit) {
-  // Taking out the new jobs and appending the admitted ones keeps the order.
+  // The order is kept: new jobs are taken out of the queue, and the admitted ones are appended.
   std::deque<ImageJob> fresh =
       Extract([](const ImageJob& job) { return !job.decided.has_value(); });
   for (ImageJob& job : fresh) {

@@ -1,4 +1,4 @@
-// A queue of pictures requested outside any session. Safe from any thread.
+// A queue of single pictures that were requested outside any session. Safe from any thread.
 #pragma once
 
 #include <atomic>
@@ -22,41 +22,45 @@ namespace thunderhead::drawing {
 
 // Progress of tracing the light of a picture.
 struct ImageProgress {
-  double share = 0.0;  // traced share of the required paths, 0 to 1
+  double share = 0.0;  // traced paths divided by the required paths, 0 to 1
   std::int64_t traced_paths = 0;
-  std::optional<double> estimated_error;  // estimated error of the picture with these paths
+  // Estimated error of the picture if it were drawn with the paths traced so far.
+  std::optional<double> estimated_error;
 };
 
-// The fields and the camera of a picture.
+// The fields of a picture's storm, and the picture's camera.
 struct ImageInput {
   std::shared_ptr<const volume::HydrometeorFields> fields;
-  scene::Camera camera;  // the scene's camera, framed by the fields
+  scene::Camera camera;  // the scene's camera with absent settings derived from the fields
 };
 
-// One picture at full quality, outside any session. Its fields are read when its turn comes, so
-// that waiting jobs hold no fields in memory.
+// One picture at full quality, outside any session. Its fields are read only when it is its turn,
+// so that waiting jobs hold no fields in memory.
 struct ImageJob {
   scene::Scene scene;
   std::function<absl::StatusOr<ImageInput>()> read;  // called on a thread that may block
-  // Called with the picture on a thread that may block. It may move the pixels out.
+  // Encodes the picture. Called on a thread that may block; it may move the pixels out of its
+  // argument.
   std::function<absl::Status(DisplayFrame&)> encode;
-  std::shared_ptr<const std::atomic<bool>> cancelled;  // true ends the job at its next piece
-  // Called once, on the loop's thread or on the thread that calls Add; must not block.
+  std::shared_ptr<const std::atomic<bool>> cancelled;  // true ends the job before its next piece
+  // Called once with the outcome, on the render loop's thread or on the thread that calls Add. It
+  // must not block.
   std::function<void(absl::StatusOr<DisplayFrame>)> done;
-  // If set, called on the loop's thread when more light is traced, but never after `done`; must not
-  // block.
+  // If set, called on the render loop's thread when more light was traced, but never after `done`.
+  // It must not block.
   std::function<void(const ImageProgress&)> on_progress = nullptr;
-  // Set for background jobs: no client waits for them, so jobs with a waiting client go first.
+  // True for background jobs. No client waits for these, so jobs with a waiting client are drawn
+  // first.
   bool gives_way = false;
-  bool linear = false;         // the linear radiance is requested as well
+  bool linear = false;         // also return the linear radiance
   double error_seconds = 0.0;  // maximum tracing time for measuring the picture's error
   // Maximum time for reading, drawing and encoding, without the time spent waiting for other work.
-  // The same limit applies to the time since the start while the job waits for light or its error.
-  // A job that exceeds it ends with `too_long`.
+  // While the job waits for light or for its error, the same limit applies to the time since its
+  // start. A job that exceeds the limit ends with the error `too_long`.
   double max_work_ms = 1e15;
   absl::Status too_long = absl::OkStatus();
-  // The identity that requested it. All owners get equal shares of the drawing time. Empty: no
-  // owner.
+  // The identity that requested the picture. All owners get equal shares of the drawing time. Empty
+  // if the picture has no owner.
   std::string owner = "";
   // Set on admission: the scene with its decided setting, and its predicted drawing time.
   std::optional<scene::Scene> decided = std::nullopt;
@@ -65,21 +69,23 @@ struct ImageJob {
 
 class ImageQueue {
  public:
-  // The maximum numbers of waiting pictures: in all, and of one owner.
+  // `max_waiting` is the maximum number of waiting pictures, `max_waiting_each` the maximum of one
+  // owner.
   ImageQueue(std::size_t max_waiting, std::size_t max_waiting_each)
       : max_waiting_(max_waiting), max_waiting_each_(max_waiting_each) {}
 
-  // Adds a job. Returns false after calling `done` with the reason if the queue is full, the owner
-  // has too many jobs in it, or the server is stopping.
+  // Adds a job. If the queue is full, the owner has too many jobs in it or the server is stopping,
+  // calls the job's `done` with the reason and returns false.
   bool Add(ImageJob job);
-  // Calls `admit` for each job added since the last call. Refused jobs are done with its error.
+  // Calls `admit` for each job added since the last call. If it returns an error, the job ends with
+  // that error.
   void Admit(const std::function<absl::Status(ImageJob&)>& admit);
   // Takes the first admitted job for which `suits` is true, of the owner that has used the least
-  // drawing time. Takes a background job only if there is no other.
+  // drawing time. Takes a background job only if no other job suits.
   std::optional<ImageJob> Take(const std::function<bool(const ImageJob&)>& suits);
-  // Charges the owner for the actual drawing time instead of the predicted time.
+  // Replaces the predicted drawing time, which was charged to the owner, by the actual time.
   void Drew(const ImageJob& job, double milliseconds);
-  // Drops cancelled jobs and calls their `done`.
+  // Removes cancelled jobs and calls their `done`.
   void DropCancelled();
   std::size_t Waiting() const;
   // Refuses all waiting and future jobs.
@@ -87,7 +93,7 @@ class ImageQueue {
 
  private:
   std::size_t WaitingOf(const std::string& owner) const;  // needs mutex_
-  // Removes and returns the jobs for which `is` is true.
+  // Removes and returns the jobs for which `is` returns true.
   std::deque<ImageJob> Extract(const std::function<bool(const ImageJob&)>& is);
 
   const std::size_t max_waiting_;

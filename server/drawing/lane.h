@@ -1,6 +1,6 @@
-// A thread that draws alongside the render loop with its own frame source. A long drawing can stop
-// between two pieces while others are drawn. The lane uses the device only in turns that the render
-// loop gives it, and the CPU at a low priority.
+// A thread that draws alongside the render loop with its own frame source. A long drawing consists
+// of pieces, and other work is drawn between two pieces. The lane uses the device only in turns
+// that the render loop gives it, and the CPU at a low priority.
 #pragma once
 
 #include <atomic>
@@ -22,18 +22,18 @@ namespace thunderhead::drawing {
 
 class Lane {
  public:
-  // Called on the lane's thread with its source, which is created for the first work, or with the
-  // error of creating it.
+  // The work of a lane. It is called on the lane's thread with the lane's source, which is created
+  // for the first work. If the source could not be created, it is called with the error.
   using Work = std::function<void(const absl::StatusOr<FrameSource*>& source)>;
 
   struct Limits {
-    // If set to true, ends the work with CANCELLED at its next piece. Tracing ends within some rays
-    // (base::DeviceTurn::Wanted). The limits below take effect at the same points.
+    // If set to true, the work ends with CANCELLED before its next piece. Tracing checks the flag
+    // after some rays (base::DeviceTurn::Wanted). The limits below are checked at the same points.
     std::shared_ptr<const std::atomic<bool>> cancelled = nullptr;
-    // Maximum drawing time of all its pieces. Beyond it, the work ends with RESOURCE_EXHAUSTED.
+    // Maximum drawing time of all pieces. Beyond it, the work ends with RESOURCE_EXHAUSTED.
     double max_ms = 1e15;
-    // Maximum time of all its work, without waiting for turns. Beyond it, the work ends with
-    // `too_long` at its next piece.
+    // Maximum time of the whole work, without the time spent waiting for turns. Beyond it, the work
+    // ends with `too_long` before its next piece.
     double max_work_ms = 1e15;
     absl::Status too_long = absl::OkStatus();
   };
@@ -41,7 +41,7 @@ class Lane {
   // `on_change` is called on the lane's thread when the lane needs a turn or has finished its work.
   Lane(FrameSourceFactory make_source, int niceness, std::function<void()> on_change,
        const base::TimeSource& time = base::SteadyTime());
-  // Ends the work at its next piece.
+  // Ends the work before its next piece and joins the thread.
   ~Lane();
   Lane(const Lane&) = delete;
   Lane& operator=(const Lane&) = delete;
@@ -51,20 +51,22 @@ class Lane {
   // Starts the work. The lane must be idle.
   void Begin(Work work, Limits limits);
 
-  // If the lane is idle, frees what its source keeps and has not used for that long. Returns when
-  // that is done.
+  // If the lane is idle, frees what its source keeps but has not used during the last `unused_s`
+  // seconds. Returns when the memory is freed.
   void FreeUnused(double unused_s);
-  // Replaces the source after the device was lost. Ends the current work with gl::DeviceLost at its
-  // next piece; later work gets another source.
+  // Discards the source after the device was lost. The current work ends with gl::DeviceLost before
+  // its next piece, and later work gets a new source.
   void RenewSource();
 
-  // Returns true if the work waits to draw a piece. Also lets cancelled work run to its end.
+  // Returns true if the work waits to draw a piece. If the work was cancelled, lets it run to its
+  // end first.
   bool WantsTurn();
-  // Lets the lane draw a piece. Returns when it is drawn, with the milliseconds that it took.
+  // Lets the lane draw a piece. Returns the time that the piece took, in milliseconds, once it is
+  // drawn.
   double GiveTurn();
 
-  // Returns how long the lane has worked since its last piece, on the CPU or in a call that hangs.
-  // Returns 0 while it has no work or waits for its turn. Safe from any thread.
+  // Returns how long the lane has worked since its last piece: computing on the CPU, or in a call
+  // that hangs. Returns 0 while the lane has no work or waits for its turn. Safe from any thread.
   double StalledSeconds() const;
 
  private:
@@ -86,9 +88,9 @@ class Lane {
   absl::Status Take();
   void GiveBack();
   absl::Status Wanted() const;
-  // Returns why the work must end; OK if it must not. Needs mutex_.
+  // Returns the reason why the work must end; OK if it may continue. Needs mutex_.
   absl::Status Ended() const;
-  // Returns the working time of the current work without waiting. Needs mutex_.
+  // Returns the time of the current work so far, without waiting for turns. Needs mutex_.
   double WorkedMs() const;
   void Run();
 
@@ -102,7 +104,7 @@ class Lane {
   std::condition_variable changed_;
   bool stopping_ = false;
   bool source_is_lost_ = false;
-  std::optional<double> frees_;  // request to free what was unused for this many seconds
+  std::optional<double> frees_;  // requests that memory unused for this many seconds be freed
   Work work_;
   Limits limits_;
   bool busy_ = false;
@@ -111,7 +113,7 @@ class Lane {
   double waited_ms_ = 0.0;  // time that the current work waited for turns
   Time begun_at_;
   Time wanted_at_;    // start of the wait for a turn
-  Time progress_at_;  // last piece or wait
+  Time progress_at_;  // time of the last piece or the end of the last wait
   std::thread thread_;
 };
 

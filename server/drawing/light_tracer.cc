@@ -14,7 +14,7 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Returns true if the failure is temporary: other work uses what the step needs.
+// Returns true if the failure may pass, because other work now uses what the step needs.
 bool MayPass(const absl::Status& failed) {
   return absl::IsResourceExhausted(failed) && !base::IsTooLargeForMemory(failed);
 }
@@ -55,8 +55,9 @@ void LightTracer::TakeOutcome(session::Clock::time_point now) {
   wanted.news = std::move(outcome->progress);
 }
 
-// Returns true if the request is complete. A picture ends at its requested paths and seconds; a
-// session calls Stop when it has enough.
+// Returns true if the request is complete. The request of a picture is complete at its requested
+// number of paths and seconds. A session's request never is: the session calls Stop when it has
+// enough paths.
 bool LightTracer::Ends(const Request& request, const TracedStep& step) {
   const bool traces = step.light.has_value() && step.light->steps > 0 &&
                       !(request.claims && step.light->HasTraced(request.wanted_paths));
@@ -82,7 +83,8 @@ LightTracer::Progress LightTracer::Trace(FrameSource& source, const Request& req
   }
   // The device was lost, or the server is stopping.
   if (absl::IsUnavailable(error.status())) return error.status();
-  // The picture is as good without its error. A temporary failure is retried with the next step.
+  // The picture can be shown without its error. A failure that may pass is retried with the next
+  // step.
   if (MayPass(error.status())) {
     if (!request.light) return error.status();
     return step;

@@ -1,6 +1,6 @@
-// Traces light for views at rest and measures the errors of their pictures. The views are sessions,
-// and pictures that wait for light. It takes one step for each in turn, in a separate lane. Used by
-// the render loop's thread only.
+// Traces light for views at rest and measures the errors of their pictures. A view belongs to a
+// session, or is a single picture that waits for light. The tracer does one step for each view in
+// turn, in a separate lane. Used by the render loop's thread only.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,10 @@
 
 namespace thunderhead::drawing {
 
-// Delay before tracing is tried again while light is traced for too many other scenes.
+// Delay before tracing is retried when light is traced for too many other scenes.
 inline constexpr session::Clock::duration kTraceAgainAfter = std::chrono::milliseconds(500);
 
-// The progress of a step.
+// The outcome of one step.
 struct TracedStep {
   std::optional<accuracy::LightProgress> light;
   std::optional<accuracy::ErrorProgress> error;
@@ -33,28 +33,32 @@ struct TracedStep {
 
 class LightTracer {
  public:
-  // The lane must outlive it, and its work must have ended before this does.
+  // The lane must outlive the tracer. The lane's work must have ended before the tracer is
+  // destroyed.
   explicit LightTracer(Lane& lane) : lane_(lane) {}
 
   struct Request {
     std::shared_ptr<const scene::Scene> scene;
     std::shared_ptr<const volume::HydrometeorFields> fields;
     std::int64_t wanted_paths = 0;
-    bool claims = false;  // while it traces, its light is not evicted for another scene
+    bool claims = false;  // its light is not evicted for another scene while it is traced
     bool light = true;    // trace light
     bool error = false;   // measure the error
-    double wanted_error_s = std::numeric_limits<double>::infinity();  // tracing time for the error
+    // Maximum tracing time for measuring the error.
+    double wanted_error_s = std::numeric_limits<double>::infinity();
   };
-  // Traces until Stop is called, or until a step fails or finds nothing to trace or measure.
+  // Traces for the view `who` until Stop is called, a step fails, or a step finds nothing to trace
+  // or measure.
   void Want(const std::string& who, Request request);
   void Stop(const std::string& who);
-  // Takes the progress since the last call, or the error of a failed step.
+  // Takes the progress of `who` since the last call, or the error of a failed step. Returns none if
+  // there is no progress.
   std::optional<absl::StatusOr<TracedStep>> TakeNews(const std::string& who);
 
-  // Takes the outcome of a finished step.
+  // Takes the outcome of the step that the lane has finished, if any.
   void TakeOutcome(session::Clock::time_point now);
-  // Begins the next step if none is running. Returns when to call again if no wake-up comes
-  // earlier.
+  // Begins the next step if no step is running. Returns when to call again, unless the loop is
+  // woken earlier.
   std::optional<session::Clock::time_point> Begin(session::Clock::time_point now);
 
  private:
@@ -78,7 +82,7 @@ class LightTracer {
 
   Lane& lane_;
   std::map<std::string, Wanted> wanted_;
-  std::string tracing_for_;  // who the current or last step is for
+  std::string tracing_for_;  // name of the view for which the current or last step is done
   std::shared_ptr<const scene::Scene> tracing_scene_;
   std::shared_ptr<Outcome> outcome_;
 };

@@ -5,8 +5,8 @@
 namespace thunderhead::drawing {
 namespace {
 
-// The picture is drawn again when the number of paths has grown by this factor. The time since the
-// last drawing must be at least kMinBetween; after kMaxBetween it is drawn in any case.
+// The picture is drawn again when the number of traced paths has grown by this factor. The last
+// drawing must be at least kMinBetween ago. After kMaxBetween, the picture is drawn in any case.
 constexpr double kShownGrowth = 1.5;
 constexpr session::Clock::duration kMinBetween = std::chrono::milliseconds(500);
 constexpr session::Clock::duration kMaxBetween = std::chrono::seconds(5);

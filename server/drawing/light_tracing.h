@@ -1,5 +1,5 @@
-// The progress of tracing light for a view at rest, and when to show it. A plain value; the time is
-// an argument.
+// The progress of tracing light for a view at rest, and when to show the improved picture. A plain
+// value; the time is an argument.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,16 @@ namespace thunderhead::drawing {
 
 class LightTracing {
  public:
-  // Starts again if the revision is new.
+  // Discards the progress if `revision` is new.
   void BeginFor(std::uint64_t revision, session::Clock::time_point now);
 
-  // Records progress. Returns true if the picture should be drawn again with it.
+  // Records the progress of tracing. Returns true if the picture should be drawn again with the
+  // light traced so far.
   bool Traced(const accuracy::LightProgress& progress, session::Clock::time_point now);
   // Records that the picture was drawn with the light traced so far.
   void Shown(session::Clock::time_point now);
 
-  // Ends tracing for the revision. If `due`, the picture must be drawn once more.
+  // Ends tracing for the revision. If `due` is true, the picture must be drawn once more.
   void GiveUp(bool due) {
     ended_ = true;
     due_ = due;
@@ -33,7 +34,8 @@ class LightTracing {
 
  private:
   std::uint64_t revision_ = 0;
-  std::optional<accuracy::LightProgress> begun_at_;  // progress before this view, from earlier ones
+  // Progress that earlier views had already made when this view began.
+  std::optional<accuracy::LightProgress> begun_at_;
   std::int64_t paths_ = 0;
   std::int64_t shown_paths_ = 0;
   session::Clock::time_point shown_at_;

@@ -1,5 +1,6 @@
-// A frame source with the cost model and the error estimator. It reports each frame to the cost
-// model once and adds the estimate of the frame's error. Used by the render loop's thread only.
+// A frame source with the cost model and the error estimator. It reports each frame's cost to the
+// cost model once, and adds an estimate of the error to the frame. Used by the render loop's thread
+// only.
 #pragma once
 
 #include <memory>
@@ -26,14 +27,14 @@ class MeasuredSource {
   MeasuredSource& operator=(const MeasuredSource&) = delete;
 
   // Draws a frame of `view`, which is a session's id, or empty for pictures outside any session.
-  // `evidence` holds what is known of its error. The number of paths that corrected its light is
-  // added.
+  // `evidence` holds what is known about the frame's error. The number of paths that corrected the
+  // light is added to it.
   absl::StatusOr<DisplayFrame> Draw(const std::string& view, const scene::Scene& scene,
                                     const Fields& fields, const FrameQuality& quality,
                                     const accuracy::Evidence& evidence = {});
   absl::StatusOr<CheckedFrame> DrawChecked(const std::string& view, const scene::Scene& scene,
                                            const Fields& fields);
-  // Forward to the FrameSource.
+  // The following functions forward to the FrameSource.
   absl::StatusOr<DisplayFrame> Tone(const picture::LinearPicture& picture,
                                     const scene::Scene& scene);
   absl::StatusOr<frame::FineImage> Fine();
@@ -42,7 +43,7 @@ class MeasuredSource {
   // Replaces the source after the device was lost. While the source is null, nothing can be drawn.
   void Replace(std::unique_ptr<FrameSource> source);
 
-  // Reports a frame that was drawn by the source of that lane.
+  // Reports a frame that the source of the named lane drew to the cost model.
   void Learn(std::string_view lane, const std::string& view, const scene::Scene& scene,
              const FrameQuality& quality, const accuracy::Evidence& evidence, DisplayFrame* frame);
 
@@ -64,7 +65,7 @@ class MeasuredSource {
   accuracy::MachineCosts costs_{tables_};
   const accuracy::Offers offers_{tables_, costs_};
   const accuracy::Estimator estimator_{tables_, costs_};
-  std::optional<LastDrawn> last_drawn_;  // none after a failed drawing
+  std::optional<LastDrawn> last_drawn_;  // absent after a failed drawing
 };
 
 }  // namespace thunderhead::drawing

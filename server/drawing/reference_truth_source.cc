@@ -42,7 +42,8 @@ class ReferenceTruthSource final : public TruthSource {
 
   picture::LinearPicture Snapshot() override {
     picture::LinearPicture picture = tracer_.Snapshot();
-    picture.standard_error = {};  // sessions show only its mean (Refinement)
+    // Dropped, because sessions show only its mean over the picture (Refinement).
+    picture.standard_error = {};
     return picture;
   }
 

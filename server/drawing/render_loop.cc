@@ -26,10 +26,10 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Priority below work that a viewer waits for, but above tracing, which could use all CPU cores
-// indefinitely.
+// Niceness of the lanes that draw single pictures. It is above that of sessions' frames, for which
+// viewers wait, but below that of tracing, which could use all CPU cores indefinitely.
 constexpr int kImageNiceness = 5;
-// Priority of frames at rest, below frames of changing scenes.
+// Niceness of the lane that draws frames at rest, which yields to frames of changing scenes.
 constexpr int kSessionNiceness = 1;
 
 // The lanes that draw alongside the render loop.
@@ -51,8 +51,8 @@ class Lanes {
              {"/quick images", TurnClass::kBatch, quick_images},
              {"/images", TurnClass::kBatch, images}} {}
 
-  // Returns the lanes that compete for turns themselves. The sessions' lane is not among them: it
-  // competes as the session whose frame it draws.
+  // Returns the lanes that compete for turns as contenders of their own. The sessions' lane is not
+  // among them: the session whose frame it draws competes instead.
   const std::vector<Entry>& All() const { return all_; }
 
   Lane sessions;
@@ -64,7 +64,8 @@ class Lanes {
   const std::vector<Entry> all_;
 };
 
-// A scene that a viewer returns to within this time should still be cached.
+// The GL objects of a scene that was last drawn within this time are kept, because a viewer may
+// return to it.
 constexpr double kUnused_s = 3.0;
 constexpr std::chrono::milliseconds kBetweenAnswers{500};
 
@@ -73,8 +74,8 @@ RenderLoopOptions WithBudget(RenderLoopOptions options) {
   return options;
 }
 
-// Frees unused memory when a budget has refused a reservation. Watches the budgets' refusals during
-// its lifetime.
+// Frees unused memory when a budget has refused a reservation. It listens for refusals as long as
+// it exists.
 class MemoryPressure {
  public:
   using Budgets = std::vector<std::shared_ptr<base::MemoryBudget>>;
@@ -266,7 +267,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
       contenders.push_back({session->id(), session->IsOwnView(), wish.work});
       look_again_at = Earlier(look_again_at, wish.look_again_at);
     }
-    // This follows the sessions because they may just have requested light.
+    // This follows the sessions' work, because a session may just have requested light.
     look_again_at = Earlier(look_again_at, light_tracer.Begin(time_.Now()));
     for (const Lanes::Entry& entry : lanes->All()) {
       contenders.push_back({entry.name, false, std::nullopt});

@@ -1,7 +1,7 @@
 // The render loop. One thread draws the sessions that have a viewer ready for a frame. It also
 // gives turns on the device to its lanes, which draw long frames and single pictures and trace
-// light. Reads, encoding and the reference run on other threads. Knows no GL (only the frame
-// sources do) and no message formats.
+// light. Reading, encoding and the Monte Carlo reference run on other threads. Knows no GL (only
+// the frame sources do) and no message formats.
 #pragma once
 
 #include <atomic>
@@ -39,33 +39,33 @@ class MeasuredSource;
 struct RenderLoopOptions {
   PlannerTargets targets;
   std::size_t max_waiting_images = 1000;
-  std::size_t max_waiting_images_each = 600;  // for one owner
+  std::size_t max_waiting_images_each = 600;  // maximum per owner
   ImageLimits image_limits;
   int encoder_threads = 1;
   // If true, lanes and their threads run at a lower priority than frames of changing scenes. Set it
-  // to false if no session is served; otherwise other programs on the machine would slow the lanes
+  // to false if no session is served. Otherwise, other programs on the machine would slow the lanes
   // down.
   bool lanes_yield = true;
   SerializeFrame serialize_frame = [](const delivery::EncodedFrame&) { return ""; };
-  // Maximum number of sessions that show the reference. Each uses some hundred bytes per pixel,
-  // plus the storm fields.
+  // Maximum number of sessions that show the Monte Carlo reference. Each uses some hundred bytes
+  // per pixel, plus the memory of its storm's fields.
   std::size_t max_traced_sessions = 8;
   std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
   TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
-  // The memory budget of pictures; null means no limit.
+  // The memory budget for pictures; null means no limit.
   std::shared_ptr<base::MemoryBudget> memory;
-  // The budgets of GL objects. If one refuses a reservation, sources free what they cache.
+  // The budgets for GL objects. When a budget refuses a reservation, the sources free their caches.
   std::vector<std::shared_ptr<base::MemoryBudget>> device_memory;
   LossLimits losses;
-  // Called once, on the loop's thread, when the device was lost too often. Nothing is drawn after
-  // that.
+  // Called once, on the loop's thread, when the device was lost too often. Afterwards nothing is
+  // drawn.
   std::function<void(const absl::Status& why)> on_device_given_up;
 };
 
 class RenderLoop {
  public:
-  // Returns when the frame source has been created, or its error. `sessions` must call
-  // `wake.Notify()` when there is work. The store, the sessions and the signal must outlive the
+  // Starts the loop. Returns it once the frame source has been created, or the error. `sessions`
+  // must call `wake.Notify()` when there is work. `store`, `sessions` and `wake` must outlive the
   // loop.
   static absl::StatusOr<std::unique_ptr<RenderLoop>> Start(const RenderLoopOptions& options,
                                                            storm_store::StormStore& store,
@@ -82,21 +82,21 @@ class RenderLoop {
 
   void RenderImage(ImageJob job);
 
-  // Returns how long the current drawing turn or the reopening of a lost device has taken. 0 while
-  // the loop waits for work.
+  // Returns the time that the current drawing turn, or the reopening of a lost device, has taken so
+  // far, in seconds. Returns 0 while the loop waits for work.
   double TurnSeconds() const;
 
   // Returns true while the device is lost and not yet reopened.
   bool IsRecovering() const { return recovering_; }
   std::size_t WaitingImages() const { return images_.Waiting(); }
 
-  // Returns how long a lane has worked without drawing a piece or waiting for one. 0 while no lane
-  // works.
+  // Returns how many seconds a lane has worked without drawing a piece or waiting for a turn: the
+  // longest of all lanes. Returns 0 while no lane works.
   double StalledSeconds() const;
 
-  // Requests a stop after the current frame or piece. Returns at once.
+  // Requests a stop after the current frame or piece. Returns without waiting.
   void RequestStop();
-  // Waits for the current frame or piece, refuses the waiting pictures and ends all threads.
+  // Waits for the current frame or piece, refuses the waiting pictures and joins all threads.
   void Stop();
 
  private:
@@ -106,7 +106,7 @@ class RenderLoop {
   void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
   void DrawWith(std::unique_ptr<FrameSource> source, const FrameSourceFactory& make_source);
   void NoteLanes(std::vector<const Lane*> lanes);
-  // Starts the time that TurnSeconds returns.
+  // Starts the time measurement of TurnSeconds.
   void BeginTurn() { turn_began_ = time_.Now().time_since_epoch().count(); }
   // Reopens the device after a loss. Returns true when it is open again, false if the loop gives
   // up.
@@ -118,7 +118,7 @@ class RenderLoop {
   session::Sessions& sessions_;
   base::WakeSignal& wake_;
   const base::TimeSource& time_;  // the sessions' time source
-  DeviceInfo device_;             // like the next two, constant after Start
+  DeviceInfo device_;             // constant after Start, like the next two
   std::vector<scene::TechniqueInfo> techniques_;
   std::shared_ptr<Preparation> preparation_;
   std::atomic<bool> stopping_{false};
@@ -126,10 +126,11 @@ class RenderLoop {
   std::atomic<bool> device_lost_{false};
   std::atomic<bool> recovering_{false};
   DeviceLosses losses_;
-  std::atomic<session::Clock::rep> turn_began_{0};  // since the clock's epoch; 0: no turn
+  // Since the clock's epoch; 0 while there is no turn.
+  std::atomic<session::Clock::rep> turn_began_{0};
 
   mutable std::mutex lanes_mutex_;
-  std::vector<const Lane*> lanes_;  // existing lanes
+  std::vector<const Lane*> lanes_;  // all existing lanes
 
   ImageQueue images_;
   std::unique_ptr<FieldsReader> reader_;

@@ -17,11 +17,11 @@
 namespace thunderhead::drawing {
 namespace {
 
-// How often a scene is drawn again after the device was lost while drawing it. The scene itself may
-// be the cause.
+// The number of times that a scene is drawn again after the device was lost while drawing it. It is
+// limited because the scene itself may be the cause.
 constexpr int kMaxLosses = 2;
 
-// Ratio of the time of a frame that is also drawn with half the slices to the time of the frame
+// The time of a frame that is also drawn with half the slices, relative to the time of the frame
 // alone.
 constexpr double kCheckedShare = 1.5;
 
@@ -46,10 +46,10 @@ std::shared_ptr<session::Session> FindById(
   return found != sessions.end() && (*found)->id() == id ? *found : nullptr;
 }
 
-// The owner must close a session or view first.
+// Retry delay for an owner who must close a session or view first.
 constexpr std::chrono::seconds kShareRetry{10};
 
-// Returns the bytes that a frame holds until there is a newer one.
+// Returns the bytes that a frame keeps reserved until there is a newer frame.
 std::size_t BytesOf(const DisplayFrame& picture) {
   return picture.memory == nullptr ? 0 : picture.memory->Bytes();
 }
@@ -113,7 +113,7 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<session::Session>&
                       std::holds_alternative<ShowLight>(turn.kept.work);
   if (!traces) light_tracer_.Stop(session->id());
   Wish wish = std::visit([&](const auto& work) { return Need(turn, work); }, turn.kept.work);
-  // Need may have replaced the work, for example by showing light traced meanwhile.
+  // Need may have replaced the work, for example by work that shows the light traced meanwhile.
   turn.kept.in_lane = turn.kept.in_lane || IsLong(turn, turn.kept.work);
   if (turn.kept.in_lane && !lane_.IsFree()) wish.work.reset();
   return wish;
@@ -122,8 +122,8 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<session::Session>&
 std::optional<SessionDrawer::Wish> SessionDrawer::LookInLane(const Turn& turn,
                                                              const session::NewestScene& newest) {
   if (!in_lane_.has_value() || !lane_.IsFor(turn.session->id())) return std::nullopt;
-  // A change cancels only refinement. An interactive frame is soon ready. If each change cancelled
-  // it, no frame would be shown.
+  // A changed scene cancels only refinement. An interactive frame is ready soon, and if each change
+  // cancelled it, no frame would ever be shown.
   if (in_lane_->turn_class == TurnClass::kRefining &&
       in_lane_->newest_revision != newest.revision) {
     lane_.Cancel();
@@ -164,7 +164,7 @@ void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<session::Session
   alone_ = std::ranges::count_if(
                sessions, [](const auto& session) { return session->hub().HasViewers(); }) <= 1;
   if (!in_lane_.has_value()) return;
-  lane_.WantsTurn();  // lets cancelled drawing end
+  lane_.WantsTurn();  // WantsTurn lets cancelled drawing run to its end
   const std::string session_id = lane_.For();
   auto picture = lane_.Take();
   if (!picture.has_value()) return;
@@ -179,7 +179,8 @@ void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<session::Session
   if (picture->ok()) {
     if (turn.kept.fields.Fields() == drawn.fields) Show(turn, drawn, **std::move(picture));
   } else if (absl::IsResourceExhausted(picture->status()) && turn.kept.whole_revision != revision) {
-    // Memory does not suffice for a second copy, so the render loop's source draws it instead.
+    // The memory does not suffice for a second copy of the storm in the lane, so the render loop's
+    // source draws the frame.
     turn.kept.whole_revision = revision;
   } else {
     Fail(turn, revision, picture->status());
@@ -233,7 +234,7 @@ void SessionDrawer::ReleaseUnwatched(
       if (lane_.IsFor(kept->first)) lane_.Cancel();
     }
     if (session != nullptr) {
-      ++kept;  // keeps the session's view because viewers may come back
+      ++kept;  // the session's view is kept, because viewers may come back
     } else {
       source_.Forget(kept->first);
       kept = kept_.erase(kept);
@@ -292,8 +293,8 @@ SessionWork SessionDrawer::Placed(const Turn& turn, const session::NewestScene& 
   const bool moves = turn.kept.view.state() == SessionView::State::kMoving;
   turn.kept.in_lane = false;
   if (draw != nullptr && moves) {
-    // If only the tone of a picture drawn at rest changes, the lane's source still has its
-    // radiance.
+    // If a picture was drawn at rest in the lane and only its tone map changes, the lane's source
+    // still has the picture's radiance.
     const scene::Scene& scene = *draw->shown.scene;
     const auto has_light = [&](const std::optional<LastDrawn>& last) {
       return FirstDirty(last, scene) >= scene::Stage::kTone;
@@ -318,7 +319,8 @@ bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
   const session::NewestScene* shown = ShownBy(work);
   if (shown == nullptr || shown->revision == turn.kept.whole_revision) return false;
   if (turn.kept.view.state() == SessionView::State::kMoving) return false;
-  // If memory is short, a second copy in the lane would make other sessions free memory.
+  // If memory is scarce, a second copy of the storm in the lane would make other sessions free
+  // memory.
   if (!lane_.HasRoomFor(*shown->scene, turn.kept.device_bytes)) return false;
   const scene::Stage first_dirty =
       std::min(FirstDirty(IfDrawnFrom(turn.kept.fields.Fields(), source_.Last()), *shown->scene),
@@ -472,7 +474,7 @@ bool SessionDrawer::WantsFine(session::Session& session, int width_px) {
 std::optional<frame::FineImage> SessionDrawer::FineOf(const Turn& turn,
                                                       const DisplayFrame& picture) {
   if (!WantsFine(*turn.session, picture.width_px)) return std::nullopt;
-  // On an error the viewers get JPEG.
+  // If the fine picture is not available, viewers get JPEG.
   auto fine = source_.Fine();
   return fine.ok() ? std::optional(*std::move(fine)) : std::nullopt;
 }
@@ -524,7 +526,8 @@ absl::Status SessionDrawer::CheckReference(const Turn& turn) const {
 }
 
 void SessionDrawer::Fail(const Turn& turn, std::uint64_t revision, const absl::Status& why) {
-  // This is no failure yet: the same work is due again when the device has been reopened.
+  // A lost device is no failure of the scene yet: the same work is done again when the device has
+  // been reopened.
   const bool lost = gl::IsDeviceLost(why);
   if (lost && ++turn.kept.losses <= kMaxLosses) return;
   turn.kept.view.Failed(revision, lost ? std::nullopt : TryAgainAt(why, time_.Now()));

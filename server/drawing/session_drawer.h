@@ -1,6 +1,6 @@
-// Does the work of sessions' views, one item per turn: draws with the source and passes frames to
-// the encoder. Long frames are drawn in pieces, in a lane. Work that needs no device is done while
-// looking for work. Used by the render loop's thread only.
+// Does the work of sessions' views, one item per turn. It draws with the source and passes the
+// frames to the encoder. Long frames are drawn in pieces, in a lane. Work that needs no device is
+// done in Look. Used by the render loop's thread only.
 #pragma once
 
 #include <cstddef>
@@ -26,10 +26,12 @@ namespace thunderhead::drawing {
 
 class SessionDrawer {
  public:
-  // Limits of what the sessions and own views of one identity may hold.
+  // Limits for all sessions and own views of one identity together.
   struct Share {
-    std::size_t picture_bytes = std::numeric_limits<std::size_t>::max();  // of their newest frames
-    std::size_t references = std::numeric_limits<std::size_t>::max();     // traced references
+    // Maximum bytes of their newest frames.
+    std::size_t picture_bytes = std::numeric_limits<std::size_t>::max();
+    // Maximum number of references being traced.
+    std::size_t references = std::numeric_limits<std::size_t>::max();
   };
 
   // All references must outlive it.
@@ -39,21 +41,23 @@ class SessionDrawer {
                 const base::TimeSource& time = base::SteadyTime());
 
   struct Wish {
-    std::optional<TurnClass> work;  // work that needs a turn
+    std::optional<TurnClass> work;  // work that needs a turn on the device
     std::optional<session::Clock::time_point> look_again_at;
   };
   Wish Look(const std::shared_ptr<session::Session>& session);
   // Does the work that the last Look found for the session: all of it, or one piece.
   void TakeTurn(const std::shared_ptr<session::Session>& session);
-  // Sends the frame that was drawn in the lane, if one is ready. `sessions` must be ordered by id.
+  // Passes the frame that was drawn in the lane, if one is ready, to the encoder. `sessions` must
+  // be ordered by id.
   void TakeDrawn(const std::vector<std::shared_ptr<session::Session>>& sessions);
 
-  // Frees memory when it is scarce. Drops frames of `sessions` without viewers. Sessions that show
-  // their final pictures release their fields and trace no light for a while. If the fields of a
-  // session were refused, sessions whose pictures are still being refined do so too.
+  // Frees memory when it is scarce. Drops the frames of `sessions` without viewers. Sessions that
+  // show their final pictures release their fields and trace no light for a while. If memory for
+  // another session's fields was refused, sessions whose pictures are still being refined do the
+  // same.
   void YieldMemory(const std::vector<std::shared_ptr<session::Session>>& sessions);
 
-  // Forgets what the sources kept, because the device was replaced.
+  // Forgets which frame the lane's source drew last, because the device was replaced.
   void DeviceReplaced() { lane_.Forget(); }
 
   // Frees the resources of sessions without viewers and of sessions that are not in `sessions`,
@@ -67,18 +71,18 @@ class SessionDrawer {
     SessionView view;
     SessionFields fields;
     SessionReference reference;
-    SessionWork work = WaitUntil{};  // last work found
-    // The part that ShowLight could not show.
+    SessionWork work = WaitUntil{};  // the work that the last Look found
+    // The property of the scene that ShowLight could not show.
     std::optional<scene::NotShown> not_shown = std::nullopt;
-    bool in_lane = false;     // the work must be done in the lane
-    bool gives_turn = false;  // the next turn goes to its frame in the lane
-    int losses = 0;           // device losses since the last frame
-    bool tells = false;       // the last frame reported its error
-    bool refused = false;     // its fields were refused for lack of memory since the last frame
-    std::uint64_t device_bytes = 0;  // of the last frame
-    std::size_t picture_bytes = 0;   // of the last frame
+    bool in_lane = false;            // the frame must be drawn in the lane
+    bool gives_turn = false;         // the next turn of the session goes to its frame in the lane
+    int losses = 0;                  // device losses since the last frame
+    bool tells = false;              // the last frame reported its error to viewers
+    bool refused = false;            // memory for its fields was refused since the last frame
+    std::uint64_t device_bytes = 0;  // device memory that the last frame used
+    std::size_t picture_bytes = 0;   // memory of the last frame's picture
     // The revision whose frame at rest did not fit into memory in the lane. The render loop draws
-    // it whole.
+    // that frame in one piece.
     std::uint64_t whole_revision = 0;
   };
   // The frame that is drawn in the lane.
@@ -89,31 +93,32 @@ class SessionDrawer {
     std::uint64_t newest_revision = 0;  // newest revision of the session at the start
     TurnClass turn_class = TurnClass::kRefining;
   };
-  // A session, and its state, whose turn it is.
+  // The session whose turn it is, and its state.
   struct Turn {
     const std::shared_ptr<session::Session>& session;
     Kept& kept;
   };
 
   Kept& KeptFor(const session::Session& session);
-  // RESOURCE_EXHAUSTED if the owner's other frames leave no memory for this picture, or if the
-  // owner already has the maximum number of references.
+  // RESOURCE_EXHAUSTED if the owner's other frames leave no memory for this picture (CheckPicture),
+  // or if the owner already has the maximum number of references (CheckReference).
   absl::Status CheckPicture(const Turn& turn, const DisplayFrame& picture) const;
   absl::Status CheckReference(const Turn& turn) const;
   void TakeRead(const Turn& turn);
   SessionWork NextWork(const Turn& turn, const session::NewestScene& newest);
-  // Returns the wish of a session whose frame is in the lane. None if the session no longer shows
-  // that scene.
+  // Returns the wish of a session whose frame is in the lane. Returns none if the session no longer
+  // shows the scene of that frame.
   std::optional<Wish> LookInLane(const Turn& turn, const session::NewestScene& newest);
-  // Returns the work, placed in the lane if it is too long for the render loop or if the lane's
-  // source can reuse more stages. In the lane, the work is planned again for those stages.
+  // Returns the work, moved to the lane if it takes too long for the render loop or if the lane's
+  // source can reuse more stages. In the lane, the frame's quality is planned again for the stages
+  // that must be rerun there.
   SessionWork Placed(const Turn& turn, const session::NewestScene& newest,
                      const std::optional<session::NewestScene>& drawable, SessionWork work);
   bool IsLong(const Turn& turn, const SessionWork& work) const;
   void BeginInLane(const Turn& turn, const SessionWork& work);
   void Show(const Turn& turn, const InLane& drawn, SessionLane::Picture picture);
 
-  // Each returns the turn class of the work, if it needs a turn.
+  // Each function returns the class of the turn that the work needs; absent if it needs no turn.
   Wish Need(const Turn& turn, const WaitUntil& work);
   Wish Need(const Turn& turn, const DrawFrame& work);
   Wish Need(const Turn& turn, const CheckSlices& work);
@@ -128,14 +133,17 @@ class SessionDrawer {
   void Do(const Turn& turn, const ShowLight& work);
   void Do(const Turn& turn, const ShowReference& work);
 
-  // Draws the picture again with the light traced so far, and reports what it does not show.
+  // Draws the picture again with the light traced so far, and records what the picture does not
+  // show.
   absl::Status DrawLight(const Turn& turn, const session::NewestScene& shown);
   void SendLight(const Turn& turn, const session::NewestScene& shown, DisplayFrame picture,
                  std::optional<frame::FineImage> fine);
   absl::Status ShowTraced(const Turn& turn, const session::NewestScene& shown);
-  // Returns true if viewers need a refined frame of that width with more than 8 bits.
+  // Returns true if a viewer takes stills of a refined frame of that width, which need more than 8
+  // bits per channel.
   static bool WantsFine(session::Session& session, int width_px);
-  // Returns the last picture of the render loop's source with more than 8 bits, if viewers need it.
+  // Returns the last picture of the render loop's source with more than 8 bits per channel, if
+  // viewers need it.
   std::optional<frame::FineImage> FineOf(const Turn& turn, const DisplayFrame& picture);
   void Send(const Turn& turn, const session::NewestScene& shown, bool refined, DisplayFrame picture,
             std::optional<frame::FineImage> fine,
@@ -151,7 +159,7 @@ class SessionDrawer {
   SessionLane& lane_;
   const Share share_;
   const base::TimeSource& time_;
-  bool alone_ = true;                 // at most one session is watched
+  bool alone_ = true;                 // true if at most one session has viewers
   std::optional<InLane> in_lane_;     // set until its outcome was taken
   std::map<std::string, Kept> kept_;  // by session id
 };

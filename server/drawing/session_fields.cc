@@ -5,7 +5,8 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Shorter preparations are not reported, because they were already done.
+// Preparations that took less time than this are not reported, because their results already
+// existed.
 constexpr double kMinReported_ms = 1.0;
 
 FieldsKey KeyOf(const storm_store::StormStore& store, const scene::Scene& scene) {
@@ -50,7 +51,8 @@ std::optional<session::NewestScene> SessionFields::Drawable(const session::Newes
       cached != nullptr && IsPrepared(*newest.scene, cached)) {
     fields_ = std::move(cached);
     key_ = key;
-    // The fields are requested even so, because the store prefetches the next times in Get.
+    // The fields are requested although they are already here, because the store prefetches the
+    // following times in Get.
     reading_for_.reset();
     access_.reader.Ask(id_, key);
     return newest;

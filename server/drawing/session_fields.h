@@ -1,6 +1,6 @@
-// The fields of the storm that a session shows. They are requested, read on another thread than the
-// render loop's, and prefetched while a series plays. Used by the render loop's thread only. Knows
-// no GL.
+// The fields of the storm that a session shows. They are requested from a FieldsReader, which reads
+// them on another thread than the render loop's. While a time series plays, the next time is
+// prefetched. Used by the render loop's thread only. Knows no GL.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@
 
 namespace thunderhead::drawing {
 
-// The sources of fields; all must outlive their users.
+// The sources of fields. All must outlive the objects that use them.
 struct FieldsAccess {
   storm_store::StormStore& store;
   FieldsReader& reader;
-  std::shared_ptr<Preparation> preparation;  // null if no scene needs any
+  std::shared_ptr<Preparation> preparation;  // null if no scene needs preparation
 };
 
 class SessionFields {
@@ -37,42 +37,44 @@ class SessionFields {
   // Takes the result of a finished read; returns its error, if any.
   std::optional<Unreadable> TakeRead();
 
-  // Returns the scene to draw now: the newest if its fields are available. Otherwise requests the
-  // fields and returns the scene whose fields have just been read, if it is newer than
-  // `shown_revision`. So a time slider that moves faster than the disk still shows something.
+  // Returns the scene to draw now: the newest scene if its fields are available. Otherwise requests
+  // the fields of the newest scene, and returns the scene whose fields have just been read, if its
+  // revision is above `shown_revision`. So a time slider that moves faster than the disk still
+  // shows something.
   std::optional<session::NewestScene> Drawable(const session::NewestScene& newest,
                                                std::uint64_t shown_revision);
 
-  // Requests unreadable fields again.
+  // Requests fields again that could not be read.
   void TryAgain() { unreadable_revision_ = 0; }
 
   // Returns the fields of the scene that Drawable returned last.
   const std::shared_ptr<const volume::HydrometeorFields>& Fields() const { return fields_; }
 
-  // Prefetches the next time if a series is playing step by step. Call it after `shown` was drawn.
+  // Prefetches the next time if the series is playing step by step. Call it after `shown` was
+  // drawn.
   void PrepareNext(const scene::Scene& shown);
 
-  // Adds the time that reading and preparing took since the last frame.
+  // Adds the time that reading and preparing fields took since the last frame.
   void AddStages(std::vector<StageTime>* stages);
 
-  // Releases the fields for others that need memory. Drawable requests them again.
+  // Releases the fields so that others can use the memory. Drawable requests them again.
   void Yield();
 
-  // Frees the memory and drops pending requests.
+  // Releases the fields and drops pending requests.
   void Release();
 
  private:
   bool IsPrepared(const scene::Scene& scene,
                   const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
   void Ask(const session::NewestScene& newest);
-  // Returns the key of the newest scene's fields. It is looked up once for each revision: when a
-  // file is replaced, the sessions that show it get a new revision.
+  // Returns the key of the newest scene's fields. It is looked up once for each revision. That is
+  // sufficient, because sessions that show a file get a new revision when the file is replaced.
   const FieldsKey& KeyFor(const session::NewestScene& newest);
 
   const FieldsAccess& access_;
   const std::string id_;
   std::uint64_t newest_revision_ = 0;
-  FieldsKey newest_key_;  // of that revision
+  FieldsKey newest_key_;  // key of the fields of newest_revision_
   std::optional<FieldsKey> key_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
   std::optional<session::NewestScene> reading_for_;  // the scene whose fields are being read

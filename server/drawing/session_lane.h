@@ -1,6 +1,6 @@
-// Draws sessions' long frames one after another in a lane, so that they do not hold up the render
-// loop. It draws in pieces; between two pieces other work gets its turn on the device. A changed
-// scene can cancel the drawing. Used by the render loop's thread only.
+// Draws sessions' long frames one after another in a lane, so that they do not delay the render
+// loop. A frame is drawn in pieces, and other work gets its turn on the device between two pieces.
+// The drawing can be cancelled when the scene has changed. Used by the render loop's thread only.
 #pragma once
 
 #include <atomic>
@@ -22,8 +22,9 @@ namespace thunderhead::drawing {
 
 class SessionLane {
  public:
-  // `has_room` says whether that many more bytes fit on the device without making others free
-  // memory. The lane must outlive it, and its work must have ended before this is destroyed.
+  // `has_room` returns true if that many more bytes fit on the device without making other sources
+  // free memory. The lane must outlive this object, and the lane's work must have ended before this
+  // object is destroyed.
   SessionLane(Lane& lane, std::function<bool(std::uint64_t bytes)> has_room)
       : lane_(lane), has_room_(std::move(has_room)) {}
 
@@ -32,42 +33,43 @@ class SessionLane {
     std::shared_ptr<const scene::Scene> scene;
     std::shared_ptr<const volume::HydrometeorFields> fields;
     FrameQuality quality;
-    bool checked = false;  // also draw with half the slices
-    bool fine = false;     // also make it with more bits per channel
+    bool checked = false;  // also draw with half the slices, to measure the discretisation error
+    bool fine = false;     // also return the picture with more than 8 bits per channel
   };
   struct Picture {
     DisplayFrame frame;
-    std::optional<double> discretisation_error;  // set if it was checked
-    std::optional<frame::FineImage> fine;        // none if not requested or not available
+    std::optional<double> discretisation_error;  // set if Request::checked was
+    std::optional<frame::FineImage> fine;        // absent if not requested or not available
   };
 
-  // Returns true if the lane already holds the scene's extinction, or has room for the `bytes` that
-  // it takes in another source.
+  // Returns true if the lane's source already holds the scene's extinction, or if the device has
+  // room for its size of `bytes`.
   bool HasRoomFor(const scene::Scene& scene, std::uint64_t bytes) const {
     return FirstDirty(last_drawn_, scene) > scene::Stage::kExtinction || has_room_(bytes);
   }
-  // Returns true if nothing is being drawn and no outcome waits to be taken.
+  // Returns true if no frame is being drawn and no outcome waits to be taken.
   bool IsFree() const { return outcome_ == nullptr; }
-  // Returns true while the session's frame is drawn or its outcome waits.
+  // Returns true while the session's frame is being drawn or its outcome waits to be taken.
   bool IsFor(const std::string& session_id) const {
     return !IsFree() && request_.session_id == session_id;
   }
-  // The session of the last request.
+  // Returns the session of the last request.
   const std::string& For() const { return request_.session_id; }
   // Starts drawing. The lane must be free.
   void Begin(Request request);
-  // Ends the drawing at its next piece; its outcome is CANCELLED.
+  // Cancels the drawing before its next piece. Its outcome is then CANCELLED.
   void Cancel();
-  // Returns the outcome of the request once it has ended.
+  // Returns the outcome of the request once the drawing has ended; none before.
   std::optional<absl::StatusOr<Picture>> Take();
 
   bool WantsTurn() { return lane_.WantsTurn(); }
   // Lets the lane draw one piece. Returns when it is drawn.
   void GiveTurn() { lane_.GiveTurn(); }
 
-  // The frame that the lane's source drew last, whose stages it can reuse; none after a failure.
+  // Returns the frame that the lane's source drew last, whose stages it can reuse; none after a
+  // failure.
   const std::optional<LastDrawn>& Last() const { return last_drawn_; }
-  // Forgets the last frame. Call it when the lane gets another source.
+  // Forgets the last frame. Call it when the lane gets a new source.
   void Forget() { last_drawn_.reset(); }
 
  private:

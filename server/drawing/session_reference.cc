@@ -20,7 +20,7 @@ void SessionReference::EndUnless(const scene::Scene& newest) {
 absl::StatusOr<bool> SessionReference::Trace(
     const session::NewestScene& shown,
     const std::shared_ptr<const volume::HydrometeorFields>& fields) {
-  // The fields change when the storm's file is replaced.
+  // A storm's fields change when its file is replaced, so the picture is traced anew.
   if (traced_.has_value() && traced_->fields.lock() != fields) {
     tracer_.Stop(id_);
     traced_.reset();
@@ -30,7 +30,7 @@ absl::StatusOr<bool> SessionReference::Trace(
     THUNDERHEAD_RETURN_IF_ERROR(tracer_.Trace(id_, shown.scene, fields));
     return false;
   }
-  // A changed exposure shows the same picture differently.
+  // The new scene may have another exposure, so the same picture must be shown again.
   if (traced_->picture != nullptr && shown.revision > traced_->shown.revision) {
     traced_->is_new = true;
   }

@@ -1,5 +1,5 @@
-// A session's picture by the reference, which the tracer refines on another thread. Used by the
-// render loop's thread only. Knows no GL.
+// A session's picture by the Monte Carlo reference, which a TruthTracer refines on another thread.
+// Used by the render loop's thread only. Knows no GL.
 #pragma once
 
 #include <memory>
@@ -19,20 +19,20 @@ class SessionReference {
   SessionReference(TruthTracer& tracer, std::string session_id)
       : tracer_(tracer), id_(std::move(session_id)) {}
 
-  // Stops tracing if the newest scene shows something else.
+  // Stops tracing if the newest scene would give another picture.
   void EndUnless(const scene::Scene& newest);
 
-  // Begins tracing `shown`, or takes its newest picture. Returns true if there is a picture to
-  // show.
+  // Begins tracing `shown`, or takes the newest picture from the tracer. Returns true if there is a
+  // new picture to show.
   absl::StatusOr<bool> Trace(const session::NewestScene& shown,
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
-  // Returns the picture to show.
+  // Returns the picture to show, and marks it as taken.
   const TruthPicture& TakePicture() {
     traced_->is_new = false;
     return *traced_->picture;
   }
 
-  // Returns true while the reference is traced, or its picture is kept.
+  // Returns true while the reference is being traced or its picture is kept.
   bool IsTraced() const { return traced_.has_value(); }
 
   void Release();

@@ -7,7 +7,8 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Long enough for the sessions that wait for memory to show their pictures.
+// A view stays yielded this long, so that the sessions that wait for memory can show their
+// pictures.
 constexpr std::chrono::seconds kYieldedFor{30};
 
 }  // namespace
@@ -102,7 +103,7 @@ SessionWork SessionView::DrawAnew(const Now& now) {
 
 bool SessionView::IsRefuted(const Now& now) {
   if (!error_.error().has_value() || now.shown.revision != now.newest.revision) return false;
-  // The error still falls while light is being traced.
+  // While light is being traced, the error still falls.
   const bool traced =
       scene::TracedLightOf(now.shown.scene->rendering.technique) != scene::TracedLight::kOff;
   if (traced && !(light_.ended() && error_.ended())) return false;
@@ -123,7 +124,7 @@ std::optional<SessionWork> SessionView::Trace(const Now& now) {
     if (light_.due() || error_.due()) return ShowLight{now.shown};
     const bool light =
         scene::TracedLightOf(technique) != scene::TracedLight::kOff && !light_.ended();
-    // The error is measured again as the light improves.
+    // The error is measured again when the light has improved.
     if (light || !error_.ended()) return TraceLight{now.shown, light, true};
   }
   state_ = State::kSettled;

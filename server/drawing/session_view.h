@@ -1,6 +1,6 @@
-// The next work for a session: a state machine from a scene that has just changed to its final
-// picture. Returns work and is notified of its outcome; the time is an argument. Knows no threads
-// and no GL.
+// The next work for a session: a state machine that leads from a changed scene to its final
+// picture. It returns work and is told the outcome by calls; the time is an argument. Knows no
+// threads and no GL.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace thunderhead::drawing {
 
-// Nothing to do before `time`, unless something changes.
+// There is nothing to do before `time`, unless something changes.
 struct WaitUntil {
   std::optional<session::Clock::time_point> time;
 };
@@ -30,7 +30,7 @@ struct DrawFrame {
 struct CheckSlices {
   session::NewestScene shown;
 };
-// Requests light to be traced, the picture's error to be measured, or both.
+// Requests that light be traced, the picture's error be measured, or both.
 struct TraceLight {
   session::NewestScene shown;
   bool light = true;
@@ -40,7 +40,7 @@ struct TraceLight {
 struct ShowLight {
   session::NewestScene shown;
 };
-// Shows the reference's current picture.
+// Shows the current picture of the Monte Carlo reference.
 struct ShowReference {
   session::NewestScene shown;
 };
@@ -51,26 +51,30 @@ class SessionView {
  public:
   enum class State {
     kWaitingForFields,
-    kMoving,        // the scene is newer than the shown frame: draw at once, possibly coarse
-    kRefining,      // the scene is at rest and a finer frame follows
-    kChecking,      // drawn at full quality: measure error and time, and decide the setting again
-    kTracingLight,  // correct the light and measure the error with more and more paths
-    kReference,     // refined by the tracer
-    kSettled,       // final, or until the scene has rested for as long as a finer frame takes
-    kYielded,       // its picture stays; its fields and light were released for other sessions
-    kFailed,        // cannot be drawn
+    kMoving,    // the scene is newer than the shown frame: it is drawn at once, possibly coarse
+    kRefining,  // the scene is at rest and a finer frame follows
+    // Drawn at full quality: its error and time are measured, and the setting is decided again.
+    kChecking,
+    kTracingLight,  // more and more paths correct the light and measure the error
+    kReference,     // the Monte Carlo reference refines the picture
+    // The picture is final, or waits until the scene has rested as long as the next finer frame
+    // takes.
+    kSettled,
+    // The picture stays; its fields and light were released to free memory for other sessions.
+    kYielded,
+    kFailed,  // the scene cannot be drawn
   };
 
-  // `costs` and `offers` must outlive it. `view` is the session's name in `costs`.
+  // `costs` and `offers` must outlive the view. `view` is the session's name in `costs`.
   SessionView(const PlannerTargets& targets, const accuracy::MachineCosts& costs,
               const accuracy::Offers& offers, const std::string& view);
 
-  // Returns the newest scene with its decided setting. If the setting cannot be decided, returns an
+  // Returns the newest scene with its setting decided. If no setting can be decided, returns the
   // error the first time and none afterwards.
   absl::StatusOr<std::optional<session::NewestScene>> Decide(const session::NewestScene& newest);
 
   // Returns the work to do now. `newest` is the scene as requested. `drawable` is the decided scene
-  // whose fields are available, if any: the newest, or a slightly older one.
+  // whose fields are available, if any. It is the newest scene or a slightly older one.
   SessionWork Next(const session::NewestScene& newest,
                    const std::optional<session::NewestScene>& drawable,
                    session::Clock::time_point now, const std::optional<LastDrawn>& last_drawn);
@@ -78,54 +82,58 @@ class SessionView {
   // The following functions report the outcome of work.
   void Drawn(const DrawFrame& work);
   void Checked(double discretisation_error);
-  // Returns true if the next work is to show the light traced so far, until LightShown is called.
+  // Returns true if the light traced so far should be shown next. It stays true until LightShown is
+  // called.
   bool LightTraced(const accuracy::LightProgress& progress, session::Clock::time_point now);
-  // Keeps the light traced before. The picture is shown once more, with the reason.
+  // Records that tracing failed. The light traced before is kept, and the picture is shown once
+  // more with the reason.
   void LightFailed() { light_.GiveUp(true); }
-  // Records that this view traces no light and measures no error.
+  // Records that this view traces no light and measures no error, because another view (its
+  // session's) does.
   void LightIsOthers() {
     light_.GiveUp(false);
     error_.GiveUp();
   }
-  // Works like LightTraced.
+  // Returns true if the error measured so far should be reported next, as for LightTraced.
   bool ErrorMeasured(const accuracy::ErrorProgress& progress, session::Clock::time_point now) {
     return error_.Measured(progress, now);
   }
-  // Records that no error is reported to viewers, so that it is not measured.
+  // Records that no error is measured, because none is reported to viewers.
   void ErrorIsUntold() { error_.GiveUp(); }
   void LightShown(session::Clock::time_point now) {
     light_.Shown(now);
     error_.Told(now);
   }
   void ReferenceShown(std::uint64_t revision) { planner_.GiveUp(revision); }
-  // Records that the revision cannot be drawn. It is not retried, or not before `try_again_at`.
+  // Records that the revision cannot be drawn. It is retried at `try_again_at`, or never if that is
+  // absent.
   void Failed(std::uint64_t revision,
               std::optional<session::Clock::time_point> try_again_at = std::nullopt);
-  // Returns true once when a failed revision may be retried, which is then the next work.
+  // Returns true once when the failed revision may be retried. The retry is then the next work.
   bool TriesAgain(session::Clock::time_point now);
-  // Called when memory is scarce. Returns true if the view releases its fields and light for a
-  // while. It can do so if its final picture is shown. If the fields of other sessions were
-  // refused, any picture of the scene suffices.
+  // Called when memory is scarce. Returns true if the view now releases its fields and light for a
+  // while. It does so if its final picture is shown. If memory for the fields of other sessions was
+  // refused (`others_lack_pictures`), any shown picture of the scene suffices.
   bool Yield(session::Clock::time_point now, bool others_lack_pictures);
   // Returns none if `decided` must be drawn. Otherwise returns the time at which to ask again, if
-  // that can be before a change.
+  // that time can come before a change of the scene.
   std::optional<WaitUntil> Resting(const session::NewestScene& decided,
                                    session::Clock::time_point now);
-  // Called while there is still no memory for the revision. Returns true if its picture is already
-  // shown, so that nothing is missing.
+  // Called while memory for the revision is still missing. Returns true if the revision's picture
+  // is already shown, so that the view can stay yielded.
   bool StaysYielded(std::uint64_t revision, session::Clock::time_point now);
 
   State state() const { return state_; }
-  // The newest revision that was shown or has failed.
+  // Returns the newest revision that was shown or has failed.
   std::uint64_t shown_revision() const { return planner_.revision(); }
   bool LightIsTraced() const { return light_.ended(); }
-  // Returns the estimates of the error of the picture at full quality.
+  // Returns what is known about the error of the picture at full quality.
   accuracy::Evidence evidence() const {
     return {.discretisation_error = setting_.discretisation_error(), .measured = error_.error()};
   }
 
  private:
-  // The inputs of a state's transition.
+  // The inputs of a state transition.
   struct Now {
     const session::NewestScene& newest;
     const session::NewestScene& shown;
@@ -135,7 +143,7 @@ class SessionView {
 
   State EnteredFor(const session::NewestScene& newest,
                    const std::optional<session::NewestScene>& drawable) const;
-  // Each function returns work, or none after a transition to another state.
+  // Each function returns the work of its state, or none after a transition to another state.
   std::optional<SessionWork> In(State state, const Now& now);
   SessionWork Move(const Now& now);
   std::optional<SessionWork> Refine(const Now& now);
@@ -144,7 +152,7 @@ class SessionView {
   std::optional<SessionWork> Settle(const Now& now);
   // Returns true if the picture's error is too large for the scene and another setting was decided.
   bool IsRefuted(const Now& now);
-  // Draws with the newly decided setting for the same scene.
+  // Returns the work that draws the same scene with the newly decided setting.
   SessionWork DrawAnew(const Now& now);
 
   const PlannerTargets targets_;
@@ -154,9 +162,10 @@ class SessionView {
   LightTracing light_;
   ErrorMeasuring error_;
   std::optional<std::uint64_t> failed_revision_;
-  std::optional<session::Clock::time_point> try_again_at_;  // time to retry the failed revision
+  // Time at which to retry the failed revision.
+  std::optional<session::Clock::time_point> try_again_at_;
   std::optional<session::Clock::time_point>
-      returns_at_;  // time to return to refining or tracing light after yielding
+      returns_at_;  // time at which to resume refining or tracing light after yielding
 };
 
 }  // namespace thunderhead::drawing

@@ -98,7 +98,7 @@ void StillMaker::MakeNow(const StillToMake& still) const {
     }
     session->hub().AddStill(still.sequence, tier, *std::move(frame));
   }
-  // Viewers that need another tier by now get no still of this frame.
+  // Viewers that now need a tier for which no still was made get no still of this frame.
   session->hub().NoStills(still.sequence);
 }
 

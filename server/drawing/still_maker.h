@@ -1,7 +1,7 @@
-// Makes stills of higher quality of frames that stay. Stills are AVIF and are encoded on a separate
-// thread with low priority, so that moving pictures need not wait for them. A newer frame of a
-// session drops the still of the older one, unless that is already being encoded, which takes about
-// a tenth of a second.
+// Makes stills (AVIF pictures of higher quality) of frames that have come to rest. Stills are
+// encoded on a separate thread with low priority, so that frames of changing scenes need not wait
+// for them. A newer frame of a session drops the pending still of the older frame. A still that is
+// already being encoded, which takes about a tenth of a second, is completed.
 #pragma once
 
 #include <chrono>
@@ -23,7 +23,7 @@ namespace thunderhead::drawing {
 // Serializes a frame into the bytes that all viewers are sent.
 using SerializeFrame = std::function<std::string(const delivery::EncodedFrame&)>;
 
-// A published frame that may become a still.
+// A published frame of which a still may be made.
 struct StillToMake {
   std::weak_ptr<session::Session> session;
   std::uint64_t sequence = 0;
@@ -35,12 +35,12 @@ struct StillToMake {
 
 class StillMaker {
  public:
-  // A frame that was drawn in motion is at rest this long after it if there is no newer frame, or
-  // later.
+  // A frame that was drawn while the scene changed counts as at rest this long after Make, or at
+  // StillToMake::rests_at if that is later. A newer frame cancels this.
   static constexpr std::chrono::milliseconds kRestsAfter{150};
 
   explicit StillMaker(SerializeFrame serialize, const base::TimeSource& time = base::SteadyTime());
-  // Waits for the still being made and drops the others.
+  // Waits for the still that is being encoded and drops the others.
   ~StillMaker();
   StillMaker(const StillMaker&) = delete;
   StillMaker& operator=(const StillMaker&) = delete;

@@ -9,14 +9,16 @@
 namespace thunderhead::drawing {
 namespace {
 
-// These take a tenth of a second on a slow core.
+// The number of pixels at the first size. Tracing them takes a tenth of a second on a slow core.
 constexpr std::int64_t kFirstPixels = 4096;
-// Samples at each smaller size. Together these sizes cost a third of as many samples at full size.
+// Samples per pixel at each size below the full size. All these sizes together cost a third of as
+// many samples at full size.
 constexpr int kSamplesOfSize = 8;
-// A larger picture with a single sample per pixel is noisier than the smaller one that it follows.
+// A picture is shown from this number of samples per pixel on. With a single sample, it is noisier
+// than the smaller picture before it.
 constexpr int kMinShownSamples = 2;
 constexpr double kShowEvery_s = 1.0;
-// A relative error far below one level of an 8-bit display.
+// The relative error at which refining ends. It is far below one level of an 8-bit display.
 constexpr double kFinished = 1e-3;
 constexpr int kMaxSamples = 1 << 16;
 

@@ -1,6 +1,6 @@
-// The sizes at which a picture by the reference is refined, and when it is shown. The first size is
-// small, so that something is visible within a fraction of a second. Each further size is twice as
-// large, up to the full size. Plain values; the time is an argument.
+// The sizes in which a picture is refined by the Monte Carlo reference, and when the picture is
+// shown. The first size is small, so that something is visible within a fraction of a second. Each
+// further size is twice as large, up to the full size. Plain values; the time is an argument.
 #pragma once
 
 #include "drawing/frame_source.h"
@@ -15,15 +15,15 @@ class TruthSchedule {
   // Returns the size of the picture to refine now.
   glm::ivec2 SizePx() const;
   bool IsFull() const { return halvings_ == 0; }
-  // Returns the number of samples per pixel to refine to.
+  // Returns the number of samples per pixel up to which the picture should be refined next.
   int UntilSamples() const;
 
-  // Returns true if the picture should be shown now, and then assumes that it is shown.
-  // `shown_ago_s` is the time since the last picture was shown, or since the beginning.
+  // Returns true if the picture should be shown now, and records that it is shown. `shown_ago_s` is
+  // the time since a picture was last shown, or since the beginning.
   bool ShowNow(const delivery::Refinement& refinement, double shown_ago_s);
 
-  // Returns true if the picture has enough samples to begin the next larger one. SizePx then
-  // returns the new size.
+  // Returns true if the picture has enough samples, so that the next larger size can begin. SizePx
+  // then returns the new size.
   bool GrowAt(const delivery::Refinement& refinement);
 
   // Returns true if more samples would make no visible difference.

@@ -1,6 +1,6 @@
-// The interface that refines a picture with the reference for the render loop. The Monte Carlo
-// reference implements it; service tests use a fake one. A TruthSource is used by one thread at a
-// time. Knows no sessions.
+// The interface through which the render loop refines a picture with the Monte Carlo reference. The
+// reference implements it; service tests use a fake. A TruthSource is used by one thread at a time.
+// Knows no sessions.
 #pragma once
 
 #include <functional>
@@ -19,13 +19,14 @@ class TruthSource {
  public:
   virtual ~TruthSource() = default;
 
-  // Begins a picture of `size_px`, which overrides the scene's size, with no samples yet.
+  // Begins a picture of `size_px`, which overrides the scene's size. The picture has no samples
+  // yet.
   virtual absl::Status Begin(const scene::Scene& scene,
                              const std::shared_ptr<const volume::HydrometeorFields>& fields,
                              const glm::ivec2& size_px) = 0;
 
-  // Adds samples until each pixel has `until_samples`, for at most `seconds` or until `stop` is
-  // requested. Another call continues.
+  // Adds samples until each pixel has `until_samples`, but for at most `seconds` and until `stop`
+  // is requested. A further call continues.
   virtual delivery::Refinement Refine(int until_samples, double seconds,
                                       const std::stop_token& stop) = 0;
 

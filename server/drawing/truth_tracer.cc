@@ -14,10 +14,11 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Duration of a turn.
+// Duration of one owner's turn, in seconds.
 constexpr double kTurn_s = 0.25;
 
-// Covers mean and variance of radiance, opacity, distance, and a picture that waits to be shown.
+// Memory for mean and variance of the radiance, for opacity and distance, and for a picture that
+// waits to be shown.
 constexpr std::size_t kTracedBytesPerPixel = 160;
 
 std::size_t BytesFor(const volume::HydrometeorFields& fields, const glm::ivec2& size_px) {
@@ -28,7 +29,7 @@ std::size_t BytesFor(const volume::HydrometeorFields& fields, const glm::ivec2& 
 
 }  // namespace
 
-// A picture being traced. Used by the tracing thread, except for `stop`.
+// A picture that is being traced. Only the tracing thread uses it, except for `stop`.
 struct TruthTracer::Job {
   Job(std::string of_owner, std::shared_ptr<const scene::Scene> of_scene,
       std::shared_ptr<const volume::HydrometeorFields> of_fields, const Owned& of,
@@ -42,12 +43,12 @@ struct TruthTracer::Job {
         schedule({scene->output.width_px, scene->output.height_px}),
         shown_at(by_time.Now()) {}
 
-  // The result of a turn: a picture if one is due, and whether it is the last.
+  // The result of a turn: a picture if one is due, and whether this picture is the last.
   struct Turn {
     Found found;
     bool ended = false;
   };
-  // Refines the picture for one turn. An error ends it.
+  // Refines the picture for one turn. An error ends the job.
   absl::StatusOr<Turn> Refine(base::MemoryBudget& memory);
 
   const std::string owner;
@@ -153,7 +154,7 @@ void TruthTracer::Forget(const std::string& owner) {
   owned_.erase(owner);
 }
 
-// Returns the job of the owner after the one served last (round robin).
+// Returns the job of the next owner after the one that was served last (round robin).
 std::shared_ptr<TruthTracer::Job> TruthTracer::NextJob() {
   const auto after_last = owned_.upper_bound(last_served_);
   const auto has_job = [](const auto& entry) { return entry.second.job != nullptr; };
@@ -162,7 +163,7 @@ std::shared_ptr<TruthTracer::Job> TruthTracer::NextJob() {
   return next == owned_.end() ? nullptr : next->second.job;
 }
 
-// Keeps the result unless the job has been replaced.
+// Keeps the result for its owner, unless the owner's job has been replaced.
 void TruthTracer::Keep(Job& job, Found found, bool ended) {
   {
     const std::lock_guard lock(mutex_);
@@ -176,7 +177,7 @@ void TruthTracer::Keep(Job& job, Found found, bool ended) {
 }
 
 void TruthTracer::Run() {
-  // Threads that this thread starts inherit the priority.
+  // Threads that this thread starts inherit its low priority.
   base::LowerPriority(base::kLowestPriority);
   std::unique_lock lock(mutex_);
   while (true) {

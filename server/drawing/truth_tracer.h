@@ -1,6 +1,6 @@
-// Refines sessions' pictures with the reference on its own thread, in short turns. A request
-// replaces the owner's earlier one and ends it at once, so nothing queues. A picture that was not
-// taken is replaced by the next.
+// Refines sessions' pictures with the Monte Carlo reference on a separate thread, in short turns. A
+// request replaces an earlier request of the same owner and ends it at once, so no requests queue.
+// A new picture replaces an earlier one that was not taken.
 #pragma once
 
 #include <condition_variable>
@@ -25,7 +25,7 @@
 
 namespace thunderhead::drawing {
 
-// The current picture of the reference.
+// The newest picture that the Monte Carlo reference has traced for an owner.
 struct TruthPicture {
   picture::LinearPicture picture;
   delivery::Refinement refinement;
@@ -35,8 +35,9 @@ struct TruthPicture {
 
 class TruthTracer {
  public:
-  // Each owner has its own source, whose buffers are reserved in `memory`. There are at most
-  // `max_owners`. `on_picture` is called on the tracing thread when a picture can be taken.
+  // Each owner (a session) has its own source, whose buffers are reserved in `memory`. There are at
+  // most `max_owners` owners. `on_picture` is called on the tracing thread when a picture can be
+  // taken.
   TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
               std::shared_ptr<base::MemoryBudget> memory, std::function<void()> on_picture,
               const base::TimeSource& time = base::SteadyTime());
@@ -48,9 +49,10 @@ class TruthTracer {
   // Begins the owner's picture. RESOURCE_EXHAUSTED if there are too many owners.
   absl::Status Trace(const std::string& owner, std::shared_ptr<const scene::Scene> scene,
                      std::shared_ptr<const volume::HydrometeorFields> fields);
-  // Takes the owner's newest picture or its error; none if there is neither.
+  // Takes the owner's newest picture, or the error that ended its tracing. Returns none if there is
+  // neither.
   std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>> Take(const std::string& owner);
-  // Stops tracing the owner's picture but keeps its source for the next.
+  // Stops tracing the owner's picture but keeps its source for the next picture.
   void Stop(const std::string& owner);
   // Stops tracing and frees the owner's source.
   void Forget(const std::string& owner);

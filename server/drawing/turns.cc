@@ -7,7 +7,8 @@
 namespace thunderhead::drawing {
 namespace {
 
-// A class that is owed less than half a piece must wait.
+// A class gets a turn before the earlier classes only if it is owed at least this much time, about
+// half a piece.
 constexpr double kWorthATurn_ms = 7.5;
 
 std::size_t IndexOf(TurnClass turn_class) { return static_cast<std::size_t>(turn_class); }
@@ -22,8 +23,8 @@ struct Refilled {
   double raised_ms = 0.0;
 };
 
-// Raises all balances until one of `waiting` may have a turn, and returns which one. Among several
-// it is the one after `last`.
+// Raises all balances until one id in `waiting` has a balance of zero, and returns that id. Among
+// several such ids, it is the next one after `last`.
 Refilled Refill(const std::set<std::string>& waiting, const std::string& last,
                 std::map<std::string, double>* balances) {
   double best = -std::numeric_limits<double>::infinity();

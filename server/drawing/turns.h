@@ -1,11 +1,13 @@
-// The order of drawing: deficit round robin in ms. There are three classes: pictures that people
-// wait for, refinement while they look, and pictures outside sessions, in this order. The later
-// classes get a tenth of the time even if the earlier ones always have work, so that they finish.
+// The order in which contenders (sessions and lanes) draw: deficit round robin, counted in
+// milliseconds. There are three classes of work, in this order: pictures that people wait for,
+// refinement of shown pictures, and pictures outside sessions. Each later class gets at least a
+// tenth of the time that the earlier ones use, even if these always have work, so that its work
+// finishes.
 //
-// Within a class all contenders get the same time, whatever the length of their pieces. A newcomer
-// inherits the overuse of one that left, so that leaving and coming back gains nothing. Shared
-// views and own views each form a group with half of the time. So a class of pupils who look around
-// takes at most half.
+// Within a class all contenders get the same time, whatever the length of their pieces. A new
+// contender inherits the overuse of one that left, so that leaving and coming back gains nothing.
+// Shared views and own views are two groups that each get half of the time. So a school class whose
+// pupils all look around uses at most half of the time.
 //
 // A plain value, without a clock.
 #pragma once
@@ -27,44 +29,45 @@ enum class TurnClass {
 };
 inline constexpr std::size_t kTurnClasses = 3;
 
-// Minimum share of a class, relative to the time that the classes before it use.
+// Minimum time of a class, as a share of the time that the earlier classes use.
 inline constexpr double kMinShare = 0.1;
 
 // A session or lane that may get a turn.
 struct Contender {
   std::string id;
-  bool own_view = false;          // view of one person
+  bool own_view = false;          // true for the own view of one person
   std::optional<TurnClass> work;  // pending work, if any
 };
 
 class Turns {
  public:
   // Returns the index of the contender that draws next; none if no contender has work. Among
-  // contenders with the same used time, it is the one whose id follows that of the last served.
+  // contenders that have used the same time, it is the next one by id after the last served.
   std::optional<std::size_t> Next(const std::vector<Contender>& contenders);
 
-  // Charges the contender for the time that it has drawn.
+  // Charges the contender for the time that its drawing took.
   void Used(const Contender& contender, double milliseconds);
 
  private:
-  // Time used beyond the share of the contender that used least; zero or negative.
+  // Time that a contender used beyond the least used time of its group, as a value of zero or
+  // below.
   using Balances = std::map<std::string, double>;
   // A group of a class: all shared views, or all own views.
   struct Group {
     Balances balances;
-    std::vector<double> left_behind;  // negative balances of contenders that left
+    std::vector<double> left_behind;  // negative balances of contenders that have left
     std::string last_served;
   };
 
   static void Leave(const std::set<std::string>& present, Group* group);
-  // Returns which of `waiting` has the next turn.
+  // Returns the id in `waiting` that has the next turn.
   static std::string NextOf(const std::set<std::string>& waiting, Group* group);
   std::optional<TurnClass> ClassNow(const std::vector<Contender>& contenders);
 
   std::map<std::string, Group> groups_;
   Balances group_balances_;
   std::string last_group_;
-  // Time that a class may use before the earlier classes.
+  // Time that a class may use before it is the earlier classes' turn.
   std::array<double, kTurnClasses> owed_ms_{};
 };
 

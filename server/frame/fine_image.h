@@ -10,13 +10,13 @@
 
 namespace thunderhead::frame {
 
-// 16-bit sRGB, three values a pixel, rows from top to bottom. It lacks the noise that 8-bit
-// pictures have.
+// Pixels are 16-bit sRGB, three values a pixel, rows from top to bottom. They have no dither noise,
+// unlike 8-bit pictures.
 struct FineImage {
   int width_px = 0;
   int height_px = 0;
   std::vector<std::uint16_t> rgb;
-  // Counts the image's memory; null: not counted.
+  // The reservation that counts the image's memory. If it is null, the memory is not counted.
   std::shared_ptr<const base::MemoryReservation> memory;
 };
 

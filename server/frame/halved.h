@@ -7,8 +7,8 @@
 namespace thunderhead::frame {
 
 // Returns a picture of half the width and height, rounded up. Each pixel is the mean of four
-// pixels, or of fewer at an odd edge. The mean is that of sRGB values, which keeps a picture's look
-// but is not the mean of its light.
+// pixels, or of fewer at an odd edge. The mean is taken over sRGB values. It keeps the look of the
+// picture but is not the mean of its linear light.
 RgbImage Halved(const RgbImage& image);
 FineImage Halved(const FineImage& image);
 

@@ -17,12 +17,13 @@ namespace thunderhead::frame {
 namespace {
 
 constexpr int kRgbChannels = 3;
-// The largest side that JPEG allows.
+// The largest width or height that JPEG allows.
 constexpr int kMaxSide_px = 65535;
 // Side of a minimum coded unit of JPEG with 4:2:0 chroma.
 constexpr int kUnitSide_px = 16;
 constexpr int kMaxRestartInterval = 65535;
-// Smallest size of a strip that is worth a thread: about half a millisecond.
+// Minimum number of pixels in a strip. Encoding fewer pixels takes less than about half a
+// millisecond, for which a thread is not worthwhile.
 constexpr double kMinStripPixels = 3e5;
 
 struct TurboDeleter {
@@ -68,8 +69,9 @@ absl::Status TurboError(const char* action, void* handle) {
 
 int UnitsInRow(int width_px) { return (width_px + kUnitSide_px - 1) / kUnitSide_px; }
 
-// Returns the first rows of the strips in which a picture is encoded, followed by its height. All
-// strips except the last have one height. The units of their rows fit in a restart interval.
+// Returns the first row of each strip in which a picture is encoded, followed by the picture's
+// height. All strips except the last have the same height. The number of coded units in a strip is
+// at most the maximum restart interval.
 std::vector<int> StripRows(int width_px, int height_px) {
   const int unit_rows = (height_px + kUnitSide_px - 1) / kUnitSide_px;
   const double pixels = static_cast<double>(width_px) * height_px;
@@ -148,7 +150,7 @@ absl::StatusOr<std::string> EncodePng(int width_px, int height_px,
   png.image.width = static_cast<png_uint_32>(width_px);
   png.image.height = static_cast<png_uint_32>(height_px);
   png.image.format = PNG_FORMAT_RGB;
-  // Querying libpng for the exact size would compress the picture twice, so the upper bound is
+  // libpng can compute the exact size only by compressing the picture, so the upper bound is
   // reserved.
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png.image);
   std::string file(size, '\0');

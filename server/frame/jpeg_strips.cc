@@ -24,9 +24,9 @@ unsigned char ByteAt(std::string_view jpeg, std::size_t at) {
   return static_cast<unsigned char>(jpeg[at]);
 }
 
-// Offsets in a JPEG of one scan.
+// Offsets in the bytes of a JPEG with one scan.
 struct Layout {
-  std::size_t frame_height = 0;  // offset of the height, two bytes
+  std::size_t frame_height = 0;  // offset of the picture's height, which has two bytes
   std::size_t scan_header = 0;
   std::size_t scan_data = 0;
   std::size_t end = 0;  // end of the scan's data

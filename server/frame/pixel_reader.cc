@@ -35,7 +35,7 @@ absl::StatusOr<std::vector<std::uint8_t>> PixelReader::Rgb(const gl::Texture2D& 
     const std::size_t offset = row_bytes * static_cast<std::size_t>(begin);
     const std::size_t count = row_bytes * static_cast<std::size_t>(end - begin);
     if (by_buffer) glBindBuffer(GL_PIXEL_PACK_BUFFER, buffer_.Get());
-    // With a bound pixel buffer, the argument is an offset into it.
+    // If a pixel buffer is bound, GL takes the pointer argument as an offset into the buffer.
     void* const to = by_buffer
                          ? reinterpret_cast<void*>(offset)  // NOLINT(performance-no-int-to-ptr)
                          : rgb.data() + offset;

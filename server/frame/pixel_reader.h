@@ -10,13 +10,13 @@
 
 namespace thunderhead::frame {
 
-// Reads pixels from a GPU through a persistently mapped buffer. That takes a third of the time of
-// reading to the program's memory (docs/performance.md, "On a GPU"). Only the thread of its context
-// may use it.
+// Reads pixels from a GPU through a persistently mapped buffer. This takes a third of the time of
+// reading to the program's memory (docs/performance.md, "On a GPU"). Only the thread of the
+// reader's GL context may use it.
 class PixelReader {
  public:
-  // Returns three bytes a pixel, with rows as in `texture`. It waits for pending drawing to the
-  // texture, and reads some rows in each piece.
+  // Returns three bytes a pixel, with rows in the order of `texture`. It waits for pending drawing
+  // to the texture, and reads some rows in each piece (gl/pieces.h).
   absl::StatusOr<std::vector<std::uint8_t>> Rgb(const gl::Texture2D& texture, gl::Pieces& pieces);
 
  private:

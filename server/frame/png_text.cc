@@ -15,7 +15,7 @@ namespace thunderhead::frame {
 namespace {
 
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
-// The signature and the first chunk, IHDR, which must stay first.
+// Bytes of the signature and of the first chunk, IHDR. Text chunks are inserted after them.
 constexpr std::size_t kHeaderBytes = 8 + 25;
 
 void AppendNumber(std::uint32_t number, std::string& bytes) {
@@ -24,7 +24,7 @@ void AppendNumber(std::uint32_t number, std::string& bytes) {
   }
 }
 
-// Appends a text chunk by the PNG specification, 11.3.3.4, not compressed and without a language.
+// Appends a text chunk (PNG specification, 11.3.3.4) without compression and without a language.
 void AppendChunk(const std::string& keyword, const std::string& text, std::string& bytes) {
   std::string chunk = "iTXt" + keyword;
   chunk.append(5, '\0');
@@ -35,7 +35,7 @@ void AppendChunk(const std::string& keyword, const std::string& text, std::strin
   AppendNumber(static_cast<std::uint32_t>(crc32(0, data, static_cast<uInt>(chunk.size()))), bytes);
 }
 
-// The bytes that libpng reads, and the message of its error.
+// The bytes that libpng has not read yet, and its error message.
 struct Source {
   std::string_view rest;
   std::string error;
@@ -55,8 +55,8 @@ void Read(png_structp png, png_bytep to, png_size_t count) {
 
 void Warn(png_structp /*png*/, png_const_charp /*message*/) {}
 
-// Reads the header up to the pixels. Returns false after an error. It creates no objects with
-// destructors, because longjmp would skip them.
+// Reads the header up to the pixel data. Returns false after an error. The function creates no
+// objects with destructors, because longjmp would skip them.
 bool ReadInfo(png_structp png, png_infop info) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_read_info(png, info);

@@ -1,5 +1,5 @@
-// Texts inside a PNG (iTXt chunks), such as what the picture shows and how it was made. Programs
-// that show the picture skip these chunks.
+// Texts inside a PNG (iTXt chunks), such as a description of the picture and of how it was made.
+// Programs that display the picture skip these chunks.
 #pragma once
 
 #include <map>
@@ -12,14 +12,14 @@ namespace thunderhead::frame {
 // Texts by keyword. A keyword has 1 to 79 ASCII characters. Texts are UTF-8.
 using PngTexts = std::map<std::string, std::string>;
 
-// Returns a PNG that EncodePng made with the texts added.
+// Returns `png` with the texts added. EncodePng must have made `png`.
 std::string WithTexts(const std::string& png, const PngTexts& texts);
 
 // Returns true for bytes that begin with the PNG signature.
 bool IsPng(const std::string& bytes);
 
-// Returns the texts before the pixels of a PNG from any program. Returns INVALID_ARGUMENT if the
-// bytes are not a valid PNG.
+// Returns the texts in front of the pixel data of a PNG, which any program may have made. Returns
+// INVALID_ARGUMENT if the bytes are not a valid PNG.
 absl::StatusOr<PngTexts> TextsOf(const std::string& png);
 
 }  // namespace thunderhead::frame

@@ -19,14 +19,14 @@ namespace {
 
 constexpr std::size_t kSparseChannels = 3;
 constexpr int kRowsInShare = 48;
-constexpr int kFineSteps = 257;  // steps of a FineImage in one step of 8 bits
+constexpr int kFineSteps = 257;  // number of FineImage steps in one step of 8 bits
 
 constexpr std::size_t kTaps = 4;
 
-// The positions of a finer picture's columns or rows in the previous picture.
+// For each column or row of a finer picture, its position in the previous (coarser) picture.
 struct Places {
-  std::vector<int> parent;  // the column or row that contains each finer one
-  // The columns or rows of the previous picture from which each is interpolated, and their weights.
+  std::vector<int> parent;  // column or row of the previous picture that contains it
+  // The columns or rows of the previous picture from which it is interpolated, and their weights.
   // The interpolation is cubic convolution with a = -1/2 (Keys 1981, "Cubic convolution
   // interpolation for digital image processing", eq. 15).
   std::vector<std::array<int, kTaps>> taps;
@@ -66,7 +66,8 @@ std::size_t Offset(const glm::ivec2& size_px, int x, int y) {
          static_cast<std::size_t>(x);
 }
 
-// Calls `work` with the first row of a share and the row after its last.
+// Divides rows into ranges and calls `work` in parallel with the first row of each range and the
+// row after its last.
 template <typename Work>
 void ForShares(int rows, const Work& work) {
   tbb::parallel_for(0, (rows + kRowsInShare - 1) / kRowsInShare, [&](int share) {
@@ -85,7 +86,7 @@ const std::uint16_t* RowOf(const FineImage& picture, int y) {
   return picture.rgb.data() + kSparseChannels * Offset({picture.width_px, picture.height_px}, 0, y);
 }
 
-// Copies a row and repeats its first and last pixel.
+// Copies a row of pixels and repeats its first and last pixel at the ends.
 void CopyPadded(const FineImage& picture, int y, std::vector<int>* padded) {
   const std::size_t width = kSparseChannels * static_cast<std::size_t>(picture.width_px);
   const std::uint16_t* const row = RowOf(picture, std::clamp(y, 0, picture.height_px - 1));
@@ -96,8 +97,8 @@ void CopyPadded(const FineImage& picture, int y, std::vector<int>* padded) {
               padded->begin() + static_cast<std::ptrdiff_t>(width + kSparseChannels));
 }
 
-// Returns 1 for each pixel that the next picture cannot interpolate, so that the pixels in its
-// place need rays of their own.
+// Returns 1 for each rough pixel, from which the next picture cannot be interpolated. The pixels of
+// the next picture in its place need their own rays.
 std::vector<std::uint8_t> Rough(const FineImage& picture, double contrast) {
   const int most = static_cast<int>(std::lround(contrast * kFineSteps));
   const std::size_t width = kSparseChannels * static_cast<std::size_t>(picture.width_px);
@@ -138,8 +139,8 @@ std::vector<std::uint8_t> Rough(const FineImage& picture, double contrast) {
   return rough;
 }
 
-// Clamps an interpolated value to the range of its two neighbours, because next to an edge
-// interpolation overshoots.
+// Clamps an interpolated value to the range of its two neighbours. Next to an edge, the
+// interpolation would overshoot.
 inline float Limited(float value, float before, float after) {
   const float low = before < after ? before : after;
   const float high = before < after ? after : before;
@@ -147,8 +148,8 @@ inline float Limited(float value, float before, float after) {
   return above < high ? above : high;
 }
 
-// Computes row `y` of a picture with the columns of a finer one. Pixels have four values so that
-// the compiler can vectorize the work.
+// Interpolates row `y` of a picture to the columns of a finer picture. Pixels are stored as four
+// values, so that the compiler can vectorize the loop.
 void Widen(const FineImage& from, int y, const Places& columns, float* out) {
   thread_local std::vector<glm::vec4> pixels;
   pixels.resize(static_cast<std::size_t>(from.width_px));
@@ -168,7 +169,7 @@ void Widen(const FineImage& from, int y, const Places& columns, float* out) {
   }
 }
 
-// Interpolates a picture between the pixels of the previous one.
+// Interpolates a finer picture from the pixels of the previous picture.
 FineImage Spread(const FineImage& from, const Places& columns, const Places& rows) {
   const std::size_t width = kSparseChannels * columns.taps.size();
   FineImage to{static_cast<int>(columns.taps.size()), static_cast<int>(rows.taps.size()), {}};
@@ -200,8 +201,8 @@ FineImage Spread(const FineImage& from, const Places& columns, const Places& row
   return to;
 }
 
-// Returns the pixels in the places of rough ones. The order keeps neighbours in the list close in
-// the picture: squares of two by two pixels, within squares of four by four.
+// Returns the pixels of the finer picture that lie in rough pixels. In the list, neighbouring
+// pixels stay close together: squares of two by two pixels, within squares of four by four.
 std::vector<glm::ivec2> ChildrenOf(const std::vector<std::uint8_t>& rough,
                                    const glm::ivec2& rough_px, const Places& columns,
                                    const Places& rows) {
@@ -273,7 +274,8 @@ absl::StatusOr<FineImage> CompletePicture(FineImage coarsest, const glm::ivec2& 
   return picture;
 }
 
-// The noise is fract(52.9829189 fract(0.06711056 x + 0.00583715 y)), in shares of 2^32.
+// The dither noise is fract(52.9829189 fract(0.06711056 x + 0.00583715 y)), computed in units of
+// 2^-32.
 std::vector<std::uint8_t> Dithered(const FineImage& picture) {
   constexpr double kWhole = 4294967296.0;
   constexpr auto kByColumn = static_cast<std::uint32_t>(0.06711056 * kWhole);

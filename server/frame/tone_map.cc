@@ -11,15 +11,16 @@
 namespace thunderhead::frame {
 namespace {
 
-// Automatic exposures lie between these factors of 0 EV, so that nights stay dark.
+// Limits of the automatic exposure, as factors of the exposure at 0 EV. With the upper limit,
+// nights stay dark.
 constexpr float kMinFactor = 1.0F / 16.0F;
 constexpr float kMaxFactor = 64.0F;
-// Automatic exposures are also at most this times the exposure of a white card in the sun. A storm
-// in shadow therefore stays dark.
+// Upper limit of the automatic exposure, as a factor of the exposure of a white card in the sun.
+// With this limit, a storm in shadow stays dark.
 constexpr float kMaxAboveCard = 2.0F;
 
 constexpr gl::PieceCost kPixel{"tone map", 50.0};
-// The cost of a pixel with several bytes a channel.
+// Guessed cost of a pixel with more than one byte a channel.
 constexpr double kFinePixel_ns = 4.0;
 
 struct ToneMapVariant {
@@ -33,8 +34,8 @@ std::size_t PixelCount(const glm::ivec2& size_px) {
   return static_cast<std::size_t>(size_px.x) * static_cast<std::size_t>(size_px.y);
 }
 
-// Allocates the values. For a large size this takes longer than a piece, so other contexts can draw
-// meanwhile.
+// Allocates the values. For a large size, allocation takes longer than a piece, so it runs without
+// the device turn and other contexts can draw.
 template <typename Value>
 absl::Status Allocate(std::size_t count, gl::Pieces& pieces, std::vector<Value>* values) {
   constexpr std::size_t kLarge_bytes = std::size_t{32} << 20;
@@ -49,8 +50,8 @@ struct PixelFormat {
   std::size_t count;  // number of channels
 };
 
-// Reads the pixels of the texture's lower left part of `size` into `values`, some rows in each
-// piece.
+// Reads the lower left part of the texture, of the size `size`, into `values`. It reads some rows
+// in each piece.
 template <typename Value>
 absl::Status ReadRows(const gl::Texture2D& texture, const glm::ivec2& size,
                       const PixelFormat& format, gl::Pieces& pieces, Value* values) {
@@ -65,7 +66,8 @@ absl::Status ReadRows(const gl::Texture2D& texture, const glm::ivec2& size,
       });
 }
 
-// Converts texels to a picture. The rows are from bottom to top, with four floats a pixel.
+// Converts texels to a picture. `values` has four floats a pixel and its rows are from bottom to
+// top.
 picture::LinearPicture PictureOfTexels(const std::vector<float>& values, const glm::ivec2& size) {
   picture::LinearPicture picture;
   picture.size_px = size;

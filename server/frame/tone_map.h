@@ -28,42 +28,42 @@ struct ToneMapped {
   double read_back_ms = 0.0;
 };
 
-// Factor of radiance at an exposure of 0 EV.
+// Factor that multiplies radiance at an exposure of 0 EV.
 inline constexpr float kExposureAtZeroEv = 6.0F;
-// The exposed luminance that the film curve shows just below white, at 0.9 of white. The curve's
-// contrast does not change this luminance.
+// The exposed luminance that the film curve maps to 0.9 of white, just below white. The contrast of
+// the curve does not change this luminance.
 inline constexpr float kJustBelowWhite = 0.935F;
 
 class ToneMapper {
  public:
-  // `programs` links the programs.
+  // The mapper gets its linked shader programs from `programs`.
   explicit ToneMapper(
       std::shared_ptr<gl::ProgramCache> programs = std::make_shared<gl::ProgramCache>())
       : programs_(std::move(programs)) {}
 
-  // Maps `linear`, a picture of `scene` with the storm's opacity in alpha.
+  // Maps `linear`, a linear picture of `scene` with the storm's opacity in alpha.
   absl::StatusOr<ToneMapped> Map(const gl::Texture2D& linear, const scene::Scene& scene);
 
   // Sets the tone for later calls of MapFine without mapping a picture. The tone consists of
-  // exposure, white balance and curve of `linear`, a picture of `scene`. Returns the exposure in
-  // EV. Map sets the tone as well.
+  // exposure, white balance and curve. It is derived from `linear`, a picture of `scene`. Returns
+  // the exposure in EV. Map also sets the tone.
   absl::StatusOr<double> SetTone(const gl::Texture2D& linear, const scene::Scene& scene);
 
-  // Maps a picture with the tone set last.
+  // Maps a picture with the tone that Map or SetTone set last.
   absl::StatusOr<FineImage> MapFine(const gl::Texture2D& linear);
-  // Maps only the lower left part of the given size.
+  // Maps only the lower left part of the picture, of the size `part_px`.
   absl::StatusOr<FineImage> MapFine(const gl::Texture2D& linear, const glm::ivec2& part_px);
 
-  // Returns the pieces in which it draws.
+  // Returns the pieces (gl/pieces.h) in which the mapper draws.
   gl::Pieces& Pieces() const { return programs_->Pieces(); }
 
  private:
-  // Factors for radiance, and the curve.
+  // Factors that multiply red, green and blue radiance, and whether the film curve is used.
   struct Tone {
     glm::vec3 gain{1.0F};
     bool filmic = true;
   };
-  // The target of a picture of one bit depth.
+  // The render target for pictures of one bit depth.
   struct Display {
     gl::Texture2D texture;
     gl::Framebuffer target;
@@ -71,7 +71,7 @@ class ToneMapper {
     void Resize(GLenum format, const glm::ivec2& size_px);
   };
 
-  // Draws the lower left part of the given size to `display`, which must be at least as large.
+  // Draws the lower left part of the size `part_px` to `display`, which must be at least as large.
   absl::Status Draw(const gl::Texture2D& linear, const glm::ivec2& part_px, bool noise,
                     const Display& display);
   absl::StatusOr<FineImage> MapFineTo(const Display& display, const gl::Texture2D& linear,
@@ -88,16 +88,16 @@ class ToneMapper {
   Tone tone_;
   Display display_;
   Display fine_display_;
-  Display part_display_;  // never shrinks, because parts have various sizes
+  Display part_display_;  // target for parts; it never shrinks, because parts have various sizes
 };
 
-// Returns the texture's values, four floats a pixel, with rows from bottom to top as in GL. It
-// reads some rows in each piece.
+// Returns the texture's values, four floats a pixel, with rows from bottom to top as in GL. The
+// first overload reads some rows in each piece.
 absl::StatusOr<std::vector<float>> ReadLinear(const gl::Texture2D& linear, gl::Pieces& pieces);
 std::vector<float> ReadLinear(const gl::Texture2D& linear);  // reads in one piece
 
-// Convert between a linear picture and a texture in the renderers' format. A picture of unknown
-// opacity counts as all storm.
+// Convert between a linear picture and a texture in the renderers' format. If a picture's opacity
+// is unknown, the texture's opacity is 1.
 gl::Texture2D TextureOf(const picture::LinearPicture& picture);
 absl::StatusOr<picture::LinearPicture> PictureOf(const gl::Texture2D& linear, gl::Pieces& pieces);
 picture::LinearPicture PictureOf(const gl::Texture2D& linear);

@@ -13,8 +13,9 @@ namespace {
 
 constexpr double kLowestBalanced_deg = 10.0;
 
-// Returns the card's radiance for a sun of irradiance 1 above the atmosphere. The upper half of the
-// card's view counts as a uniform sky, the lower half as level ground.
+// Returns the radiance of a white card for a sun of irradiance 1 above the atmosphere. The upper
+// half of the hemisphere that the card faces counts as a uniform sky, the lower half as level
+// ground.
 glm::vec3 RadianceOfCard(const physics::Atmosphere& atmosphere, const scene::Sky& sky,
                          double elevation_deg) {
   constexpr float kInversePi = std::numbers::inv_pi_v<float>;

@@ -10,11 +10,11 @@
 
 namespace thunderhead::frame {
 
-// A white card (reflectance 1) that faces the sun under the scene's sky.
+// The light of a white card (reflectance 1) that faces the sun under the scene's sky.
 struct WhiteCard {
-  glm::vec3 radiance{1.0F};  // of the card
-  // Factors for each colour that make the card neutral and keep its luminance. For a sun below 10
-  // degrees they are those of a sun 10 degrees high, so that sunsets stay warm.
+  glm::vec3 radiance{1.0F};  // radiance of the card
+  // Factors for each colour that make the card neutral and keep its luminance. If the sun is lower
+  // than 10 degrees, the factors for a sun 10 degrees high are used, so that sunsets stay warm.
   glm::vec3 balance{1.0F};
 };
 
@@ -28,8 +28,8 @@ class WhiteCards {
   const WhiteCard& Of(const scene::Scene& scene);
 
  private:
-  // The inputs of the colour. The sun's azimuth rotates the light and its irradiance scales it, but
-  // neither changes the colour.
+  // The inputs of the card's colour. The sun's azimuth only rotates the light and its irradiance
+  // only scales it, so neither is an input.
   struct Key {
     double elevation_deg = 0.0;
     scene::Sky sky;
@@ -41,7 +41,7 @@ class WhiteCards {
 
   std::optional<Key> key_;
   std::optional<physics::Atmosphere> atmosphere_;
-  glm::vec3 radiance_{1.0F};  // for a sun of irradiance 1
+  glm::vec3 radiance_{1.0F};  // radiance of the card for a sun of irradiance 1
   WhiteCard card_;
 };
 

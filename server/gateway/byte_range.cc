@@ -21,7 +21,7 @@ ByteRange RangeOf(std::string_view header, std::uint64_t file_bytes) {
   std::uint64_t from = 0;
   std::uint64_t to = 0;
   if (first.empty()) {
-    // A range without a first byte asks for the last `to` bytes.
+    // A range without a first byte, such as "-500", asks for the last `to` bytes.
     if (!absl::SimpleAtoi(last, &to)) return all;
     if (to == 0 || file_bytes == 0) return {ByteRange::Asked::kNothingThere, 0, 0};
     to = std::min(to, file_bytes);

@@ -13,8 +13,8 @@ struct ByteRange {
   std::uint64_t bytes = 0;
 };
 
-// Returns the part of a file of this size that a Range header asks for. The result is the whole
-// file for a header that is empty, has several parts or is malformed; HTTP permits this.
+// Returns the part of a file of `file_bytes` bytes that a Range header asks for. For a header that
+// is empty, malformed or has several parts, it returns the whole file, as HTTP permits.
 ByteRange RangeOf(std::string_view header, std::uint64_t file_bytes);
 
 }  // namespace thunderhead::gateway

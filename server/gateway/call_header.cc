@@ -59,7 +59,7 @@ absl::StatusOr<UpstreamRequest> TranslateHeader(
 }
 
 Metadata TrailersOf(const grpc::Status& status, const Metadata& metadata) {
-  // The cast is unchecked because a server may send codes outside the canonical ones.
+  // The code is cast without a check, because a server may send codes outside the canonical ones.
   return Trailers(static_cast<absl::StatusCode>(status.error_code()), status.error_message(),
                   metadata);
 }

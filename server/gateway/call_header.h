@@ -1,5 +1,5 @@
-// Code that gRPC-Web and WebSocket calls share: a call's HTTP header as an upstream request, and
-// its outcome as trailers. It depends on no socket and no message type.
+// Converts a call's HTTP header to an upstream request, and the call's outcome to trailers. Both
+// gRPC-Web and WebSocket calls use it. It depends on no socket and no message type.
 #pragma once
 
 #include <boost/beast/http/message.hpp>
@@ -14,13 +14,13 @@
 
 namespace thunderhead::gateway {
 
-// Returns the address of the client that made `request`. It is `peer`, or the client that `peer`
-// names in x-forwarded-for if `peer` is one of `proxies`.
+// Returns the address of the client that made `request`: the address in X-Forwarded-For if `peer`
+// is one of `proxies`, otherwise `peer`.
 std::string ClientOf(const boost::beast::http::request<boost::beast::http::string_body>& request,
                      const std::string& peer, const base::TrustedProxies& proxies);
 
 // Returns the method, metadata and deadline of the call that `request` asks for, without a message.
-// The service gets the client's address in x-forwarded-for.
+// The metadata x-forwarded-for holds the client's address for the service.
 absl::StatusOr<UpstreamRequest> TranslateHeader(
     const boost::beast::http::request<boost::beast::http::string_body>& request,
     const std::string& peer, const base::TrustedProxies& proxies);

@@ -1,5 +1,4 @@
-// A signal for coroutines of one thread that wait for a flag. Other work on the same thread sets
-// the flag.
+// A signal for coroutines that wait for a flag. The flag is set by other work on the same thread.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>

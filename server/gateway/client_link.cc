@@ -23,19 +23,20 @@ constexpr size_t kWatchRead = 4 << 10;
 constexpr std::chrono::seconds kLinger{2};
 
 void SetOption(int socket, int level, int name, int value) {
-  // Each option is only an improvement, so errors of a kernel that lacks it are ignored.
+  // The options are only improvements, so it does not matter if the kernel lacks one.
   static_cast<void>(::setsockopt(socket, level, name, &value, sizeof(value)));
 }
 
 void TuneSocket(int socket) {
   SetOption(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-  // These detect a client that disappeared without closing after about a minute, even while its
-  // stream is idle.
+  // The keepalive detects a client that disappeared without closing the connection after about a
+  // minute, even while its stream is idle.
   SetOption(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
   SetOption(socket, IPPROTO_TCP, TCP_KEEPIDLE, 30);
   SetOption(socket, IPPROTO_TCP, TCP_KEEPINTVL, 10);
   SetOption(socket, IPPROTO_TCP, TCP_KEEPCNT, 3);
-  // This limits the frames queued in the kernel for a slow client, which would only add latency.
+  // This limits how much data waits in the kernel for a slow client, because waiting frames only
+  // add latency.
   SetOption(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, 128 << 10);
 }
 
@@ -49,7 +50,7 @@ ClientLink::ClientLink(net::ip::tcp::socket socket, std::shared_ptr<net::ssl::co
       write_stall_timeout_(write_stall_timeout),
       watch_changed_(stream_.get_executor()) {
   TuneSocket(stream_.socket().native_handle());
-  // A client that has already disconnected has no endpoint, so the error is ignored.
+  // A client that has already disconnected has no endpoint, so an error is ignored.
   error_code error;
   const net::ip::tcp::endpoint endpoint = stream_.socket().remote_endpoint(error);
   const net::ip::address address = endpoint.address();

@@ -1,4 +1,4 @@
-// One client's TCP connection. Its writes time out only if they make no progress. It detects a
+// One client's TCP connection. A write times out only if it makes no progress. The link detects a
 // client that disconnects while its call is idle, and counts the bytes in each direction. It is
 // independent of HTTP and gRPC. Runs on one thread.
 #pragma once
@@ -22,11 +22,12 @@
 
 namespace thunderhead::gateway {
 
-// Uses of a connection, in the order in which connections are closed to free a place for new ones.
+// What a connection is used for. To make place for a new connection, connections are closed in this
+// order.
 enum class LinkUse {
-  kWaiting,    // for the first byte of a request
-  kReceiving,  // the rest of a request
-  kSending,    // a file or a text
+  kWaiting,    // waits for the first byte of a request
+  kReceiving,  // receives the rest of a request
+  kSending,    // sends a file or a text
   kCalling,    // the service processes its call
 };
 
@@ -34,7 +35,7 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // If `tls` is null, the connection is plain. `time` must outlive the link.
+  // If `tls` is null, the connection uses plain TCP. `time` must outlive the link.
   ClientLink(boost::asio::ip::tcp::socket socket, std::shared_ptr<boost::asio::ssl::context> tls,
              std::chrono::milliseconds write_stall_timeout, const base::TimeSource& time);
 
@@ -57,38 +58,40 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
   boost::beast::flat_buffer& Received() { return received_; }
 
   void ExpireIdleWrite() { stream_.expires_after(write_stall_timeout_); }
-  // Sets the stall timeout, with the additional limit that all must be written by `end`.
+  // Sets the stall timeout, and the additional limit that the write must be complete by `end`.
   void ExpireIdleWrite(Clock::time_point end) {
     stream_.expires_at(std::min(end, time_.Now() + write_stall_timeout_));
   }
-  // Writes all buffers. Returns false if the client has disconnected, accepted nothing during the
-  // stall timeout, or did not accept all by `end`.
+  // Writes all buffers. Returns false if the client has disconnected, has accepted nothing during
+  // the stall timeout, or has not accepted all bytes by `end`.
   boost::asio::awaitable<bool> WriteAll(std::vector<boost::asio::const_buffer> buffers,
                                         Clock::time_point end);
 
   // Calls `on_gone` once if the client closes or half-closes its side before StopWatching(). Bytes
-  // that the client sends meanwhile are kept in Received(). A client that exceeds the limit of
-  // Received() counts as disconnected too.
+  // that the client sends meanwhile are kept in Received(). A client that sends more than
+  // Received() may hold counts as disconnected too.
   void StartWatching(std::function<void()> on_gone);
   boost::asio::awaitable<void> StopWatching();
   bool Gone() const { return gone_; }
 
-  // Returns the number of bytes that were received from the client, accepted by the kernel for
-  // sending, and acknowledged by the client's machine.
+  // These functions return the number of bytes that were received from the client (ReceivedBytes),
+  // accepted by the kernel for sending (SentBytes), and acknowledged by the client's machine
+  // (DeliveredBytes).
   uint64_t ReceivedBytes() { return stream_.Counts().Received(); }
   uint64_t SentBytes() { return stream_.Counts().Sent(); }
   uint64_t DeliveredBytes();
-  // Returns true if the client closed its side or the connection broke, even while nothing is read.
+  // Returns true if the client closed its side or the connection broke. It works even while nothing
+  // is read.
   bool HasHungUp();
 
-  // Closes the sending side and waits briefly for the client to close its side. A client that is
-  // still sending then reads the response instead of a connection reset.
+  // Closes the sending side and waits briefly for the client to close its side. Thus a client that
+  // is still sending can read the response, and does not get a connection reset.
   boost::asio::awaitable<void> LingeringClose();
   // Closes the connection at once. Pending operations on the link fail.
   void Close();
 
-  // Sets a function that Stop() calls instead of closing. It must ensure that Close() follows soon.
-  // An empty function removes it.
+  // Sets a function that Stop() calls instead of closing the link. The function must ensure that
+  // Close() follows soon. An empty function restores the default.
   void SetFarewell(std::function<void()> farewell) { farewell_ = std::move(farewell); }
   // Stops the link because the gateway shuts down.
   void Stop();
@@ -108,7 +111,7 @@ class ClientLink : public std::enable_shared_from_this<ClientLink> {
   ChangeSignal watch_changed_;
   std::function<void()> on_gone_;  // empty while not watching
   std::function<void()> farewell_;
-  bool at_rest_ = true;  // true while the watch has no pending read
+  bool at_rest_ = true;  // true while no read of the watch is pending
   bool gone_ = false;
 };
 

@@ -1,6 +1,6 @@
-// An Asio stream over plain TCP or TLS for one client's connection. Operations share one deadline,
-// which applies to those that begin after it is set. The stream counts the bytes in each direction.
-// It is independent of HTTP and gRPC. Runs on one thread.
+// An Asio stream over plain TCP or TLS for one client's connection. A deadline applies to the
+// operations that begin after it was set. The stream counts the bytes in each direction. It is
+// independent of HTTP and gRPC. Runs on one thread.
 #pragma once
 
 #include <boost/asio/associated_executor.hpp>
@@ -29,7 +29,7 @@
 
 namespace thunderhead::gateway {
 
-// A rate policy of Beast that counts the bytes of a stream and limits nothing. With TLS it counts
+// A rate policy for Beast's streams that counts bytes and limits nothing. With TLS, it counts
 // encrypted bytes.
 class ByteCounts {
  public:
@@ -60,13 +60,13 @@ namespace thunderhead::gateway {
 
 class ClientStream : public streams::OptionalTls<ByteCounts> {
  public:
-  // If `tls` is null, the stream is plain. `time` measures the deadlines and must outlive the
+  // If `tls` is null, the stream uses plain TCP. `time` measures the deadlines and must outlive the
   // stream.
   ClientStream(boost::asio::ip::tcp::socket socket, std::shared_ptr<boost::asio::ssl::context> tls,
                const base::TimeSource& time);
 
-  // Each function replaces the deadline of later reads and writes. At the deadline of a pending
-  // operation the socket is closed and the operation fails.
+  // Each function replaces the deadline for later reads and writes. If an operation is still
+  // pending at its deadline, the socket is closed and the operation fails.
   void expires_after(base::TimeSource::Clock::duration timeout) {
     expires_at(time_.Now() + timeout);
   }
@@ -81,19 +81,20 @@ class ClientStream : public streams::OptionalTls<ByteCounts> {
 
   using Take = std::function<bool(std::span<const std::byte>)>;
 
-  // Passes the decrypted bytes of each later read to `take`. The read fails if `take` returns
-  // false. Null stops this.
+  // Passes the decrypted bytes of each later read to `take`. If `take` returns false, the read
+  // fails. A null `take` ends this.
   void WatchReads(Take take) { *take_ = std::move(take); }
 
-  // Sends `bytes` as the stream's last data, after the data that is being sent. Later writes are
-  // accepted but not sent. Returns false if the connection has ended.
+  // Sends `bytes` as the last data of the stream, after the write that is in progress. Later writes
+  // succeed but are not sent. Returns false if the connection has ended.
   boost::asio::awaitable<bool> WriteLast(std::string bytes);
 
-  // Closes the sending side, and drops what the client still sends until it ends too, the timeout
-  // expires or the socket is closed. Then closes the socket. Closing a socket with unread bytes
-  // would reset the connection, and the client could lose the last data sent to it.
+  // Closes the sending side. Then drops what the client still sends until the client closes its
+  // side, the timeout expires or the socket is closed, and closes the socket. Closing a socket with
+  // unread bytes immediately would reset the connection, and the client could lose the last data
+  // sent to it.
   boost::asio::awaitable<void> LingeringClose();
-  // Does the same, then calls `handler` without an error.
+  // Does the same as LingeringClose(), then calls `handler` without an error.
   void LingeringClose(streams::BytesHandler handler);
 
  private:
@@ -104,15 +105,15 @@ class ClientStream : public streams::OptionalTls<ByteCounts> {
 
   const base::TimeSource& time_;
   const std::shared_ptr<StreamDeadlines> deadlines_;
-  // This is shared because a read may end after the stream.
+  // The pointer is shared because a read may end after the stream was destroyed.
   const std::shared_ptr<Take> take_ = std::make_shared<Take>();
   bool between_writes_ = true;  // the last write has ended and was complete
   bool last_begun_ = false;
   ChangeSignal write_ended_;
 };
 
-// Hooks for Beast's end of a WebSocket, which end its TCP connection. Beast's own functions for
-// sockets close after the first bytes that they drop.
+// Functions that Beast calls to close the TCP connection when a WebSocket ends. Beast's own
+// versions for sockets close the connection after the first bytes that they drop.
 void beast_close_socket(ClientStream& stream);
 void teardown(boost::beast::role_type role, ClientStream& stream, boost::system::error_code& error);
 template <typename Handler>

@@ -62,7 +62,8 @@ net::awaitable<absl::StatusOr<PageFile>> FileAnswers::FindPageFile(const Request
   if (site_.files->IsEmpty()) co_return PageFile();
   const auto found = std::make_shared<PageFile>();
   const bool is_read = request.method() != http::verb::post;
-  // The function has a name because GCC 12 destroys some temporaries of a co_await twice.
+  // The function is stored in a variable because GCC 12 destroys some temporaries of a co_await
+  // twice.
   std::function<void()> find =
       [found, files = site_.files, path, closer = std::weak_ptr(site_.file_closer),
        accepted = std::string(View(request[http::field::accept_encoding])),
@@ -139,8 +140,8 @@ net::awaitable<bool> FileAnswers::SendKeptPart(const Request& request, const Kep
   http::response<http::empty_body> header(http::status::ok, request.version());
   const std::string entity_tag = absl::StrCat("\"", file.entity_tag, "\"");
   DescribeKept(entity_tag, header);
-  // The whole file is sent if its contents differ from those that the client has a part of. Only
-  // GET supports parts.
+  // The whole file is sent if its contents differ from those of which the client already has a
+  // part. Only GET supports parts.
   const std::string_view only_if = View(request[http::field::if_range]);
   const bool may_be_part =
       request.method() == http::verb::get && (only_if.empty() || only_if == entity_tag);
@@ -182,7 +183,7 @@ net::awaitable<bool> FileAnswers::SendPart(const Request& request,
   std::string unsent_header = text.str();
   if (request.method() == http::verb::head) part.bytes = 0;
   sent_whole_ = false;
-  // The reading thread owns this too, because it may hang.
+  // The reading thread shares ownership of this state, because its read may hang.
   struct Read {
     std::vector<char> into = std::vector<char>(kFilePart);
     std::ptrdiff_t bytes = 0;
@@ -208,8 +209,8 @@ net::awaitable<bool> FileAnswers::SendPart(const Request& request,
       }
     }
     const auto bytes = static_cast<size_t>(read->bytes);
-    // With TLS, the first buffer is written alone if all together are too long, and nothing is
-    // written if it is empty.
+    // With TLS, Beast writes the first buffer alone if all buffers together are too long. If the
+    // first buffer is empty, nothing is then written. So empty buffers are left out.
     std::vector<net::const_buffer> buffers;
     if (!unsent_header.empty()) buffers.push_back(net::buffer(unsent_header));
     buffers.push_back(net::buffer(read->into.data(), bytes));

@@ -1,5 +1,5 @@
-// Responses with files: those of the page, and those that the service keeps. The threads for files
-// find, open and read them, because their storage may hang.
+// Responses with files: the page's files, and files that the service provides (KeptFile). Separate
+// threads find, open and read the files, because their storage may block.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
@@ -18,9 +18,9 @@
 
 namespace thunderhead::gateway {
 
-// The result of finding a page's file on a thread for files.
+// The result of looking for a page's file.
 struct PageFile {
-  std::optional<StaticFile> about;  // empty if there is no file at that path
+  std::optional<StaticFile> about;  // absent if there is no file at that path
   absl::StatusOr<std::shared_ptr<const OpenFile>> file = absl::NotFoundError("it was not opened");
 };
 
@@ -33,13 +33,14 @@ class FileAnswers {
   FileAnswers(HttpAnswers& answers, ClientLink& link, Site& site)
       : answers_(answers), link_(link), site_(site), executor_(link.Stream().get_executor()) {}
 
-  // Finds the page's file at that path, and opens it if it must be sent. Returns an error if its
-  // storage hangs.
+  // Looks for the page's file at that path, and opens it if its contents must be sent. Returns an
+  // error if the storage does not respond.
   Awaitable<absl::StatusOr<PageFile>> FindPageFile(const Request& request, const std::string& path);
   // Sends a file. Both functions return true if the connection may be used again.
   Awaitable<bool> SendFile(const Request& request, const PageFile& page);
   Awaitable<bool> SendKept(const Request& request, const KeptFile& file);
-  // Sends an error because the file's storage hangs or fails, before any of the file was sent.
+  // Sends an error because the file's storage blocks or fails. Nothing of the file may have been
+  // sent yet.
   Awaitable<bool> SendStorageFails(const Request& request);
 
  private:
@@ -47,10 +48,10 @@ class FileAnswers {
 
   Awaitable<bool> SendKeptPart(const Request& request, const KeptFile& file,
                                std::shared_ptr<const OpenFile> opened);
-  // Sends `header`, which must contain the part's length, and then the part.
+  // Sends `header`, which must contain the part's length, and then the part of the file.
   Awaitable<bool> SendPart(const Request& request, HttpAnswers::Header& header, FilePart part);
-  // Returns the client that the work on files counts for. All connections of a client share one
-  // quota of the threads for files.
+  // Returns the name of the client for the threads' quota. All connections of a client share one
+  // quota.
   std::string FilesOwnerOf(const Request& request) const;
   void LogFailedRead(const std::string& path, const absl::Status& why);
 
@@ -58,7 +59,7 @@ class FileAnswers {
   ClientLink& link_;
   Site& site_;
   const boost::asio::any_io_executor executor_;
-  bool sent_whole_ = false;  // true if the last part was sent completely
+  bool sent_whole_ = false;  // true if the last file part was sent completely
 };
 
 }  // namespace thunderhead::gateway

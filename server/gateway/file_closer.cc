@@ -11,7 +11,7 @@ base::Executor::Limits Limits() {
   limits.threads = 2;
   limits.hangs_after = std::chrono::seconds(1);
   limits.max_hanging = 16;
-  // Files in the queue stay open in any case, so they may wait for long.
+  // A file in the queue stays open in any case, so it may wait for a long time.
   limits.max_wait = std::chrono::hours(24);
   return limits;
 }

@@ -1,5 +1,5 @@
-// Closes files on separate threads. Closing a file can block just as reading can, for example on a
-// network file system that does not respond. It is independent of HTTP.
+// Closes files on separate threads. Closing a file can block, for example on a network file system
+// that does not respond. Independent of HTTP.
 #pragma once
 
 #include <unistd.h>
@@ -14,14 +14,14 @@ namespace thunderhead::gateway {
 
 class FileCloser {
  public:
-  // `close` closes a descriptor. `time` must outlive the closer and the files passed to it.
+  // `close` closes a file descriptor. `time` must outlive the closer and the files passed to it.
   explicit FileCloser(std::function<void(int)> close = ::close,
                       const base::TimeSource& time = base::SteadyTime());
   FileCloser(const FileCloser&) = delete;
   FileCloser& operator=(const FileCloser&) = delete;
 
-  // Closes a file without blocking; it may be called on any thread. A file stays open if too many
-  // are queued, and when the closer ends.
+  // Closes a file without blocking. May be called on any thread. The file stays open if too many
+  // files are queued, or if the closer ends before it was closed.
   void Close(base::FileDescriptor file);
 
  private:

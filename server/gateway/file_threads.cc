@@ -13,14 +13,16 @@ namespace {
 namespace net = boost::asio;
 using std::chrono::milliseconds;
 
-// Work on a file counts as hanging after this time, and another thread replaces its thread.
+// Work on a file counts as hanging after this time. Another thread then replaces the thread that
+// does it.
 constexpr milliseconds kHangsAfter{1000};
 
 base::Executor::Limits LimitsFor(milliseconds timeout) {
   base::Executor::Limits limits;
   limits.threads = 4;
   limits.max_waiting = 1024;
-  // One address may stand for a whole class, and the threads are shared fairly anyway.
+  // The limit per client equals the total limit: one address may stand for a whole school class,
+  // and the threads are shared fairly anyway.
   limits.max_waiting_each = limits.max_waiting;
   limits.hangs_after = std::min(kHangsAfter, timeout);
   limits.max_hanging = 16;
@@ -30,10 +32,10 @@ base::Executor::Limits LimitsFor(milliseconds timeout) {
 
 }  // namespace
 
-// A coroutine's wait for work. The work may outlive the wait, and even the executor.
+// A coroutine's wait for work on a thread. The work may outlive the wait, and even the executor.
 struct FileThreads::Wait {
   std::mutex mutex;
-  net::steady_timer* timer = nullptr;  // null when no coroutine waits any longer
+  net::steady_timer* timer = nullptr;  // null once no coroutine waits
   std::optional<absl::Status> outcome;
 
   // Reports the outcome; it may be called on any thread.
@@ -42,7 +44,7 @@ struct FileThreads::Wait {
     wait->outcome = status;
     if (wait->timer == nullptr) return;
     net::post(wait->timer->get_executor(), [wait] {
-      // Only this thread ends the wait, so the check needs no lock.
+      // Only this thread ends the wait, so that the check needs no lock.
       if (wait->timer != nullptr) wait->timer->cancel();
     });
   }
@@ -76,7 +78,8 @@ net::awaitable<absl::Status> FileThreads::Run(const net::any_io_executor& execut
   waits_.insert(wait.get());
   const auto deadline = time_.Now() + timeout_;
   boost::system::error_code woken;
-  // A timer that has already fired cannot be cancelled, so its outcome alone is not sufficient.
+  // A timer that has already fired cannot be cancelled, so the loop does not rely on the outcome of
+  // the timer alone.
   while (!wait->HasEnded() && !stopped_ && time_.Now() < deadline) {
     timer.expires_at(time_.LookAgainAt(deadline));
     co_await timer.async_wait(net::redirect_error(net::use_awaitable, woken));

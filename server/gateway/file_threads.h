@@ -1,5 +1,6 @@
-// Threads that open and read files for the gateway's thread. A hanging storage delays only the
-// clients that need its files, and each of them for at most a timeout. It is independent of HTTP.
+// Threads that open and read files for the gateway's thread. A blocked storage delays only the
+// clients that need its files, and each of these clients for at most a timeout. Independent of
+// HTTP.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
@@ -23,14 +24,15 @@ class FileThreads {
   FileThreads(const FileThreads&) = delete;
   FileThreads& operator=(const FileThreads&) = delete;
 
-  // Runs `work` on one of the threads for the client `owner`, and returns OK when it has returned.
-  // Returns DEADLINE_EXCEEDED after the timeout. Returns RESOURCE_EXHAUSTED if too much work of
-  // this client, or in total, is queued. `work` must own everything that it uses, because it may
-  // continue after an error. The function must be called on the only thread of `executor`.
+  // Runs `work` on one of the threads for the client `owner`. Returns OK when `work` has returned,
+  // and DEADLINE_EXCEEDED after the timeout. Returns RESOURCE_EXHAUSTED if too much work is queued
+  // for this client or in total. `work` must own everything that it uses, because it may continue
+  // after an error. Run must be called on the thread of `executor`, which must have only one.
   boost::asio::awaitable<absl::Status> Run(const boost::asio::any_io_executor& executor,
                                            const std::string& owner, std::function<void()> work);
 
-  // Ends all waits now, and each later one at once. It must be called on the executor's thread.
+  // Ends all waits for results now, and each later wait at once. Must be called on the executor's
+  // thread.
   void StopWaiting();
 
  private:

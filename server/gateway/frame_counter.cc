@@ -5,8 +5,8 @@
 namespace thunderhead::gateway {
 namespace {
 
-constexpr unsigned kControlBit = 0x08;  // of the opcode
-constexpr unsigned kMaskBit = 0x80;     // of the second byte
+constexpr unsigned kControlBit = 0x08;  // bit of the opcode that marks a control frame
+constexpr unsigned kMaskBit = 0x80;     // bit of the second byte that marks a masked payload
 constexpr unsigned kLengthBits = 0x7f;
 constexpr unsigned kTwoByteLength = 126;
 constexpr unsigned kEightByteLength = 127;

@@ -1,6 +1,6 @@
-// Parses the frames of a WebSocket (RFC 6455, 5.2) in the bytes that its client sends, to limit
-// frames without data. Beast skips empty fragments and answers pings automatically. So a client
-// could occupy the gateway's thread with millions of them without sending a message.
+// Parses the WebSocket frames (RFC 6455, 5.2) that a client sends, to limit frames without data.
+// Beast skips empty fragments and answers pings automatically. So a client could occupy the
+// gateway's thread with millions of such frames without sending a message.
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ class FrameCounter {
   bool Take(std::span<const std::byte> bytes, base::Allowance::Time now);
 
  private:
-  // Returns the size of the current frame's header, as far as its first two bytes determine it.
+  // Returns the size of the current frame's header, as far as the bytes read so far determine it.
   std::size_t HeaderBytes() const;
   std::uint64_t PayloadBytes() const;
 

@@ -72,7 +72,7 @@ absl::Status CannotListen(const tcp::endpoint& endpoint, const error_code& error
 }  // namespace
 
 // The listener and its connections. Everything except construction and Stop() runs on `thread_`, so
-// no lock is needed.
+// that no lock is needed.
 class Gateway::Listener {
  public:
   Listener(const GatewayOptions& options, StaticFiles files, HttpPolicy policy,
@@ -115,7 +115,7 @@ class Gateway::Listener {
           co_await acceptor_.async_accept(net::redirect_error(net::use_awaitable, error));
       if (stopping_) break;
       if (!error) {
-        // If memory is missing for one connection, there may be enough for the next.
+        // If memory is missing for one connection, there may be enough memory for the next.
         const absl::Status admitted = base::Guarded([&] {
           Admit(std::move(socket));
           return absl::OkStatus();
@@ -123,8 +123,8 @@ class Gateway::Listener {
         if (!admitted.ok()) LogRefusal(std::string(admitted.message()));
         continue;
       }
-      // The process has probably run out of file descriptors. Retrying at once would waste
-      // processor time.
+      // Accepting has failed, probably because the process has run out of file descriptors.
+      // Retrying at once would waste processor time.
       LogRefusal(error.message());
       net::steady_timer pause(io_, kAcceptPause);
       co_await pause.async_wait(net::redirect_error(net::use_awaitable, error));
@@ -172,10 +172,11 @@ class Gateway::Listener {
   net::io_context io_{1};
   tcp::acceptor acceptor_;
   tcp::endpoint endpoint_;
-  const std::unique_ptr<TlsContexts> tls_;  // null if connections are plain
+  const std::unique_ptr<TlsContexts> tls_;  // null if the connections use plain TCP
   base::Allowances handshakes_;             // per network
   OpenLinks links_;
-  base::LineLimit accept_errors_{1};  // without free descriptors there are ten errors a second
+  // Limits the log lines: without free file descriptors there are ten errors a second.
+  base::LineLimit accept_errors_{1};
   bool stopping_ = false;
   std::thread thread_;
 };
@@ -205,7 +206,7 @@ uint16_t Gateway::Port() const { return listener_->Endpoint().port(); }
 std::string Gateway::Url() const {
   const net::ip::address address = listener_->Endpoint().address();
   const char* const scheme = listener_->IsEncrypted() ? "https://" : "http://";
-  // A browser cannot connect to a wildcard address, so the URL names localhost.
+  // A browser cannot connect to a wildcard address such as 0.0.0.0, so the URL names localhost.
   if (address.is_unspecified() || address == net::ip::address_v4::loopback()) {
     return absl::StrCat(scheme, "localhost:", Port(), "/");
   }

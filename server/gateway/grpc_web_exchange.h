@@ -1,6 +1,7 @@
-// One gRPC-Web request and its response, with headers, messages and trailers in their frames. It
-// reads each message from the server only after the client has accepted the previous one. Errors
-// are trailers with HTTP status 200, as clients expect. It is independent of message types.
+// One gRPC-Web request and its response: headers, messages and trailers in their frames. The next
+// message is read from the server only after the client has accepted the previous one. Errors are
+// sent as trailers with HTTP status 200, as clients expect. The exchange is independent of message
+// types.
 #pragma once
 
 #include <boost/beast/http/message.hpp>
@@ -23,7 +24,8 @@ class GrpcWebExchange {
   GrpcWebExchange(Site& site, ClientLink& link, const Request& request)
       : site_(site), link_(link), request_(request) {}
 
-  // Makes the call of the complete request. Returns false if the connection cannot be used again.
+  // Makes the call for the request, which must be complete. Returns false if the connection cannot
+  // be used again.
   boost::asio::awaitable<bool> Run();
   // Responds without a call. If `keep_alive` is true, the connection may be used again.
   boost::asio::awaitable<bool> Refuse(const absl::Status& status, bool keep_alive);
@@ -31,7 +33,7 @@ class GrpcWebExchange {
  private:
   absl::StatusOr<UpstreamRequest> Translate() const;
   boost::asio::awaitable<bool> Relay(const UpstreamCall::Lease& call);
-  // Ends a response after its headers because there is no memory for its message.
+  // Ends a response whose headers were sent, because there is no memory for its message.
   boost::asio::awaitable<bool> RefuseAnswer();
   boost::asio::awaitable<bool> WriteHeaders(const Metadata& metadata);
   boost::asio::awaitable<bool> WriteMessage(grpc::ByteBuffer message);

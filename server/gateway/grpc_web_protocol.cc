@@ -21,7 +21,7 @@ namespace {
 constexpr uint8_t kCompressedFlag = 0x01;
 constexpr uint8_t kTrailerFlag = 0x80;
 
-// Debian's abseil has its own string_view.
+// Converts to Abseil's string view. Debian's Abseil has its own type for it.
 absl::string_view Absl(std::string_view text) { return {text.data(), text.size()}; }
 
 std::array<uint8_t, kFrameHeaderBytes> FrameHeader(uint8_t flags, uint32_t size) {
@@ -35,14 +35,16 @@ uint32_t FrameSize(std::string_view frame) {
   return size;
 }
 
-// Returns "application/grpc-web+proto" for "Application/gRPC-Web+proto; charset=utf-8".
+// Returns the media type without parameters and in lower case: "application/grpc-web+proto" for
+// "Application/gRPC-Web+proto; charset=utf-8".
 std::string MediaType(std::string_view content_type) {
   const absl::string_view type = Absl(content_type.substr(0, content_type.find(';')));
   return absl::AsciiStrToLower(absl::StripAsciiWhitespace(type));
 }
 
-// These functions ask gRPC itself what it accepts. It aborts the process on metadata that breaks
-// its rules. It also has undocumented exceptions, such as that "-bin" alone is not a binary name.
+// The following functions ask gRPC itself which metadata it accepts, because it aborts the process
+// on metadata that breaks its rules. It also has undocumented exceptions; for example, "-bin" alone
+// is not the name of binary metadata.
 grpc_slice Borrowed(std::string_view text) {
   return grpc_slice_from_static_buffer(text.data(), text.size());
 }
@@ -52,8 +54,8 @@ bool IsLegalText(std::string_view value) {
   return grpc_header_nonbin_value_is_legal(Borrowed(value)) != 0;
 }
 
-// Returns true for headers that belong to HTTP or the browser. Cookies are among them because a
-// browser shares them between all ports of a host. It would send the cookies of any program on
+// Returns true for headers that belong to HTTP or to the browser. Cookies are among them, because a
+// browser shares cookies between all ports of a host. It would send the cookies of any program on
 // localhost.
 bool IsNotMetadata(std::string_view name) {
   static constexpr std::string_view kNames[] = {"accept",
@@ -223,7 +225,8 @@ absl::Status AddRequestHeader(std::string_view name, std::string_view value, Met
     metadata.emplace_back(key, std::string(value));
     return absl::OkStatus();
   }
-  // HTTP allows several values of one name to be joined by commas, which base64 does not use.
+  // HTTP allows several values of one name to be joined by commas. Base64 contains no commas, so
+  // the values can be separated.
   for (const absl::string_view part : absl::StrSplit(Absl(value), ',')) {
     std::string bytes;
     if (!absl::Base64Unescape(absl::StripAsciiWhitespace(part), &bytes)) {

@@ -23,26 +23,26 @@ inline constexpr size_t kFrameHeaderBytes = 5;
 // bytes here and base64 on the wire.
 using Metadata = std::vector<std::pair<std::string, std::string>>;
 
-// Returns true for application/grpc-web and application/grpc-web+proto, the binary kinds.
+// Returns true for application/grpc-web and application/grpc-web+proto, the binary content types.
 bool IsBinaryGrpcWeb(std::string_view content_type);
 
-// Returns true for "/package.Service/Method".
+// Returns true if `path` has the form "/package.Service/Method".
 bool IsMethodPath(std::string_view path);
 
-// Returns the only message of a request body.
+// Returns the message of a request body, which must contain exactly one message.
 absl::StatusOr<std::string_view> TakeSingleMessage(std::string_view body);
 
 // Returns the frame header of a message of `size` bytes.
 std::array<uint8_t, kFrameHeaderBytes> MessageFrameHeader(uint32_t size);
 
-// Returns encoded trailers as text, with one line "name:value" each.
+// Returns trailers, already encoded, as text with one line "name:value" for each.
 std::string TrailerBlock(const Metadata& trailers);
 
 // Returns the last frame of a response body.
 std::string TrailerFrame(const Metadata& trailers);
 
-// Returns the trailers of a call, encoded for the wire: grpc-status, grpc-message unless empty, and
-// `metadata`.
+// Returns the trailers of a call, encoded for the wire: grpc-status, grpc-message (unless it is
+// empty), and `metadata`.
 Metadata Trailers(absl::StatusCode code, std::string_view message, const Metadata& metadata);
 
 // Returns `message` in the encoding of grpc-message.
@@ -51,13 +51,14 @@ std::string PercentEncode(std::string_view message);
 // Parses a grpc-timeout such as "250m".
 absl::StatusOr<absl::Duration> ParseTimeout(std::string_view text);
 
-// Adds a request's header to `metadata` unless it belongs to HTTP, the browser or gRPC itself.
+// Adds a header of the request to `metadata`, unless the header belongs to HTTP, the browser or
+// gRPC itself.
 absl::Status AddRequestHeader(std::string_view name, std::string_view value, Metadata& metadata);
 
-// Returns true for response metadata that is forwarded to the browser.
+// Returns true if response metadata of that name is forwarded to the browser.
 bool IsForwardedToBrowser(std::string_view name);
 
-// Returns `value` of the metadata `name` in the encoding of an HTTP header.
+// Returns `value`, the value of the metadata `name`, in the encoding of an HTTP header.
 std::string EncodeValue(std::string_view name, std::string_view value);
 
 }  // namespace thunderhead::gateway

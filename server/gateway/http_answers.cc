@@ -15,7 +15,7 @@ namespace net = boost::asio;
 namespace http = boost::beast::http;
 using boost::system::error_code;
 
-// Seconds after which a client should retry for a file whose storage hangs.
+// Retry delay in seconds for a file whose storage hangs.
 constexpr char kFileRetry[] = "10";
 
 }  // namespace
@@ -34,7 +34,8 @@ net::awaitable<bool> HttpAnswers::SendAny(const Request& request, http::response
   const bool keep_alive = CompleteAny(request, response);
   http::response_serializer<Body> serializer(response);
   const auto end = EndOfSending(response.payload_size().value_or(0));
-  // The response is written in parts, so that it also times out without any progress.
+  // The response is written in parts, and each part gets the stall timeout. So a write without
+  // progress times out.
   while (!serializer.is_done()) {
     link_.ExpireIdleWrite(end);
     error_code error;

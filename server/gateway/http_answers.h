@@ -1,5 +1,5 @@
-// Sends the responses of one HTTP/1.1 connection. It adds the headers that the gateway's policy
-// requires, and applies the client's time limit.
+// Sends the responses of one HTTP/1.1 connection. Adds the headers that HttpPolicy requires, and
+// applies the time limit for the client to receive a response.
 #pragma once
 
 #include <boost/beast/http/empty_body.hpp>
@@ -25,8 +25,8 @@ class HttpAnswers {
 
   HttpAnswers(ClientLink& link, Site& site) : link_(link), site_(site) {}
 
-  // Sets whether the client may still be sending its request. The response is then the connection's
-  // last.
+  // Sets whether a part of the request may still be unread. If so, the next response is the
+  // connection's last.
   void SetUnreadInput(bool unread) { unread_input_ = unread; }
   bool HasUnreadInput() const { return unread_input_; }
 
@@ -34,10 +34,10 @@ class HttpAnswers {
   Awaitable<bool> SendText(const Request& request, boost::beast::http::status status,
                            const std::string& text, std::string_view allowed_methods = {});
   Awaitable<bool> Send(const Request& request, Header& header);
-  // Completes a header whose body the caller sends. Returns true if the connection may be used
-  // again afterwards.
+  // Completes the header of a response whose body the caller sends. Returns true if the connection
+  // may be used again afterwards.
   bool Complete(const Request& request, Header& header);
-  // Returns the time by which the client must have received this many bytes.
+  // Returns the time by which the client must have received `bytes` bytes.
   ClientLink::Clock::time_point EndOfSending(std::uint64_t bytes) const;
 
   // Returns the client's address, with its port if it is known.

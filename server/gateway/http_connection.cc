@@ -78,13 +78,13 @@ class HttpConnection {
 net::awaitable<bool> HttpConnection::ServeOne() {
   Parser parser;
   parser.header_limit(kMaxHeaderBytes);
-  // The body's limit is set after the header has been read. boost::none would refuse every body in
-  // Beast 1.74.
+  // The real limit of the body is set after the header was read. Until then there is no limit,
+  // because boost::none would refuse every body in Beast 1.74.
   parser.body_limit(std::numeric_limits<uint64_t>::max());
   const bool begins = co_await AwaitRequest();
   if (!begins) co_return false;
   link_.Begin(LinkUse::kReceiving);
-  // The timeout is for the whole header and is not restarted for each of its parts.
+  // The timeout covers the whole header. It is not restarted for each part of the header.
   link_.Stream().expires_after(site_.options.header_timeout);
   error_code error;
   co_await http::async_read_header(link_.Stream(), link_.Received(), parser,
@@ -119,8 +119,8 @@ net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
   const std::string path(target.substr(0, target.find('?')));
   bool keep = false;
   if (const auto ambiguity = FindAmbiguity(request); ambiguity.has_value()) {
-    // The bytes after the header may belong to this request, so nothing more is read from the
-    // connection.
+    // The bytes after the header may belong to this request or to another one. So no further
+    // request is read from the connection.
     answers_.SetUnreadInput(true);
     keep = co_await answers_.SendText(request, http::status::bad_request, *ambiguity);
   } else if (!site_.policy.AllowsHost(host)) {
@@ -201,7 +201,7 @@ net::awaitable<bool> HttpConnection::AnswerUpgrade(const Request& request) {
     keep = co_await answers_.SendText(request, http::status::bad_request,
                                       "Nothing may be sent before the upgrade is answered.\n");
   } else {
-    // The exchange itself changes the use when the service processes the call.
+    // The exchange itself changes the use to kCalling when the service processes the call.
     link_.Begin(LinkUse::kReceiving);
     const auto exchange = std::make_shared<WebSocketExchange>(site_, link_.shared_from_this());
     co_await exchange->Run(request, *upstream);
@@ -226,7 +226,7 @@ net::awaitable<bool> HttpConnection::AnswerPost(Parser& parser, const std::strin
     keep = co_await RefuseOrigin(request, "Request");
     co_return keep;
   }
-  // Calls are recognised without looking for a file, because the file's storage may hang.
+  // Calls are recognised before any file is looked for, because the files' storage may hang.
   const bool is_call =
       IsMethodPath(path) && IsBinaryGrpcWeb(View(request[http::field::content_type]));
   if (is_call && request.version() < 11) {
@@ -324,7 +324,7 @@ net::awaitable<bool> HttpConnection::RefuseLargeCall(const Request& request) {
 }
 
 net::awaitable<bool> HttpConnection::AnswerBadHeader(error_code error) {
-  // There is no response if the client closed the connection, or after a timeout or network error.
+  // No response is sent if the client closed the connection, or after a timeout or network error.
   if (error.category() != http::make_error_code(http::error::bad_method).category() ||
       error == http::error::end_of_stream || error == http::error::partial_message) {
     co_return false;

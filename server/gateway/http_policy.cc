@@ -16,14 +16,14 @@ namespace {
 
 namespace http = boost::beast::http;
 
-// Pictures are blobs, a worker for decoding may be created from a blob, and sliders have inline
-// styles.
+// The policy allows what the page needs: pictures are blobs, the decoding worker may be created
+// from a blob, and sliders have inline styles.
 constexpr char kContentSecurityPolicy[] =
     "default-src 'self'; img-src 'self' blob: data:; worker-src 'self' blob:; "
     "style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'self'; frame-ancestors 'self'";
 
-// Returns "localhost" for "LocalHost:8080" and "[::1]" for "[::1]:8080". Returns nothing if the
-// name is not followed by a valid port.
+// Returns the name in a Host header: "localhost" for "LocalHost:8080" and "[::1]" for "[::1]:8080".
+// Returns nothing if the name is followed by anything but a valid port.
 std::optional<std::string> NameOfHost(std::string_view host) {
   const size_t bracket = host.find(']');
   const size_t colon = host.find(':', bracket == std::string_view::npos ? 0 : bracket);
@@ -38,7 +38,8 @@ std::optional<std::string> NameOfHost(std::string_view host) {
   return absl::AsciiStrToLower(std::string(host.substr(0, colon)));
 }
 
-// Returns whether the request has no Transfer-Encoding, or exactly one that is only `chunked`.
+// Returns true if the request has no Transfer-Encoding header, or exactly one, whose value is only
+// `chunked`.
 bool HasPlainEncoding(const http::request_header<>& request) {
   const auto count = request.count(http::field::transfer_encoding);
   return count == 0 ||
@@ -131,7 +132,8 @@ void HttpPolicy::Decorate(std::string_view origin, http::fields& response) const
   response.set(http::field::vary, varies.empty() ? "Origin" : varies + ", Origin");
   if (!AllowsOrigin(origin)) return;
   response.set(http::field::access_control_allow_origin, BeastView(origin));
-  // The asterisk matches all names in requests without credentials. Metadata may have any name.
+  // The asterisk exposes all response headers for requests without credentials. It is needed
+  // because metadata may have any name.
   response.set(http::field::access_control_expose_headers, "*");
 }
 

@@ -1,4 +1,4 @@
-// A message in gRPC's memory, as buffers for writing it without a copy.
+// A message in gRPC's memory, as buffers from which it can be written without a copy.
 #pragma once
 
 #include <boost/asio/buffer.hpp>

@@ -1,5 +1,5 @@
 // A regular file that is open for reading. Its functions may block as long as the storage does, so
-// the gateway calls them on FileThreads. Releasing the file does not block.
+// the gateway calls them on FileThreads. Destroying the object does not block.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +16,15 @@ namespace thunderhead::gateway {
 
 class OpenFile {
  public:
-  // Opens a file. `closer` closes it; after the closer's end it is left open.
+  // Opens a file. `closer` will close it; if the closer no longer exists then, the file is left
+  // open.
   static absl::StatusOr<std::shared_ptr<const OpenFile>> Open(const std::string& path,
                                                               std::weak_ptr<FileCloser> closer);
   ~OpenFile();
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
 
-  // Returns the file's size when it was opened.
+  // Returns the size that the file had when it was opened.
   std::uint64_t Bytes() const { return bytes_; }
   // Reads at most `most` bytes from `offset`. Returns 0 at the end of the file, and a negative
   // number after an error.

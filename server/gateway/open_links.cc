@@ -9,7 +9,8 @@
 namespace thunderhead::gateway {
 namespace {
 
-// A connection that has been receiving a file for less than this is not closed for a new one.
+// A connection that has been sent a file for less than this time is not closed for a new
+// connection.
 constexpr std::chrono::seconds kFairReading{5};
 // Minimum time between two log lines about refusals, so that a flood cannot fill the disk.
 constexpr std::chrono::seconds kTellingPause{10};
@@ -27,9 +28,9 @@ bool CanBeSpared(const ClientLink& link, ClientLink::Clock::time_point now) {
   return false;
 }
 
-// Ranks connections in the order of closing. Connections that wait for a request or receive one
-// come before those that are sent a file. Within each kind, the one that has taken longest comes
-// first.
+// Ranks connections in the order in which they are closed. Connections that wait for a request or
+// receive one come before connections on which a file is sent. Within each kind, the connection
+// with the longest duration comes first.
 auto Rank(const ClientLink& link) {
   return std::tuple(link.Use() == LinkUse::kSending, link.UsedSince());
 }
@@ -57,8 +58,8 @@ bool OpenLinks::CloseLeastNeeded(const std::string* network) {
   }
   if (least == nullptr) return false;
   least->Close();
-  // The link is removed at once, so that no other new connection finds it again. Its coroutine ends
-  // a little later.
+  // The link is removed at once, so that it is not chosen again for another new connection. Its
+  // coroutine ends a little later.
   links_.erase(least);
   return true;
 }

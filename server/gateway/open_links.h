@@ -1,4 +1,5 @@
-// The open connections, and the choice of the one that is closed for a new one. Runs on one thread.
+// The open connections, and the choice of the connection that is closed to make place for a new
+// one. Runs on one thread.
 #pragma once
 
 #include <chrono>
@@ -17,7 +18,7 @@ namespace thunderhead::gateway {
 
 class OpenLinks {
  public:
-  // Addresses in `proxies` are limited only by `most`. `time` must outlive this object.
+  // Only `most` limits the connections of addresses in `proxies`. `time` must outlive this object.
   OpenLinks(size_t most, size_t most_per_address, base::TrustedProxies proxies,
             const base::TimeSource& time)
       : most_(most),
@@ -25,15 +26,15 @@ class OpenLinks {
         proxies_(std::move(proxies)),
         time_(time) {}
 
-  // Closes a connection for `newcomer` if there is the maximum number. Returns false if none can be
-  // closed.
+  // If the maximum number of connections is reached, closes another connection for `newcomer`.
+  // Returns false if no connection can be closed.
   bool MakeRoom(const ClientLink& newcomer);
   void Add(const std::shared_ptr<ClientLink>& link) { links_.insert(link); }
   void Remove(const std::shared_ptr<ClientLink>& link) { links_.erase(link); }
   void StopAll();
 
  private:
-  // Closes one connection of that network, or of any network if it is null.
+  // Closes one connection of that network, or of any network if `network` is null.
   bool CloseLeastNeeded(const std::string* network);
   void TellOfRefusal(const ClientLink& newcomer);
 

@@ -41,7 +41,7 @@ void PeerLiveness::Note(const Observation& seen, Clock::time_point now) {
 }
 
 void PeerLiveness::NotePing(const Observation& seen, Clock::time_point now) {
-  // The ping is queued behind earlier data. A peer that still reads that data is alive.
+  // The ping is queued behind earlier data. A peer that still receives this data is alive.
   const bool was_delivered = !ping_unsent_ && last_.delivered_bytes >= ping_end_bytes_;
   if (seen.delivered_bytes != last_.delivered_bytes && !was_delivered) ping_progress_ = now;
   if (ping_unsent_ && !seen.is_pinging) {

@@ -1,5 +1,5 @@
-// Decides from the traffic of a connection whether its peer is still connected: when to ping it,
-// and when to drop it. It is independent of sockets and clocks.
+// Decides from the traffic of a connection when to ping its peer, and when to drop the connection
+// because the peer is gone. It is independent of sockets and clocks.
 #pragma once
 
 #include <chrono>
@@ -12,9 +12,9 @@ class PeerLiveness {
   using Clock = std::chrono::steady_clock;
 
   struct Limits {
-    // Interval after which a silent peer is pinged. A peer that stays silent for another interval
-    // is dropped. While the server reads nothing from the peer, it is enough that the ping is
-    // delivered.
+    // A peer that is silent for this interval is pinged. If it stays silent for another interval,
+    // it is dropped. While the server reads nothing from the peer, it is enough that the ping is
+    // delivered to the peer's machine.
     std::chrono::milliseconds ping_interval;
     // Timeout of a peer that accepts no bytes of a write.
     std::chrono::milliseconds write_stall_timeout;
@@ -27,7 +27,7 @@ class PeerLiveness {
     uint64_t sent_bytes = 0;       // accepted by the kernel
     uint64_t delivered_bytes = 0;  // acknowledged by the peer's machine
     bool is_writing = false;
-    bool is_pinging = false;  // true while a requested ping is not sent yet
+    bool is_pinging = false;  // true while a ping that was requested has not been sent yet
     bool is_reading = true;   // false while the server reads nothing from the peer
     bool is_closing = false;
   };
@@ -46,11 +46,12 @@ class PeerLiveness {
   Observation last_;
   bool awaits_pong_ = false;
   bool ping_unsent_ = false;
-  uint64_t ping_end_bytes_ = 0;  // delivered_bytes at which the ping counts as delivered
-  Clock::time_point last_sign_;  // the last sign of life
+  // The ping counts as delivered once delivered_bytes reaches this value.
+  uint64_t ping_end_bytes_ = 0;
+  Clock::time_point last_sign_;  // time of the last sign of life
   Clock::time_point last_sent_;
   Clock::time_point last_delivered_;
-  Clock::time_point ping_progress_;  // the last progress of the ping's delivery
+  Clock::time_point ping_progress_;  // time of the last progress in the delivery of the ping
   Clock::time_point closing_since_;
 };
 

@@ -1,5 +1,5 @@
-// Returns and reports refusals by the gateway's own rules and limits, for the audit log and the
-// metrics.
+// The errors of refusals by the gateway's own rules and limits, and a function that reports a
+// refusal to the audit log and the metrics.
 #pragma once
 
 #include <string>

@@ -76,8 +76,8 @@ std::optional<std::string> PercentDecode(std::string_view text) {
   return decoded;
 }
 
-// Returns "assets/index.js" for "/assets/index.js". Returns nothing for a path that could lead out
-// of the directory or to a hidden file.
+// Returns the path relative to the directory, such as "assets/index.js" for "/assets/index.js".
+// Returns nothing for a path that could lead out of the directory or to a hidden file.
 std::optional<fs::path> RelativePath(std::string_view url_path) {
   const std::optional<std::string> decoded = PercentDecode(url_path);
   if (!decoded.has_value() || !decoded->starts_with('/')) return std::nullopt;
@@ -117,7 +117,7 @@ bool IsOlder(const struct stat& a, const struct stat& b) {
          std::tie(b.st_mtim.tv_sec, b.st_mtim.tv_nsec);
 }
 
-// Returns the weight of parameters such as "q=0.5"; 0 if it is malformed.
+// Returns the weight in parameters such as "q=0.5"; 0 if they are malformed.
 double WeightOf(absl::string_view parameters) {
   for (absl::string_view parameter : absl::StrSplit(parameters, ';')) {
     parameter = absl::StripAsciiWhitespace(parameter);
@@ -154,7 +154,7 @@ std::optional<StaticFile> StaticFiles::Find(std::string_view url_path,
   if (!relative.has_value()) return std::nullopt;
   std::error_code error;
   fs::path path = fs::canonical(root_ / *relative, error);
-  // Symbolic links may point inside the page's directory but not out of it.
+  // Symbolic links may lead to files in the page's directory, but not out of it.
   if (error || !IsInside(path, root_)) return std::nullopt;
   const std::optional<struct stat> plain = RegularFile(path);
   if (!plain.has_value()) return std::nullopt;
@@ -162,11 +162,11 @@ std::optional<StaticFile> StaticFiles::Find(std::string_view url_path,
   StaticFile file;
   file.content_type = ContentType(path);
   file.entity_tag = EntityTag(*plain, "");
-  // The names of assets contain a hash of their content, so browsers need to revalidate only other
-  // files.
+  // The names of files in assets contain a hash of their content, so browsers never need to
+  // revalidate them. They must revalidate other files.
   const bool is_hashed = *relative->begin() == "assets";
   file.cache_control = is_hashed ? "public, max-age=31536000, immutable" : "no-cache";
-  // A gzip file older than its original has different content, so it is ignored.
+  // A gzip file that is older than its original was made from other content, so it is ignored.
   const fs::path compressed = fs::canonical(fs::path(path) += ".gz", error);
   const std::optional<struct stat> gzip =
       !error && IsInside(compressed, root_) ? RegularFile(compressed) : std::nullopt;
@@ -183,7 +183,7 @@ std::optional<StaticFile> StaticFiles::Find(std::string_view url_path,
 bool PrefersGzip(std::string_view accept_encoding) {
   std::optional<double> gzip;
   std::optional<double> any;
-  double plain = 0.0;  // without an entry, the original is the last choice
+  double plain = 0.0;  // 0 means that the original is used only if nothing else is accepted
   for (const absl::string_view choice :
        absl::StrSplit(absl::string_view(accept_encoding.data(), accept_encoding.size()), ',')) {
     const std::pair<absl::string_view, absl::string_view> parts =

@@ -1,7 +1,7 @@
-// The files of the built page. It finds the file for a request's path, with its HTTP headers, which
+// The files of the built page. Find returns the file for a request's path with its HTTP headers; it
 // may block as long as the storage does. It never leaves the page's directory and is independent of
-// sockets. It compresses nothing. The page's build writes a gzip file next to a file ("index.js.gz"
-// next to "index.js"), and such a file is available in both encodings.
+// sockets. Files are not compressed here: the page's build writes a gzip file next to a file
+// ("index.js.gz" next to "index.js"). Such a file is available in both encodings.
 #pragma once
 
 #include <filesystem>
@@ -20,13 +20,14 @@ struct StaticFile {
   std::string entity_tag;  // with its quotes; differs for each encoding
   std::string cache_control;
   std::string content_encoding;  // "gzip", or empty for the original
-  bool varies = false;           // true if it depends on the request's Accept-Encoding
+  // True if the file's encoding depends on the request's Accept-Encoding.
+  bool varies = false;
 };
 
 class StaticFiles {
  public:
-  // Opens the page's directory. An empty `directory` means a server without a page; any other must
-  // contain index.html.
+  // Opens the page's directory. An empty `directory` means a server without a page. Any other
+  // directory must contain index.html.
   static absl::StatusOr<StaticFiles> Open(const std::string& directory);
   // Returns true if there is no page.
   bool IsEmpty() const { return root_.empty(); }
@@ -42,11 +43,11 @@ class StaticFiles {
   std::filesystem::path root_;  // canonical, or empty without a page
 };
 
-// Returns true if the Accept-Encoding header `accept_encoding` accepts gzip, and does not prefer
-// the original.
+// Returns true if the Accept-Encoding header `accept_encoding` accepts gzip and does not prefer the
+// uncompressed file.
 bool PrefersGzip(std::string_view accept_encoding);
 
-// Returns true if the If-None-Match header `candidates` names `entity_tag`.
+// Returns true if the If-None-Match header `candidates` contains `entity_tag`.
 bool MatchesEntityTag(std::string_view candidates, std::string_view entity_tag);
 
 }  // namespace thunderhead::gateway

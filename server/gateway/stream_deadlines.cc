@@ -15,7 +15,7 @@ void StreamDeadlines::Begin(Way way) {
 
 void StreamDeadlines::Arm() {
   const TimePoint end = *std::ranges::min_element(pending_);
-  // A timer that waits for an earlier deadline checks this one when it fires.
+  // If the timer already waits for an earlier deadline, it checks this deadline when it fires.
   if (end >= armed_for_) return;
   armed_for_ = end;
   timer_.expires_at(time_.LookAgainAt(end));

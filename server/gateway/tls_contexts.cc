@@ -26,7 +26,8 @@ absl::Status CannotLoad(const std::string& what, const std::string& path, const 
 
 }  // namespace
 
-// The state of the contexts. Only the checking thread uses it, except for the newest context.
+// The state that the object and its checking thread share. Only the checking thread uses it, except
+// for `newest`.
 struct TlsContexts::State {
   using Stamps = std::pair<std::optional<base::FileStamp>, std::optional<base::FileStamp>>;
 
@@ -64,7 +65,7 @@ absl::Status TlsContexts::State::Load() {
                        error);
   context->use_certificate_chain_file(certificate, error);
   if (error) return CannotLoad("certificate", certificate, error);
-  // This fails if the key belongs to a different certificate.
+  // This call fails if the key does not belong to the certificate.
   context->use_private_key_file(key, ssl::context::pem, error);
   if (error) return CannotLoad("key", key, error);
   const std::lock_guard lock(mutex);
@@ -73,7 +74,8 @@ absl::Status TlsContexts::State::Load() {
 }
 
 void TlsContexts::State::Look() {
-  // The two files are replaced one after the other. Until they match, the old ones stay in use.
+  // The two files may be replaced one after the other. Until they match, the old contexts stay in
+  // use.
   const Stamps now = StampsNow();
   if (now == stamps) return;
   stamps = now;

@@ -1,6 +1,6 @@
-// The certificate and key of TLS connections, which are loaded again when their files change. Open
-// connections keep those that they began with. A separate thread checks the files every second, so
-// that a hanging storage delays no connection.
+// The certificate and key for TLS connections, which are loaded again when their files change. Open
+// connections keep the certificate with which they began. A separate thread checks the files every
+// second, so that a blocked storage delays no connection.
 #pragma once
 
 #include <boost/asio/ssl/context.hpp>
@@ -15,12 +15,13 @@ namespace thunderhead::gateway {
 
 class TlsContexts {
  public:
-  // Opens PEM files: the chain, with the server's own certificate first, and its key. Returns
-  // INVALID_ARGUMENT if they cannot be read or do not match. `time` must outlive this object.
+  // Loads PEM files: the certificate chain, with the server's own certificate first, and the key.
+  // Returns INVALID_ARGUMENT if the files cannot be read or do not match. `time` must outlive this
+  // object.
   static absl::StatusOr<std::unique_ptr<TlsContexts>> Open(
       std::string certificate, std::string key, const base::TimeSource& time = base::SteadyTime());
 
-  // Returns the context of the newest files that could be loaded.
+  // Returns the TLS context with the newest files that could be loaded.
   std::shared_ptr<boost::asio::ssl::context> Current();
 
  private:

@@ -9,14 +9,15 @@ namespace {
 
 using Clock = ClientLink::Clock;
 
-// A client that has had less than this is not disconnected for others.
+// A client that has had less time than this to receive its message is not disconnected to free
+// memory for others.
 constexpr std::chrono::seconds kFairTime{5};
 
 }  // namespace
 
 struct UnsentAnswers::Answer {
   ClientLink& link;
-  size_t bytes;  // 0 once the link was closed for others
+  size_t bytes;  // 0 once the link was closed to free memory for others
   Clock::time_point since;
   uint64_t sent_before = link.SentBytes();
 
@@ -43,7 +44,7 @@ bool UnsentAnswers::MakeRoom(size_t bytes) {
   const auto now = time_.Now();
   size_t spared = 0;
   for (const Answer* answer : answers_) spared += answer->CanBeSpared(now) ? answer->bytes : 0;
-  // No client is disconnected if that would not free enough memory.
+  // No client is disconnected if this would not free enough memory.
   if (bytes > max_bytes_ - bytes_ + spared) return false;
   while (bytes > max_bytes_ - bytes_) {
     Answer* slowest = nullptr;

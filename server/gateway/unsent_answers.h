@@ -1,5 +1,5 @@
-// The response messages that wait for their clients to receive them: how much memory they use in
-// total, and which clients are disconnected to free memory. Runs on one thread.
+// The response messages that wait for their clients to receive them. It limits the memory that they
+// use in total, and decides which clients are disconnected to free memory. Runs on one thread.
 #pragma once
 
 #include <cstddef>
@@ -19,9 +19,10 @@ class UnsentAnswers {
   UnsentAnswers(const UnsentAnswers&) = delete;
   UnsentAnswers& operator=(const UnsentAnswers&) = delete;
 
-  // Reserves memory for a message to `link`'s client; the last copy of the result releases it.
-  // Returns null if there is not enough memory. To free memory, it closes the links of the slowest
-  // clients, if they have had some seconds. The result must not outlive this object or the link.
+  // Reserves memory for a message to the client of `link`. The memory is released with the last
+  // copy of the result. To free memory, it closes the links of the slowest clients, if they have
+  // had some seconds. Returns null if there is still not enough memory. The result must not outlive
+  // this object or the link.
   std::shared_ptr<const void> Take(ClientLink& link, size_t bytes);
 
  private:

@@ -40,11 +40,12 @@ UpstreamCall::Lease UpstreamCall::Start(grpc::GenericStub& stub,
   // message.
   stub.PrepareBidiStreamingCall(&call->context_, request.method, {}, call.get());
   call->self_ = call;
-  // Reads start outside gRPC's callbacks, which requires a hold until the last read.
+  // The hold is required because reads are started outside gRPC's callbacks. It lasts until the
+  // last read.
   call->AddHold();
   // In gRPC 1.51's in-process transport, a handler may send a message together with its status, as
-  // unary ones do. The server's side of such a call never ends while no read is pending. So the
-  // first read starts before the call.
+  // unary handlers do. The server's side of such a call never ends while the client has no pending
+  // read. So the first read is started before the call.
   call->StartRead(&call->message_);
   if (request.only_message.has_value()) call->WriteOnly(*request.only_message);
   call->StartCall();
@@ -102,7 +103,8 @@ net::awaitable<bool> UpstreamCall::AwaitWritten() {
 }
 
 net::awaitable<grpc::Status> UpstreamCall::Finish() {
-  // After trailers alone there is nothing to read, and cancelling might hide their status.
+  // If the server sent only trailers, there is nothing to read, and cancelling might hide the
+  // status in them.
   if (at_end_ || !has_headers_) {
     if (!released_) {
       released_ = true;

@@ -1,5 +1,5 @@
-// One call to the gRPC server, used from the thread of an executor. A user starts it, writes
-// messages, reads messages one at a time, and awaits its end. Messages are bytes; the call is
+// One call to the gRPC server, used on the thread of an executor. The user starts it, writes
+// messages, reads messages one at a time, and awaits its end. Messages are bytes: the call is
 // independent of their types and of HTTP.
 #pragma once
 
@@ -26,14 +26,14 @@ struct UpstreamRequest {
   std::string method;  // "/package.Service/Method"
   Metadata metadata;
   std::optional<std::chrono::system_clock::time_point> deadline;
-  // The message of a unary or server-streaming call. Without it, the call's messages follow by
+  // The message of a unary or server-streaming call. If absent, messages are written with
   // BeginWrite(), until BeginHalfClose().
   std::optional<std::string_view> only_message;
 };
 
 class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer> {
  public:
-  // A lease that ends its call when destroyed, so that no call outlives its connection.
+  // A handle that ends its call when it is destroyed, so that no call outlives its connection.
   class Lease {
    public:
     explicit Lease(std::shared_ptr<UpstreamCall> call) : call_(std::move(call)) {}
@@ -41,34 +41,36 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
     Lease& operator=(const Lease&) = delete;
     ~Lease() { call_->Release(); }
     UpstreamCall* operator->() const { return call_.get(); }
-    // Returns the call, for a caller that may still cancel it after the lease.
+    // Returns a reference to the call, for code that may have to cancel the call after the lease
+    // was destroyed.
     std::shared_ptr<UpstreamCall> Share() const { return call_; }
 
    private:
     std::shared_ptr<UpstreamCall> call_;
   };
 
-  // Starts a call whose methods all run on `executor`, which must have only one thread.
+  // Starts a call. All its methods run on `executor`, which must have only one thread.
   static Lease Start(grpc::GenericStub& stub, const boost::asio::any_io_executor& executor,
                      const UpstreamRequest& request);
 
   // Waits for the server's headers. Returns false if the server sent only trailers.
   boost::asio::awaitable<bool> AwaitHeaders();
-  // Reads the server's next message; returns nothing after the last.
+  // Reads the server's next message. Returns nothing after the last message.
   boost::asio::awaitable<std::optional<grpc::ByteBuffer>> ReadMessage();
 
-  // Writes a message, or ends the writing, without waiting. AwaitWritten() must have returned since
-  // the last call of either function.
+  // Begin to write a message, or to end the writing, without waiting. Before each call of either
+  // function, AwaitWritten() must have returned since the last one.
   void BeginWrite(grpc::ByteBuffer message);
   void BeginHalfClose();
-  // Waits until gRPC has accepted the last write, which flow control delays while the server does
-  // not read. Returns false if the call accepts no further writes.
+  // Waits until gRPC has accepted the last write. gRPC's flow control delays this while the server
+  // does not read. Returns false if the call accepts no further writes.
   boost::asio::awaitable<bool> AwaitWritten();
 
   // Returns the call's outcome. Cancels the call if not all messages were read.
   boost::asio::awaitable<grpc::Status> Finish();
 
-  // Returns metadata encoded for the wire. It is valid after AwaitHeaders() and Finish().
+  // Return metadata encoded for the wire. InitialMetadata is valid after AwaitHeaders(),
+  // TrailingMetadata after Finish().
   Metadata InitialMetadata() const;
   Metadata TrailingMetadata() const;
 
@@ -97,7 +99,7 @@ class UpstreamCall : private grpc::ClientBidiReactor<grpc::ByteBuffer, grpc::Byt
   grpc::ByteBuffer request_;
   grpc::ByteBuffer message_;
 
-  // These are written and read only on the executor.
+  // The following members are written and read only on the executor.
   bool headers_known_ = false;
   bool has_headers_ = false;
   bool is_first_read_ = true;

@@ -26,7 +26,8 @@ using boost::system::error_code;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kCloseTimeout{5000};
-// Timeout of the close frame when the gateway shuts down, which waits for its connections.
+// Timeout for sending the close frame when the gateway shuts down, because the gateway waits for
+// its connections.
 constexpr milliseconds kLeaveTimeout{1000};
 constexpr milliseconds kSlowestWatch{500};
 constexpr milliseconds kFastestWatch{5};
@@ -62,8 +63,8 @@ net::awaitable<void> WebSocketExchange::Run(const Request& request,
 }
 
 net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
-  // The stream and the watch limit the time instead of the WebSocket's own timeouts. Those would
-  // drop a client that is held back by flow control, or that is slow to receive a large message.
+  // The stream and Watch() limit the times, and the WebSocket's own timeouts are off. These would
+  // drop a client that is held back by flow control, or that receives a large message slowly.
   socket_.set_option(websocket::stream_base::timeout{websocket::stream_base::none(),
                                                      websocket::stream_base::none(), false});
   link_->Stream().expires_after(site_.options.idle_timeout);
@@ -117,7 +118,8 @@ net::awaitable<void> WebSocketExchange::ForwardResponses() {
     const std::optional<grpc::ByteBuffer> message = co_await call_->ReadMessage();
     if (is_closing_) co_return;
     if (!message.has_value()) break;
-    // The service has now admitted the call. Until then, the connection can be closed for others.
+    // The service has now admitted the call, so the connection counts as calling. Before, it could
+    // be closed to make place for other connections.
     if (link_->Use() != LinkUse::kCalling) link_->Begin(LinkUse::kCalling);
     const std::shared_ptr<const void> place = site_.unsent_answers.Take(*link_, message->Length());
     if (place == nullptr) {
@@ -166,22 +168,24 @@ net::awaitable<bool> WebSocketExchange::Write(const std::vector<net::const_buffe
 net::awaitable<void> WebSocketExchange::Close() {
   BeginClosing();
   if (is_flooded_) {
-    // Beast treats the failed read as the end of the connection, so the close frame is written
-    // here.
+    // Beast treats the failed read as the end of the connection and would send no close frame. So
+    // the close frame is written here.
     link_->Stream().expires_after(kLeaveTimeout);
     co_await link_->Stream().WriteLast(CloseFrame(*close_reason_));
     co_await changed_.AwaitTrue(reader_ended_);
     co_await link_->Stream().LingeringClose();
   } else if (!close_reason_.has_value() || !socket_.is_open()) {
-    // Beast's reader answers a client that closes, and closes one that breaks the protocol.
+    // Beast's reader answers a client that closes the WebSocket, and closes the WebSocket of a
+    // client that breaks the protocol.
     co_await changed_.AwaitTrue(reader_ended_);
   } else if (reader_ended_) {
     error_code ignored;
     co_await socket_.async_close(*close_reason_, net::redirect_error(net::use_awaitable, ignored));
   } else {
     // Beast's closing and a pending reader could wait for each other forever, if the reader finds a
-    // broken frame while the close frame is in flight. So the reader ends on its own: by the
-    // client's close frame, by a broken frame, or by a message that the call no longer accepts.
+    // broken frame while the close frame is in flight. So Beast's closing is not used. The reader
+    // ends by the client's close frame, by a broken frame, or by a message that the call no longer
+    // accepts.
     co_await link_->Stream().WriteLast(CloseFrame(*close_reason_));
     co_await changed_.AwaitTrue(reader_ended_);
     if (socket_.is_open()) co_await link_->Stream().LingeringClose();
@@ -243,8 +247,8 @@ net::awaitable<void> WebSocketExchange::Watch() {
 
 void WebSocketExchange::Judge(PeerLiveness& liveness) {
   const auto now = site_.Now();
-  // Beast itself answers a close frame, and closes a connection that breaks the protocol. Its
-  // reader returns only after the TCP connection has ended too.
+  // Beast's reader itself answers a close frame, and closes a connection that breaks the protocol.
+  // It returns only after the TCP connection has ended too. So the closed socket is noticed here.
   if (!socket_.is_open()) BeginClosing();
   const PeerLiveness::Verdict verdict =
       liveness.Judge({link_->ReceivedBytes(), link_->SentBytes(), link_->DeliveredBytes(),

@@ -1,7 +1,7 @@
-// One call of any kind over a WebSocket, in the format of websocket_protocol.h. It reads each
-// message from the server only after the client has accepted the previous one. It reads each
-// message from the client only when the server's flow control allows it. Both directions run
-// concurrently. It is independent of message types.
+// One call of any kind over a WebSocket, in the format of websocket_protocol.h. The next message is
+// read from the server only after the client has accepted the previous one. The next message is
+// read from the client only when the server's flow control allows it. Both directions run
+// concurrently. The exchange is independent of message types.
 //
 // Two coroutines and a timer use one connection. Only Run() sends messages and closes, only
 // ForwardRequests() receives, and Watch() disconnects a client that no longer responds.
@@ -35,7 +35,7 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   // `site` must outlive the exchange.
   WebSocketExchange(Site& site, std::shared_ptr<ClientLink> link);
 
-  // Answers the upgrade `request` and makes the call. It closes the link at the end.
+  // Answers the upgrade `request` and makes the call. Closes the link at the end.
   boost::asio::awaitable<void> Run(const Request& request, const UpstreamRequest& upstream);
 
  private:
@@ -47,7 +47,8 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   template <typename Task>
   void Spawn(Task task);
 
-  // Runs until the trailers are sent, or the client or the gateway ends the call early.
+  // Forwards responses until the trailers are sent, or until the client or the gateway ends the
+  // call early.
   boost::asio::awaitable<void> ForwardResponses();
   boost::asio::awaitable<bool> WriteMessage(const grpc::ByteBuffer& message);
   boost::asio::awaitable<bool> WriteTrailers(const Metadata& trailers);
@@ -55,17 +56,18 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   boost::asio::awaitable<void> Close();
 
   boost::asio::awaitable<void> ForwardRequests();
-  // Forwards the rest of the message that has begun. Returns an error if the connection has ended.
+  // Forwards the rest of the message whose start was read. Returns an error if the connection has
+  // ended.
   boost::asio::awaitable<boost::system::error_code> ForwardMessage();
 
   boost::asio::awaitable<void> Watch();
   void Judge(PeerLiveness& liveness);
   void Ping();
 
-  // Ends the call and closes with `reason`, unless it is ending already.
+  // Ends the call and closes the WebSocket with `reason`, unless it is already being closed.
   void EndWith(const CloseReason& reason);
   void GoAway();
-  // Ends the call. Only the closing handshake remains, whose time the watch limits.
+  // Ends the call. Only the closing handshake remains; Watch() limits its duration.
   void BeginClosing();
   // Ends the call and the connection at once.
   void Abandon();
@@ -79,14 +81,15 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   std::string client_;
 
   PeerLiveness::Clock::time_point accepted_at_{};
-  bool has_begun_ = false;  // true after the client's first message, or if it has ended
+  // True once the client has sent its first message or has ended the WebSocket.
+  bool has_begun_ = false;
   bool is_writing_ = false;
   // The time by which the client must have received the message being written.
   PeerLiveness::Clock::time_point write_end_{};
   bool is_pinging_ = false;
   bool is_held_back_ = false;
   bool is_closing_ = false;
-  bool is_flooded_ = false;  // true after too many frames without data
+  bool is_flooded_ = false;  // true once the client has sent too many frames without data
   std::optional<CloseReason> close_reason_;
   std::optional<std::chrono::steady_clock::time_point> leave_by_;
 

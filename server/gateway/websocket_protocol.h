@@ -1,6 +1,6 @@
-// The wire format of calls by WebSocket, subprotocol grpc-websocket.v1: the kinds of messages, and
-// when a client may send each. The functions are pure, and independent of sockets, calls and
-// message types.
+// The wire format of calls over a WebSocket with the subprotocol grpc-websocket.v1: the kinds of
+// messages, and when a client may send each kind. The functions are pure, and independent of
+// sockets, calls and message types.
 //
 // Every WebSocket message is binary: a byte with its kind, followed by its payload. The client
 // sends request messages and at most one half-close. The server sends response messages, and the
@@ -25,9 +25,9 @@ inline constexpr uint8_t kTrailersKind = 0x80;   // from the server; as in a gRP
 // Returns true if a Sec-WebSocket-Protocol header offers the subprotocol.
 bool OffersSubprotocol(std::string_view offered);
 
-// Returns the token that a Sec-WebSocket-Protocol header offers in addition, as "bearer." and the
-// token in base64url without padding. Browsers let a page choose no other header. Returns nothing
-// if there is no token, or if it is not printable ASCII.
+// Returns the token in a Sec-WebSocket-Protocol header. It is offered there as a subprotocol:
+// "bearer." and the token in base64url without padding, because browsers let a page set no other
+// header. Returns nothing if there is no token, or if the token is not printable ASCII.
 inline constexpr char kTokenPrefix[] = "bearer.";
 std::optional<std::string> OfferedToken(std::string_view offered);
 
@@ -39,10 +39,12 @@ struct MessageStart {
   bool after_half_close = false;
 };
 
-// Returns the reason to close the connection if the client breaks a rule.
+// Returns the reason to close the connection if the message breaks a rule; nothing if it is
+// allowed.
 std::optional<boost::beast::websocket::close_reason> FindViolation(const MessageStart& start);
 
-// Returns the frame with which the server closes for `reason` (RFC 6455, 5.5.1).
+// Returns the frame with which the server closes the connection because of `reason` (RFC 6455,
+// 5.5.1).
 std::string CloseFrame(const boost::beast::websocket::close_reason& reason);
 
 }  // namespace thunderhead::gateway

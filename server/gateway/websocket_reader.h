@@ -1,5 +1,5 @@
-// Reads a client's messages from a WebSocket, in the format of websocket_protocol.h. It reads the
-// kind of each message first, and its payload when the call can accept it. It is independent of
+// Reads a client's messages from a WebSocket, in the format of websocket_protocol.h. It first reads
+// only the kind of each message, and its payload once the call can accept it. It is independent of
 // calls and works on any byte stream.
 #pragma once
 
@@ -15,21 +15,23 @@
 
 namespace thunderhead::gateway {
 
-// A reader of a `Socket`, which is a boost::beast::websocket::stream and must outlive the reader.
+// A reader on a `Socket`, which is a boost::beast::websocket::stream. The socket must outlive the
+// reader.
 template <typename Socket>
 class WebSocketReader {
  public:
   explicit WebSocketReader(Socket& socket) : socket_(socket) {}
 
-  // Limits the size of the payload. Beast closes a connection whose client sends more.
+  // Limits the size of a message's payload. Beast closes the connection of a client that sends
+  // more.
   void Limit(std::size_t max_message_bytes) {
     socket_.read_message_max(max_message_bytes + sizeof(kind_));
   }
 
-  // Waits for the next message and reads only its kind. Only this byte is read ahead of flow
-  // control. Returns an error if the connection has ended.
+  // Waits for the next message and reads only its kind (its first byte), so that flow control
+  // applies to the rest. Returns an error if the connection has ended.
   boost::asio::awaitable<boost::system::error_code> ReadStart();
-  // Describes the start of the current message.
+  // Describes the start of the message whose kind was read last.
   MessageStart Start() const {
     return {socket_.got_text(), has_kind_ ? std::optional<uint8_t>(kind_) : std::nullopt,
             !socket_.is_message_done(), half_closed_};

@@ -1,4 +1,5 @@
-// Decides which requests become WebSockets, and why others do not. It is independent of sockets.
+// Decides which upgrade requests become WebSockets, and gives the reason for refusing the others.
+// It is independent of sockets.
 #pragma once
 
 #include <boost/beast/http/message.hpp>
@@ -16,7 +17,8 @@ struct UpgradeRefusal {
   std::string text;
 };
 
-// Returns nothing if `request`, an upgrade to a gRPC method's path, may become a WebSocket.
+// Returns nothing if `request`, an upgrade at the path of a gRPC method, may become a WebSocket.
+// Otherwise returns the refusal.
 std::optional<UpgradeRefusal> FindUpgradeRefusal(
     const boost::beast::http::request<boost::beast::http::string_body>& request,
     const HttpPolicy& policy);

@@ -1,19 +1,19 @@
-// Converts fragment shaders to compute shaders. Some GPUs compute far faster than they rasterize:
-// only a few of an H100's 132 multiprocessors run fragment shaders. A fragment shader that draws a
-// whole target can therefore run as a compute shader instead. The code works on texts and does not
-// use GL.
+// Converts fragment shaders to compute shaders. Some GPUs run compute shaders far faster than
+// fragment shaders: an H100 runs fragment shaders on only a few of its 132 multiprocessors. A
+// fragment shader that draws every pixel of a target can therefore run as a compute shader instead.
+// The code works on texts and does not use GL.
 #pragma once
 
 #include <string>
 
 namespace thunderhead::gl {
 
-// Returns `fragment`, without a `#version`, as the part of a compute shader that draws one pixel.
-// The rest of the shader is common/whole_target.glsl.
+// Returns `fragment`, which has no `#version`, as the part of a compute shader that draws one
+// pixel. The rest of the compute shader is common/whole_target.glsl.
 //
-// Outputs must be declared one a line, as `out TYPE NAME;` or `layout(location = N) out TYPE
-// NAME;`, with type float or vec4, and under no preprocessor condition. The only input is
-// `position`. The shader must not discard fragments or take derivatives.
+// Each output must be declared on its own line, as `out TYPE NAME;` or `layout(location = N) out
+// TYPE NAME;`, with type float or vec4. Declarations must not depend on preprocessor conditions.
+// The only input is `position`. The shader must not discard fragments or take derivatives.
 std::string AsComputedPixel(const std::string& fragment);
 
 }  // namespace thunderhead::gl

@@ -27,8 +27,8 @@ std::string GlString(GLenum name) {
   return text == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(text));
 }
 
-// EGL returns one display to all contexts of a device, and eglTerminate ends it for all of them.
-// This class therefore counts the users of a display.
+// A reference to a display. EGL returns the same display to all contexts of a device, and
+// eglTerminate ends it for all of them. This class therefore counts the users of a display.
 class SharedDisplay {
  public:
   explicit SharedDisplay(EGLDisplay display) : display_(display) {
@@ -102,8 +102,8 @@ class EglContext final : public Context {
   const ContextInfo& Info() const override { return info_; }
 
  private:
-  // Makes a robust context if the driver offers one, because such a context reports when the device
-  // was reset. Otherwise it makes a plain context.
+  // Creates a robust context if the driver offers one, because a robust context reports that the
+  // device was reset. Otherwise it creates a plain context.
   void Make(EGLConfig config) {
     const std::vector<EGLint> plain = {
         EGL_CONTEXT_MAJOR_VERSION,       4,
@@ -135,12 +135,12 @@ class EglContext final : public Context {
 };
 
 // libepoxy cannot resolve the core function eglGetPlatformDisplay before a display exists. It can
-// resolve the EXT entry point.
+// resolve the EXT entry point, which is therefore used.
 EGLDisplay PlatformDisplay(EGLenum platform, void* native) {
   return eglGetPlatformDisplayEXT(platform, native, nullptr);
 }
 
-// Returns only GPUs, because Mesa also lists its software renderer as a device.
+// Returns only GPUs. Mesa also lists its software renderer as a device, which is left out.
 std::vector<EGLDeviceEXT> GpuDevices() {
   std::vector<EGLDeviceEXT> gpus;
   if (!epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_base") &&
@@ -179,7 +179,7 @@ absl::StatusOr<std::unique_ptr<Context>> OpenSoftware() {
     auto context = std::make_unique<EglContext>(display);
     status = context->Open("software");
     if (status.ok() && DrawsInSoftware()) return context;
-    // Another driver may also offer this platform.
+    // Another driver than Mesa may also offer the surfaceless platform.
     if (status.ok()) {
       status = absl::UnavailableError(
           absl::StrCat("the surfaceless EGL platform draws on ", context->Info().renderer));

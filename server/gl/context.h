@@ -1,5 +1,6 @@
-// A headless OpenGL 4.5 core context through EGL. It runs on a GPU by the device platform, or on
-// Mesa's software renderer by the surfaceless platform. This code does not use physics or scenes.
+// A headless OpenGL 4.5 core context through EGL. It uses EGL's device platform to run on a GPU, or
+// the surfaceless platform to run on Mesa's software renderer. This code does not use physics or
+// scenes.
 #pragma once
 
 #include <memory>
@@ -14,11 +15,11 @@ struct ContextInfo {
   std::string device;          // "software" or "gpu 0"
   std::string renderer;        // GL_RENDERER
   std::string version;         // GL_VERSION
-  bool tells_of_loss = false;  // reports loss of the device: gl/device_faults.h
+  bool tells_of_loss = false;  // true if the context reports loss of the device: gl/device_faults.h
 };
 
-// Owns an EGL display and context. Create, use and destroy it on one thread. It is current from
-// Create until its destruction.
+// Owns an EGL display and context. Create, use and destroy it on one thread. The context is current
+// from Create until its destruction.
 class Context {
  public:
   // Creates a context. `device` is "auto" (the first GPU with a working driver, otherwise

@@ -3,7 +3,7 @@
 
 namespace thunderhead::gl {
 
-// Returns true for Mesa's software renderer.
+// Returns true if the context uses Mesa's software renderer.
 bool DrawsInSoftware();
 
 }  // namespace thunderhead::gl

@@ -11,11 +11,11 @@ namespace {
 
 constexpr char kLostReason[] = "DEVICE_LOST";
 constexpr char kOutOfMemoryReason[] = "OUT_OF_DEVICE_MEMORY";
-// Retry delays: until the device is available again, and until other programs need less of its
-// memory.
+// Retry delays for clients. kLostFor is the time until the device is available again. kFullFor is
+// the time until other programs need less of its memory.
 constexpr std::chrono::seconds kLostFor{5};
 constexpr std::chrono::seconds kFullFor{10};
-// A lost context may report errors without end.
+// Maximum number of errors read at once, because a lost context may report errors without end.
 constexpr int kMaxErrors = 16;
 
 class GlWatch final : public DeviceWatch {

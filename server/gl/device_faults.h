@@ -1,6 +1,6 @@
-// Faults of the device while it draws: a reset, or no memory left. After a reset (a driver's crash,
-// a watchdog, another program) the device has lost all objects. Faults are checked at the end of
-// each picture. This code does not use scenes.
+// Faults of the device during drawing: it was reset, or its memory is exhausted. A reset is caused
+// by a crash of the driver, a watchdog or another program. After a reset the device has lost all
+// objects. Faults are checked at the end of each picture. This code does not use scenes.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace thunderhead::gl {
 
-// The source of faults, which tests replace by a fake.
+// The source of faults. Tests replace it by a fake.
 class DeviceWatch {
  public:
   enum class Fault { kNone, kLost, kOutOfMemory };
@@ -20,11 +20,11 @@ class DeviceWatch {
   virtual Fault Look() = 0;
 };
 
-// Returns a watch that uses glGetGraphicsResetStatus and glGetError. Without a robust context, a
-// loss is not detected.
+// Returns a watch that uses glGetGraphicsResetStatus and glGetError. It does not detect a loss if
+// the context is not robust.
 std::unique_ptr<DeviceWatch> WatchDevice();
 
-// Returns UNAVAILABLE with the reason DEVICE_LOST. Every GL object is gone, and all pending drawing
+// Returns UNAVAILABLE with the reason DEVICE_LOST. Every GL object is lost, and all pending drawing
 // with this context fails.
 absl::Status DeviceLost();
 bool IsDeviceLost(const absl::Status& status);
@@ -35,7 +35,7 @@ bool IsOutOfDeviceMemory(const absl::Status& status);
 
 absl::Status StatusOf(DeviceWatch::Fault fault);
 
-// Returns StatusOf the fault that WatchDevice reports now.
+// Checks the device with WatchDevice and returns the StatusOf the result.
 absl::Status FaultNow();
 
 }  // namespace thunderhead::gl

@@ -1,5 +1,5 @@
-// Every shader file of server/shaders, by its path below that folder. The map is generated at build
-// time.
+// All shader files of server/shaders, by their paths below that folder. The map is generated at
+// build time.
 #pragma once
 
 #include <map>

@@ -20,10 +20,11 @@ namespace {
 struct Declaration {
   std::string type;
   std::string name;
-  std::string size;  // "[SIZE]" of an array
+  std::string size;  // "[SIZE]" for an array, otherwise empty
 };
 
-// Returns the uniform that `row` declares, if it can be passed on as a flat input.
+// Returns the uniform that `row` declares, or nothing if it declares none that can be passed on as
+// a flat input.
 std::optional<Declaration> UniformIn(absl::string_view row) {
   constexpr std::array<std::string_view, 10> kTypes = {"float", "vec2",  "vec3",  "vec4", "int",
                                                        "ivec2", "ivec3", "ivec4", "mat3", "mat4"};
@@ -53,7 +54,8 @@ StageTexts WithFlatUniforms(const StageTexts& texts) {
     if (const std::optional<Declaration> found = UniformIn(row)) in_vertex.insert(found->name);
   }
   StageTexts flat;
-  // Declarations of the vertex shader, under the fragment shader's conditions.
+  // Declarations for the vertex shader, under the same preprocessor conditions as in the fragment
+  // shader.
   std::string declarations;
   std::string assignments;
   for (const absl::string_view row : absl::StrSplit(texts.fragment, '\n')) {

@@ -13,10 +13,10 @@ struct StageTexts {
   std::string fragment;
 };
 
-// Returns both texts with the uniforms moved. Uniforms must be declared one a line, as `uniform
-// TYPE NAME;` or `uniform TYPE NAME[SIZE];`. Array sizes are literals and macros. Samplers stay
-// unchanged. The uniforms keep their names for the code that sets them. The result may have more
-// inputs than a device allows, and then the program does not link.
+// Returns both texts with the uniforms moved. Each uniform must be declared on its own line, as
+// `uniform TYPE NAME;` or `uniform TYPE NAME[SIZE];`. Array sizes are literals or macros. Samplers
+// stay unchanged. The uniforms keep their names for the code that sets them. If the result has more
+// inputs than the device allows, the program does not link.
 StageTexts WithFlatUniforms(const StageTexts& texts);
 
 }  // namespace thunderhead::gl

@@ -95,7 +95,7 @@ Texture2D Texture2D::WithMips(GLenum internal_format, glm::ivec2 size, Edge edge
 }
 
 Texture2D::Texture2D(GLenum internal_format, glm::ivec2 size, Edge edge, int levels)
-    // Mip levels add a third, except for the rounding of odd sizes.
+    // Mip levels add a third to the bytes of the first level, apart from the rounding of odd sizes.
     : bytes_(BytesOf(internal_format, {size, 1}) * (levels > 1 ? 4 : 3) / 3),
       reserved_(DeviceMemory::Reserve(bytes_)),
       name_(NewTexture(GL_TEXTURE_2D, edge)),
@@ -199,7 +199,7 @@ Framebuffer::Framebuffer(std::initializer_list<const Texture2D*> colors, const T
   }
   const GLenum status = glCheckNamedFramebufferStatus(name, GL_DRAW_FRAMEBUFFER);
   if (status == GL_FRAMEBUFFER_COMPLETE) return;
-  // A lost device, or too little memory for an attachment, is not a programming error.
+  // Two causes are not programming errors: a lost device, and too little memory for an attachment.
   if (absl::Status fault = FaultNow(); !fault.ok()) throw base::FailedAllocation(std::move(fault));
   THUNDERHEAD_CHECK(false, "framebuffer status " + std::to_string(status));
 }

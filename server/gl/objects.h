@@ -44,7 +44,7 @@ void DeleteBuffer(GLuint name);
 void DeleteVertexArray(GLuint name);
 }  // namespace internal
 
-enum class Edge { kClamp, kZero, kRepeat };  // the result of a fetch beyond the edge
+enum class Edge { kClamp, kZero, kRepeat };  // the value of a texture fetch beyond the edge
 
 // Returns the bytes of one texel of a sized internal format that this project uses.
 std::size_t BytesPerTexel(GLenum internal_format);
@@ -58,9 +58,10 @@ class Texture2D {
   // Creates a texture with all levels down to one texel, for textureLod.
   static Texture2D WithMips(GLenum internal_format, glm::ivec2 size, Edge edge);
 
-  // Fills the whole texture, like Texture3D::Upload, and generates its other levels.
+  // Fills the whole texture and generates its other levels. The parameters are those of
+  // Texture3D::Upload.
   void Upload(GLenum format, GLenum type, const void* texels);
-  // Fills the lowest rows of a texture that has one level.
+  // Fills the lowest `rows` rows of a texture that has only one level.
   void UploadRows(int rows, GLenum format, GLenum type, const void* texels);
 
   GLuint Get() const { return name_.Get(); }
@@ -104,8 +105,8 @@ class Texture3D {
   void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
   // Fills the texture with zeros.
   void Clear();
-  // Reads the whole texture after pending drawing to it. `texels` must have room for it, with
-  // tightly packed rows.
+  // Reads the whole texture after pending drawing to it. `texels` must have room for `bytes` bytes,
+  // with tightly packed rows.
   void Download(GLenum format, GLenum type, std::size_t bytes, void* texels) const;
   // Binds all layers for imageLoad and imageStore.
   void BindImage(GLuint unit, GLenum access) const;
@@ -118,7 +119,7 @@ class Texture3D {
   GLenum internal_format_ = 0;
 };
 
-// Immutable two-dimensional textures of one size, with linear filtering within each.
+// Immutable two-dimensional textures (layers) of one size, with linear filtering within each layer.
 class Texture2DArray {
  public:
   Texture2DArray() = default;
@@ -130,9 +131,9 @@ class Texture2DArray {
   void Bind(GLuint unit) const { glBindTextureUnit(unit, name_.Get()); }
   // Binds all layers for imageLoad and imageStore.
   void BindImage(GLuint unit, GLenum access) const;
-  // Sets the texels of all layers from `low` to before `high`.
+  // Sets the texels from `low` to before `high` in all layers.
   void Fill(const glm::ivec2& low, const glm::ivec2& high, float red, float green) const;
-  // Reads one layer as four floats a texel, after pending drawing to it.
+  // Reads one layer as four floats for each texel, after pending drawing to it.
   std::vector<float> Download(int layer) const;
 
  private:
@@ -150,8 +151,8 @@ class Framebuffer {
  public:
   Framebuffer() = default;
   explicit Framebuffer(const Texture2D& color);
-  // Creates a framebuffer with the colour attachments in this order. All textures must have one
-  // size.
+  // Creates a framebuffer with the colour attachments in this order. All textures must have the
+  // same size.
   explicit Framebuffer(std::initializer_list<const Texture2D*> colors,
                        const Texture2D* depth = nullptr);
 
@@ -159,11 +160,11 @@ class Framebuffer {
   void Bind() const;
   void Clear(float red, float green, float blue, float alpha, int attachment = 0) const;
   void ClearDepth(float depth) const;
-  // Binds the colour attachments for imageStore, beginning with `unit`.
+  // Binds the colour attachments for imageStore to consecutive image units from `unit` on.
   void BindImages(GLuint unit) const;
   GLuint Get() const { return name_.Get(); }
   glm::ivec2 Size() const { return size_; }
-  GLuint Depth() const { return depth_; }  // 0: none
+  GLuint Depth() const { return depth_; }  // name of the depth texture; 0 if there is none
 
  private:
   struct Color {

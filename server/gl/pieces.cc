@@ -10,24 +10,24 @@
 namespace thunderhead::gl {
 namespace {
 
-// Target duration of a piece. If its content costs more than the measured one, a piece may take
-// twice as long.
+// Target duration of a piece in milliseconds. If its items cost more than the measured cost, a
+// piece may take twice as long.
 constexpr double kPiece_ms = 15.0;
-// Minimum time left in a piece for starting another pass in it.
+// Minimum time in milliseconds that a piece must have left for another pass to start in it.
 constexpr double kLeast_ms = 4.0;
-// Safety factor on the guessed cost of an item before anything was measured. Each measured piece
-// halves it.
+// Safety factor on the guessed cost of an item before its cost was measured. Each measured piece
+// halves the factor.
 constexpr double kCaution = 2.0;
-// Safety factor on the cost of an item in the last piece.
+// Safety factor on the measured cost of an item in the last piece.
 constexpr double kAbove = 1.25;
-// Weight of the costliest item so far. Its cost is forgotten slowly, by half in 35 pieces.
+// Weight of the highest cost of an item so far. That cost decreases slowly, by half in 35 pieces.
 constexpr double kOfWorst = 0.5;
 constexpr double kForgetting = 0.98;
-// Tiles are multiples of blocks of this size, because GPUs and software renderers draw the pixels
-// of a block together.
+// Side of the pixel blocks of which tiles are multiples. GPUs and software renderers draw the
+// pixels of a block together.
 constexpr int kBlock_px = 8;
-// Minimum height of tiles if a row of the picture is too much for a piece. Such tiles stay wide, so
-// that their parts are drawn in parallel.
+// Minimum height of tiles if one row of the picture takes longer than a piece. Such tiles stay
+// wide, so that their parts are drawn in parallel.
 constexpr int kMinRows = 8;
 
 }  // namespace

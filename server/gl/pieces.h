@@ -1,7 +1,7 @@
 // Cuts drawing into pieces of about 30 ms. Contexts that share a device can then draw in turn, and
 // cancelled drawing ends soon. The result does not depend on where the work is cut. Each context
-// has its own Pieces, and so its own GL state, which stays bound between two pieces. Use it on the
-// context's thread. This code does not use physics.
+// has its own Pieces and its own GL state, which stays bound between two pieces. Use a Pieces
+// object on its context's thread. This code does not use physics.
 #pragma once
 
 #include <functional>
@@ -17,8 +17,8 @@
 
 namespace thunderhead::gl {
 
-// The guessed cost of an item (a pixel, a row, a cell) of one kind of work, used until one has been
-// measured. Costs are measured by name.
+// The assumed cost of an item (a pixel, a row, a cell) of one kind of work. It is used until the
+// cost of an item has been measured. Measurements are stored by name.
 struct PieceCost {
   std::string_view name;
   double guess_ns = 1.0;
@@ -28,7 +28,8 @@ class Pieces {
  public:
   // Draws everything in one piece.
   Pieces() = default;
-  // Takes `turn` for each piece. It must outlive this object.
+  // Takes `turn`, the right to draw on the shared device, for each piece. `turn` must outlive this
+  // object.
   explicit Pieces(base::DeviceTurn* turn) : turn_(turn) {}
   Pieces(const Pieces&) = delete;
   Pieces& operator=(const Pieces&) = delete;
@@ -41,11 +42,12 @@ class Pieces {
     return draw();
   }
 
-  // Marks a place where drawing may be interrupted. Lets other contexts draw if this piece has
-  // lasted long enough.
+  // Marks a place where drawing may be interrupted. If the current piece has lasted long enough,
+  // gives the turn back so that other contexts can draw, and takes it again.
   absl::Status Between();
 
-  // Runs `work` without the turn. `work` uses little of the device but much time of this thread.
+  // Gives the turn back while `work` runs. `work` uses little of the device but much time of this
+  // thread.
   template <typename Work>
   absl::Status OffTurn(const Work& work) {
     if (turn_ == nullptr) {
@@ -58,30 +60,30 @@ class Pieces {
     return held ? Take() : absl::OkStatus();
   }
 
-  // Runs the items from 0 to before `count`, some in each piece.
+  // Runs the items 0 to `count` - 1, as many in each piece as the time allows.
   absl::Status Steps(const PieceCost& cost, int count,
                      const std::function<void(int begin, int end)>& run);
   // Draws `whole` in tiles. `draw` is called with the scissor test set to one tile.
   absl::Status Tiles(const PieceCost& cost, const PixelRect& whole,
                      const std::function<void()>& draw);
 
-  // Returns true for the first call with a program, which must be compiled off turn before its
-  // first piece.
+  // Returns true for the first call with a program. A new program must be compiled without the turn
+  // (OffTurn) before its first piece.
   bool IsNew(unsigned int program);
 
-  // Returns why long work without the turn must end, or OK while it may continue. It is safe to
-  // call from any thread.
+  // Returns an error that says why long work without the turn must end, or OK if it may continue.
+  // It is safe to call from any thread.
   absl::Status Wanted() const { return turn_ == nullptr ? absl::OkStatus() : turn_->Wanted(); }
 
-  // Returns the total time for which drawing has waited for turns.
+  // Returns the total time in milliseconds for which drawing has waited for the turn.
   double WaitedMs() const { return waited_ms_; }
 
  private:
-  // Measured costs of an item, in units of the guess.
+  // Measured costs of an item, as multiples of PieceCost::guess_ns.
   struct Pace {
     double worst = 0.0;
     double last = 0.0;
-    double unmeasured;  // possible cost of an unmeasured item
+    double unmeasured;  // assumed cost as long as few items have been measured
   };
 
   struct Held {

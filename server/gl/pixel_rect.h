@@ -6,7 +6,7 @@
 
 namespace thunderhead::gl {
 
-// A rectangle whose rows are counted from the bottom. `high` is not included.
+// A rectangle of pixels. Rows are counted from the bottom. `high` is just outside the rectangle.
 struct PixelRect {
   glm::ivec2 low{0};
   glm::ivec2 high{0};
@@ -16,7 +16,7 @@ struct PixelRect {
   bool operator==(const PixelRect&) const = default;
 };
 
-// Returns the bounding rectangle of both. An empty rectangle is ignored.
+// Returns the bounding rectangle of `a` and `b`. An empty rectangle is ignored.
 inline PixelRect Around(const PixelRect& a, const PixelRect& b) {
   if (a.Empty()) return b;
   if (b.Empty()) return a;

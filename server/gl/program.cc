@@ -58,7 +58,8 @@ absl::StatusOr<std::string> TextOf(const std::string& path) {
   return text;
 }
 
-// Returns the text of a compute shader that draws each pixel of a whole target as `fragment` does.
+// Returns the text of a compute shader that draws each pixel of a whole target with the code of
+// `fragment`.
 absl::StatusOr<std::string> ComputedTextOf(const std::string& fragment) {
   std::string text;
   std::set<std::string> included;
@@ -94,7 +95,7 @@ absl::StatusOr<Shader> Compile(GLenum type, const std::string& path, const std::
   return shader;
 }
 
-// Links the program of `texts`, one for each stage. `paths` are for messages.
+// Links a program from `texts`, one shader stage each. `paths` appear in error messages.
 absl::StatusOr<Name<internal::DeleteProgram>> LinkTexts(
     const std::vector<std::pair<GLenum, std::string>>& texts,
     const std::vector<std::string>& paths) {
@@ -122,7 +123,7 @@ std::vector<std::string> PathsOf(const ProgramSource& source) {
   return {source.vertex, source.fragment};
 }
 
-// Links the stages of `source`. `texts` are those of PathsOf(source).
+// Links the stages of `source`. `texts` are the texts of the files PathsOf(source).
 absl::StatusOr<Name<internal::DeleteProgram>> LinkStages(const ProgramSource& source,
                                                          const std::vector<std::string>& texts) {
   if (!source.compute.empty()) {
@@ -135,7 +136,8 @@ absl::StatusOr<Name<internal::DeleteProgram>> LinkStages(const ProgramSource& so
                      PathsOf(source));
   };
   if (DrawsInSoftware()) {
-    // If there are more uniforms than possible inputs, linking fails and they stay uniforms.
+    // If the device has fewer inputs than there are uniforms, linking fails. Then the uniforms stay
+    // uniforms.
     auto program = link(WithFlatUniforms(stages));
     if (program.ok()) return program;
   }

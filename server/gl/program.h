@@ -1,5 +1,5 @@
-// Shader programs and their variants. Sources come from the embedded shader files, among which
-// `#include "path"` is resolved. This code does not use physics.
+// Shader programs and their variants. Sources are the embedded shader files, which can include each
+// other by `#include "path"`. This code does not use physics.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -27,7 +27,7 @@ namespace internal {
 void DeleteProgram(GLuint name);
 }  // namespace internal
 
-// A name and value for the preprocessor.
+// A macro for the preprocessor: its name and value.
 struct Define {
   std::string name;
   int value = 0;
@@ -39,8 +39,8 @@ using Defines = std::vector<Define>;
 
 Defines Joined(Defines first, const Defines& more);
 
-// The value of a macro in a struct that describes a shader's variant. It has no default, so a
-// variant that omits a macro does not compile.
+// The value of a macro in a struct that describes a shader's variant. The type has no default
+// value. A variant that omits a macro therefore does not compile.
 class DefineValue {
  public:
   DefineValue(int value) : value_(value) {}  // NOLINT(google-explicit-constructor)
@@ -50,16 +50,18 @@ class DefineValue {
   int value_;
 };
 
-// The files and the variant of a program: vertex and fragment shader, or only a compute shader.
+// The shader files and the macros of a program. A program has a vertex and a fragment shader, or
+// only a compute shader.
 struct ProgramSource {
   std::string vertex;    // e.g. "cumulus/bubble.vert"
   std::string fragment;  // e.g. "half_angle/eye.frag"
   std::string compute;   // e.g. "light_volume/carry.comp"
   Defines defines;
-  bool whole_target = false;  // may run as a compute shader instead: gl/computed_target.h
+  // The fragment shader may run as a compute shader: gl/computed_target.h.
+  bool whole_target = false;
 
   static ProgramSource Of(std::string vertex, std::string fragment, Defines defines = {});
-  // Create sources for gl::WholeTarget. Use the second if drawing blends.
+  // Create sources for gl::WholeTarget. Use BlendedWholeTarget if drawing blends.
   static ProgramSource WholeTarget(std::string fragment, Defines defines = {});
   static ProgramSource BlendedWholeTarget(std::string fragment, Defines defines = {});
   static ProgramSource Compute(std::string compute, Defines defines = {});
@@ -67,23 +69,24 @@ struct ProgramSource {
   auto operator<=>(const ProgramSource&) const = default;
 };
 
-// The name of a uniform with a value of type T, or an array of them. The shaders' uniforms are
-// generated: shaders/uniforms.h.
+// The name of a uniform with a value of type T, or of an array if T is an array type. The shaders'
+// uniforms are generated in shaders/uniforms.h.
 template <typename T>
 struct Uniform {
   std::string_view name;
 };
 
-// A linked program. Setting a uniform that the variant does not have does nothing. If programs are
-// strict (gl/strict_programs.h), setting a uniform that no variant has fails.
+// A linked program. Set does nothing if the program's variant does not have the uniform. If
+// programs are strict (gl/strict_programs.h), Set fails for a uniform that no variant has.
 class Program {
  public:
   static absl::StatusOr<Program> Link(const ProgramSource& source);
-  // Links a whole-target program. `source` must be a whole target.
+  // Links a program whose source is a whole target. If `computes` is true, it becomes a compute
+  // shader.
   static absl::StatusOr<Program> LinkWholeTarget(const ProgramSource& source, bool computes);
 
   void Use() const { glUseProgram(name_.Get()); }
-  // Returns true for a whole target that runs as a compute shader.
+  // Returns true if the program is a whole target that runs as a compute shader.
   bool Computes() const { return computes_; }
   GLuint Get() const { return name_.Get(); }
   template <typename T>
@@ -96,7 +99,7 @@ class Program {
   }
 
  private:
-  // Data for checks of uniforms by name.
+  // Data for the checks of gl/strict_programs.h, kept only if programs are strict.
   struct Strict {
     std::string paths;
     std::set<std::string, std::less<>> uniforms;
@@ -127,17 +130,17 @@ class Program {
   std::optional<Strict> strict_;
 };
 
-// A context's linked programs by source, and the pieces that they draw in. Programs are linked on
-// first use.
+// A context's linked programs by source, and the pieces (gl/pieces.h) in which they draw. Programs
+// are linked on first use.
 class ProgramCache {
  public:
   ProgramCache() = default;
-  // Takes `turn` for each piece of drawing. It must outlive this object.
+  // Takes `turn` for each piece of drawing. `turn` must outlive this object.
   explicit ProgramCache(base::DeviceTurn* turn) : pieces_(turn) {}
 
   gl::Pieces& Pieces() { return pieces_; }
 
-  // Returns a program. The pointer stays valid as long as the cache.
+  // Returns the program of `source`. The pointer is valid as long as the cache.
   absl::StatusOr<const Program*> Get(const ProgramSource& source);
 
  private:

@@ -37,7 +37,7 @@ std::vector<std::string> WordsOf(absl::string_view row) {
   return words;
 }
 
-// Bindings of one kind of resource, with the name that uses each.
+// The bindings of one kind of resource, with the name of the variable that uses each binding.
 class Bindings {
  public:
   explicit Bindings(std::string kind) : kind_(std::move(kind)) {}

@@ -1,5 +1,6 @@
-// Checks of a program against the text of its shaders, which tests enable. GL ignores a uniform or
-// a macro with a misspelt name, and lets two textures use one unit. This code does not use physics.
+// Checks of a program against the text of its shaders, which tests enable. GL itself ignores a
+// uniform or a macro with a misspelt name, and lets two textures use one unit. This code does not
+// use physics.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -13,20 +14,21 @@
 
 namespace thunderhead::gl {
 
-// Returns true if the environment had THUNDERHEAD_STRICT_PROGRAMS=1 at the first call.
+// Returns true if THUNDERHEAD_STRICT_PROGRAMS was 1 in the environment at the first call.
 bool StrictPrograms();
 
-// Returns the uniforms that `text` declares in any variant, one a line, including samplers and
-// images.
+// Returns the names of the uniforms that `text` declares in any variant, including samplers and
+// images. Each uniform must be declared on its own line.
 std::set<std::string, std::less<>> DeclaredUniforms(const std::string& text);
 
-// Checks the defines. INTERNAL names a define that no text mentions, or a macro in a condition
-// without a definition. The definition may be a define or in its text. `texts` are those of a
-// program's stages, without the defines.
+// Checks the macros of a program. Returns INTERNAL with the name of a define that no text mentions.
+// Also returns INTERNAL with the name of an undefined macro in a preprocessor condition. A macro
+// may be defined by `defines` or by the text itself. `texts` are the shader texts of the program's
+// stages, without the defines.
 absl::Status CheckDefines(const std::vector<std::string>& texts, const Defines& defines);
 
-// Checks a linked program. INTERNAL names two samplers, two images or two storage buffers with the
-// same binding.
+// Checks a linked program. Returns INTERNAL with the names of two samplers, two images or two
+// storage buffers that have the same binding.
 absl::Status CheckBindings(GLuint program);
 
 }  // namespace thunderhead::gl

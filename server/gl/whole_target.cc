@@ -23,11 +23,12 @@ namespace {
 
 constexpr int kTrials = 3;
 constexpr int kTrialSide_px = 512;
-// Compute shaders are used only for a clear gain, because both ways draw the same picture except
-// for rounding.
+// Speed ratio above which compute shaders are used. Apart from rounding, both ways draw the same
+// picture, so a small gain is not worth the change.
 constexpr double kClearlyFaster = 1.5;
 
-// Returns the shortest of several times that the device needs for a target of arithmetic.
+// Returns the shortest of several times that the device needs to draw a target with an arithmetic
+// test shader.
 double TrialMs(const WholeTarget& whole_target, bool computes) {
   const auto program =
       Program::LinkWholeTarget(ProgramSource::WholeTarget("common/arithmetic.frag"), computes);
@@ -87,8 +88,8 @@ absl::Status WholeTarget::Draw(Pieces& pieces, const PieceCost& pixel, const Pro
     }
   };
   if (pieces.IsNew(program.Get())) {
-    // Drivers compile a program for the current GL state when it is first drawn with. An empty
-    // scissor rectangle makes this draw compile without drawing.
+    // Drivers compile a program for the current GL state when it first draws. With an empty scissor
+    // rectangle, this draw call compiles the program and draws nothing.
     THUNDERHEAD_RETURN_IF_ERROR(pieces.OffTurn([&] {
       glEnable(GL_SCISSOR_TEST);
       glScissor(0, 0, 0, 0);

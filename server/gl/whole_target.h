@@ -8,21 +8,21 @@
 
 namespace thunderhead::gl {
 
-// Returns true if the thread's device draws whole targets faster by compute shaders. It is measured
-// once a process. Software GL always rasterizes. THUNDERHEAD_WHOLE_TARGETS=raster or compute in the
-// environment overrides the measurement.
+// Returns true if the thread's device draws whole targets faster by compute shaders. The speed is
+// measured once in each process. Software GL always rasterizes. The environment variable
+// THUNDERHEAD_WHOLE_TARGETS overrides the measurement with the value "raster" or "compute".
 bool ComputesWholeTargets();
 
 class WholeTarget {
  public:
   // Draws the whole target in tiles. The caller sets textures and uniforms. To draw only some
-  // pixels, the caller sets a test of the target's depth against 0.5 (GL_DEPTH_TEST with GL_LESS or
-  // GL_GREATER).
+  // pixels, the caller enables a depth test of the target against 0.5 (GL_DEPTH_TEST with GL_LESS
+  // or GL_GREATER).
   absl::Status Draw(Pieces& pieces, const PieceCost& pixel, const Program& program,
                     const Framebuffer& target) const {
     return Draw(pieces, pixel, program, target, {glm::ivec2(0), target.Size()});
   }
-  // Draws the pixels in `rect`.
+  // Draws only the pixels in `rect`.
   absl::Status Draw(Pieces& pieces, const PieceCost& pixel, const Program& program,
                     const Framebuffer& target, const PixelRect& rect) const;
 

@@ -151,7 +151,7 @@ double Number(const VdbGrid& grid, const std::string& name) {
 absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene, const Fields& fields,
                                  const storm_store::StormInfo& storm,
                                  const ExportOptions& options) {
-  // The fields are exported as a technique shows them that leaves nothing out.
+  // The fields are exported as the light volume shows them, because it leaves nothing out.
   scene::Scene shown = scene;
   shown.rendering.technique = scene::LightVolume{};
   VdbFile file;

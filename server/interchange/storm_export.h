@@ -1,5 +1,5 @@
-// Exports a storm for other programs. Each field that a scene draws becomes a grid of its
-// extinction. The scene's view (camera, sun, optics) becomes JSON. Knows no GL and no messages.
+// Exports a storm for other programs. Each visible field becomes an OpenVDB grid of its extinction.
+// The scene's camera, sun and optical properties become JSON. Knows no GL and no messages.
 #pragma once
 
 #include <memory>
@@ -13,31 +13,32 @@
 
 namespace thunderhead::interchange {
 
-// Number of voxels along a cell's edge if detail is added. The default's finest octave, 3/8 of a
-// cell, is then sampled 1.5 times per wavelength and loses only its sharpest creases.
+// Number of voxels along the edge of a storm cell if detail is added. The default detail's finest
+// octave has a wavelength of 3/8 of a cell. It is then sampled 1.5 times per wavelength, and loses
+// only its sharpest creases.
 inline constexpr int kDetailVoxelsPerCell = 4;
 
 struct ExportOptions {
-  // If false, a voxel is a cell of the storm's grid, so that each column keeps its water path. If
-  // true, each cell edge has kDetailVoxelsPerCell voxels with the medium that the light volume
-  // draws (scene/detailed_medium.h). Then each group of fields keeps its water path within 1 %, and
-  // columns as described in volume/water_paths.h.
+  // If false, each voxel is a cell of the storm's grid, so that each column keeps its water path.
+  // If true, there are kDetailVoxelsPerCell voxels along each cell edge, with the detailed medium
+  // that the light volume draws (scene/detailed_medium.h). Then each group of fields keeps its
+  // water path within 1 %, and each column as described in volume/water_paths.h.
   bool detail = false;
 };
 
-// Returns the file of `storm`'s fields at the time of `scene`. For each visible field it has the
-// extinction (1/m) that the light volume draws, named "cloud", "rain" and so on, with background 0.
-// A grid's metadata are quantity, units, albedo, asymmetry (the phase function's mean cosine) and,
-// if the field has one, effective_radius_m and its source. The file's metadata are its subject,
-// time and place. Keeps `fields` alive. INVALID_ARGUMENT if an extinction is too large for a half
-// float.
+// Returns an OpenVDB file of `storm`'s fields at the time of `scene`. For each visible field it has
+// a grid of the extinction (1/m) that the light volume draws. The grids are named "cloud", "rain"
+// and so on, and have background 0. A grid's metadata are quantity, units, albedo and asymmetry
+// (the phase function's mean cosine), and effective_radius_m and its source if the field has one.
+// The file's metadata are its subject, time and place. The result keeps `fields` alive.
+// INVALID_ARGUMENT if an extinction is too large for a half float.
 absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene,
                                  const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                  const storm_store::StormInfo& storm, const ExportOptions& options);
 
-// Returns the scene's settings for showing the grids of `file` in another program, as JSON. They
-// are the view as in scene/view.h, the sun, the picture's size, and albedo and asymmetry of each
-// grid, in world metres.
+// Returns as JSON what another program needs to show the grids of `file`: the scene's view
+// (scene/view.h), sun and picture size. It also has the albedo and asymmetry of each grid.
+// Coordinates are world metres.
 std::string ViewJson(const scene::Scene& scene, const volume::HydrometeorFields& fields,
                      const VdbFile& file);
 

@@ -27,7 +27,7 @@ using openvdb::FloatGrid;
 using Leaf = FloatGrid::TreeType::LeafNodeType;
 static_assert(Leaf::DIM == kVdbBlockCells);
 
-// Share of the work that fills blocks; the rest compresses and writes them.
+// Share of the work, for the progress, that fills blocks. The rest compresses and writes them.
 constexpr double kShareOfFilling = 0.8;
 
 openvdb::Metadata::Ptr ToVdb(const std::variant<std::string, double, std::int64_t>& value) {
@@ -140,7 +140,7 @@ absl::Status WriteVdb(const VdbFile& file, const std::string& path,
                       const std::function<void(double share)>& progress,
                       const std::stop_token& stop) {
   const std::string partial = base::PartialPath(path);
-  // Checks the folder before the work, which may take a minute.
+  // The folder is checked before the work, because the work may take a minute.
   if (!std::ofstream(partial, std::ios::binary))
     return absl::FailedPreconditionError(absl::StrCat(
         path, " cannot be written; check that its folder exists and may be written to"));

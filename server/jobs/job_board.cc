@@ -186,7 +186,8 @@ std::optional<std::size_t> JobBoard::Waiting(Entry& entry, Time now) const {
 }
 
 std::optional<PicturePlace> JobBoard::Begin(Time now) {
-  std::map<std::string, std::vector<std::string>> waiting;  // ids by owner
+  std::map<std::string, std::vector<std::string>> waiting;  // ids of jobs with waiting pictures, by
+                                                            // owner
   std::map<std::string, std::size_t> places;
   std::vector<std::pair<std::uint64_t, Entry*>> ordered;
   const Unfetched unfetched = UnfetchedBytes();
@@ -210,7 +211,8 @@ std::optional<PicturePlace> JobBoard::Begin(Time now) {
   if (owners.empty()) return std::nullopt;
   const std::string owner = owners_.Next(owners);
   const std::string id = shares_[owner].Next(waiting[owner]);
-  // The typical time is charged until the actual time is known.
+  // The duration of an earlier picture is charged as an estimate, until the picture's own duration
+  // is known.
   owners_.Used(owner, typical_ms_);
   shares_[owner].Used(id, typical_ms_);
   PicturePlace picture{id, places[id]};
@@ -261,7 +263,7 @@ void JobBoard::EndIfDone(Entry& entry, Time now) {
   entry.record.ended_at = now;
   ++entry.version;
   unsaved_jobs_.insert(entry.record.id);
-  // The requests are no longer needed.
+  // The pictures of an ended job are not drawn again, so their requests are deleted.
   for (PictureRecord& picture : entry.record.pictures) picture.order.request = {};
 }
 

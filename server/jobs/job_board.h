@@ -1,6 +1,6 @@
-// The state of all jobs: which pictures wait, are being drawn, or have ended and how; which picture
-// is next; and which results must be evicted. A plain value; the time is an argument. Knows no
-// threads, files or clocks.
+// The state of all render jobs. It decides which picture is drawn next and which results are
+// evicted. It is a plain value: the caller passes the current time, and the class uses no threads,
+// files or clocks.
 #pragma once
 
 #include <array>
@@ -28,16 +28,16 @@ struct NewJob {
   std::vector<PictureOrder> pictures;
 };
 
-// The person or program that makes a request about a job.
+// The identity that makes a request about a job.
 struct Asker {
   std::string name;
-  bool is_operator = false;  // may access all owners' jobs
+  bool is_operator = false;  // true if the identity may access the jobs of all owners
 };
 
 using PictureCounts = std::array<std::size_t, kPictureStates>;
 inline std::size_t IndexOf(PictureState state) { return static_cast<std::size_t>(state); }
 
-// The state of a job without its pictures.
+// The state of a job, without the state of each picture.
 struct JobView {
   std::string id;
   std::string result_key;
@@ -49,7 +49,7 @@ struct JobView {
   bool cancelled = false;
   PictureCounts counts{};
   std::uint64_t result_bytes = 0;
-  // Set if no picture may be begun because results must be fetched first.
+  // Set if no further picture may be begun until clients have fetched results.
   std::optional<Problem> paused;
 };
 
@@ -63,14 +63,14 @@ struct PictureView {
   double milliseconds = 0.0;
 };
 
-// A job, and its pictures that changed after a given version.
+// The changes of a job since a given version: the job's state and the pictures that changed.
 struct JobNews {
   JobView job;
   std::vector<PictureView> pictures;
   std::uint64_t version = 0;
 };
 
-// Identifies a picture by its job and its place in it.
+// Identifies a picture by its job and its index (place) in the job.
 struct PicturePlace {
   std::string job_id;
   std::size_t place = 0;
@@ -88,88 +88,95 @@ struct ResultFile {
 
 class JobBoard {
  public:
-  // A picture that was begun this many times without an end is not begun again.
+  // A picture that was begun this many times and neither drawn nor failed is not begun again.
   static constexpr int kMaxAttempts = 5;
 
   explicit JobBoard(const JobLimits& limits) : limits_(limits) {}
 
-  // Adds a job from a store.
+  // Adds a job that was loaded from a store.
   void Restore(JobRecord record, Time now);
 
-  // Adds a job under that id. If there are too many jobs, forgets ended jobs first, the owner's own
-  // before others. Jobs with unfetched results are not forgotten. RESOURCE_EXHAUSTED if that does
-  // not suffice; then no job is forgotten.
+  // Adds a job with the id `id`. If there are too many jobs, forgets ended jobs, those of the same
+  // owner first. Jobs with unfetched results are not forgotten. If this does not suffice, returns
+  // RESOURCE_EXHAUSTED and forgets no job.
   absl::Status Add(const std::string& id, const std::string& result_key, NewJob job, Time now);
-  // Returns the job's record to store. The job must exist.
+  // Returns the job's record, which the caller stores. The job must exist.
   const JobRecord& Record(const std::string& id) const { return jobs_.at(id).record; }
-  // Allows the job's pictures to be begun. Does nothing if the job does not exist.
+  // Records that the job is saved, so that its pictures may be begun. Does nothing if the job does
+  // not exist.
   void SetSaved(const std::string& id);
 
-  // NOT_FOUND if the job does not exist; PERMISSION_DENIED if it belongs to another owner.
+  // Returns NOT_FOUND if the job does not exist, and PERMISSION_DENIED if `asker` may not access
+  // it.
   absl::Status Check(const std::string& id, const Asker& asker) const;
-  // Returns the changes after `version`; for version 0, everything. None if the job does not exist.
+  // Returns the changes of a job after `version`, or its whole state for version 0. Returns nothing
+  // if the job does not exist.
   std::optional<JobNews> NewsOf(const std::string& id, std::uint64_t version) const;
   // Returns all jobs in the order of their creation.
   std::vector<JobView> All() const;
-  // NOT_FOUND if the picture has no file; FAILED_PRECONDITION if it has not ended.
+  // Returns the result file of a picture. Returns NOT_FOUND if the picture has no file, and
+  // FAILED_PRECONDITION if it is not drawn yet.
   absl::StatusOr<ResultFile> ResultOf(const PicturePlace& picture) const;
-  // Returns the id of the job with that result key; empty if there is none.
+  // Returns the id of the job with that result key, or an empty text if there is no such job.
   std::string IdOfKey(const std::string& result_key) const;
 
-  // Marks the next picture as being drawn and returns it. None if no picture may be begun now, for
-  // example because unfetched results use up the quota.
+  // Marks the next picture as being drawn and returns it. Returns nothing if no picture may be
+  // begun now, for example because unfetched results use up the quota.
   std::optional<PicturePlace> Begin(Time now);
   const PictureOrder& OrderOf(const PicturePlace& picture) const;
-  // Returns when the next picture that was put back may be begun again; none if there is none.
+  // Returns the earliest time after `now` at which a picture that was put back may be begun again,
+  // or nothing if there is no such picture.
   std::optional<Time> NextRetry(Time now) const;
 
-  // Record the end of a picture that was begun. They return false if it is no longer being drawn
-  // because its job was cancelled.
+  // Drawn and Fail record that a picture was drawn or has failed. They return false if the picture
+  // is no longer being drawn, because its job was cancelled.
   bool Drawn(const PicturePlace& picture, const ResultFile& file, double milliseconds,
              double draw_ms, Time now);
   bool Fail(const PicturePlace& picture, const Problem& problem, Time now);
-  // Puts the picture back, to be begun again at `not_before` or later. `counts` says whether the
-  // attempt counts against the picture.
+  // Marks the picture as waiting again, to be begun at `not_before` or later. `counts` says whether
+  // the ended attempt counts towards kMaxAttempts.
   bool PutBack(const PicturePlace& picture, bool counts, Time not_before);
   bool IsDrawing(const PicturePlace& picture) const;
-  // Returns false if Begin has just taken the picture once too often.
+  // Returns false if the picture has been begun more than kMaxAttempts times, including the attempt
+  // that Begin has just counted.
   bool MayBegin(const PicturePlace& picture) const { return Attempts(picture) <= kMaxAttempts; }
-  // Returns how often the picture was begun, without attempts that did not count. Above
-  // kMaxAttempts if the picture no longer exists.
+  // Returns how often the picture was begun, without attempts that do not count. If the picture no
+  // longer exists, the result is larger than kMaxAttempts.
   int Attempts(const PicturePlace& picture) const;
 
   void Fetched(const PicturePlace& picture, Time now);
   // Cancels the job's pictures that have not ended.
   void Cancel(const std::string& id, Time now);
   void Forget(const std::string& id);
-  // The outcome of Expire. The files of dropped results are to be removed.
+  // The outcome of Expire. The caller must remove the files in `dropped`.
   struct Expired {
     std::vector<ResultFile> dropped;
     std::size_t failed = 0;  // pictures that will not be drawn
   };
-  // Forgets jobs that have ended and were kept long enough. Also ends jobs whose results were not
-  // fetched for as long while they paused the drawing, and drops their results. Otherwise such jobs
-  // would stop all drawing indefinitely.
+  // Forgets jobs that ended longer ago than JobLimits::keep. Also ends jobs that are paused because
+  // their results were not fetched for that time, and drops their results. Otherwise such jobs
+  // could pause the drawing of all jobs indefinitely.
   Expired Expire(Time now);
-  // Returns when Expire has something to do next; none if it never has without other changes.
+  // Returns the time at which Expire will next have work to do, or nothing if no job expires.
   std::optional<Time> NextExpiry() const;
-  // Returns the jobs whose drawing was paused or resumed since the last call, for their watchers.
+  // Returns the ids of the jobs whose drawing was paused or resumed since the last call, so that
+  // their watchers can be notified.
   std::vector<std::string> TakePauses();
-  // Drops fetched results if the results exceed their limit, and returns them. Results of ended
-  // jobs go first, then the oldest.
+  // Drops fetched results while all results together exceed their limit, and returns the dropped
+  // results. Results of ended jobs are dropped first, and older results before newer results.
   std::vector<ResultFile> MakeRoom();
 
-  // Returns the changes that are not stored yet, and marks them as saved.
+  // Returns the changes that are not saved yet, and marks them as saved.
   std::vector<JobChange> TakeChanges();
-  // Takes changes back that could not be saved.
+  // Marks changes as unsaved again, because they could not be saved.
   void GiveBack(const std::vector<JobChange>& changes);
-  // Returns the jobs that were forgotten since the last call, and assumes that the store removes
-  // them.
+  // Returns the ids of the jobs that were forgotten since the last call. The caller must remove
+  // them from the store.
   std::vector<std::string> TakeForgotten() { return std::exchange(forgotten_, {}); }
-  // Takes ids back that could not be removed.
+  // Adds ids to the result of the next TakeForgotten, because the store could not remove the jobs.
   void GiveBackForgotten(const std::vector<std::string>& ids);
 
-  // Returns the counts over all jobs.
+  // Returns the number of pictures in each state, over all jobs.
   PictureCounts Counts() const;
   std::size_t Running() const;
   // Returns the number of waiting pictures that may not be begun because results must be fetched
@@ -183,17 +190,19 @@ class JobBoard {
     JobRecord record;
     std::uint64_t order = 0;  // order of creation
     std::uint64_t version = 0;
-    std::vector<std::uint64_t> versions;  // versions at which pictures last changed
-    std::vector<Time> not_before;         // earliest starts of pictures
+    std::vector<std::uint64_t> versions;  // for each picture, the version at which it last changed
+    std::vector<Time> not_before;         // for each picture, the earliest time at which it may be
+                                          // begun
     PictureCounts counts{};
     std::uint64_t result_bytes = 0;
     std::uint64_t unfetched_bytes = 0;  // the part of result_bytes that was not fetched
     std::size_t unfetched = 0;          // number of unfetched results
     std::size_t first_waiting = 0;      // no picture before this one is waiting
-    // When a result was last drawn or fetched. A restart loses the time of fetching.
+    // The time at which a result of the job was last drawn or fetched. The times of fetches are
+    // lost at a restart.
     Time last_used = {};
     bool saved = false;
-    bool was_paused = false;  // as the last TakePauses saw it
+    bool was_paused = false;  // whether the job was paused at the last TakePauses
   };
   using Jobs = std::map<std::string, Entry>;
 
@@ -207,26 +216,29 @@ class JobBoard {
   void Erase(Jobs::iterator job);
   JobView ViewOf(const Entry& entry, const Unfetched& unfetched) const;
   Unfetched UnfetchedBytes() const;
-  // Returns why no picture of that owner may be begun; none if one may.
+  // Returns why no picture of `owner` may be begun because of unfetched results, or nothing if a
+  // picture may be begun.
   std::optional<Problem> PausedBecause(const std::string& owner, const Unfetched& unfetched) const;
-  // Adds a drawn picture to the entry's sums, or subtracts it.
+  // These two functions add a drawn picture to the entry's sums, or subtract it.
   void AddResult(Entry& entry, const PictureRecord& picture);
   void RemoveResult(Entry& entry, const PictureRecord& picture);
   std::size_t Unended(const Entry& entry) const;
   absl::Status CheckPictures(const NewJob& job) const;
   absl::Status MakeRoomForJob(const NewJob& job);
-  // Returns the numbers of kept jobs and their pictures, of that owner or, if null, of all owners.
+  // Returns the number of kept jobs and the number of their pictures, for `owner` or, if `owner` is
+  // null, for all owners.
   std::pair<std::size_t, std::size_t> Kept(const std::string* owner) const;
-  // Returns the jobs that have ended and whose results were all fetched: first those of that owner,
-  // then the oldest.
+  // Returns the jobs that have ended and whose results were all fetched, in the order in which to
+  // forget them. Jobs of the owner `first_of` come first, and older jobs before newer jobs.
   std::vector<Jobs::iterator> Forgettable(const std::string& first_of);
-  // Returns when the job ends because its results are not fetched. None if the job continues, or
-  // only waits for other jobs.
+  // Returns when the job will be ended because its results are not fetched. Returns nothing if the
+  // job is not paused, or is paused only because of other jobs' results.
   std::optional<Time> AbandonedAt(const Entry& entry, const Unfetched& unfetched) const;
   void EndAbandoned(Entry& entry, Time now, Expired& expired);
   void SetState(Entry& entry, std::size_t place, PictureState state);
   void EndIfDone(Entry& entry, Time now);
-  // Returns the first picture that may be begun; none if there is none.
+  // Returns the index of the job's first picture that may be begun now, or nothing if there is no
+  // such picture.
   std::optional<std::size_t> Waiting(Entry& entry, Time now) const;
   PictureRecord* Drawing(const PicturePlace& picture, Entry** entry);
 
@@ -240,7 +252,8 @@ class JobBoard {
   std::vector<std::string> forgotten_;
   base::FairShare owners_;
   std::map<std::string, base::FairShare> shares_;  // shares of each owner's jobs
-  std::map<PicturePlace, double> charged_ms_;      // of pictures being drawn
+  std::map<PicturePlace, double> charged_ms_;      // time charged for each picture that is being
+                                                   // drawn
   double typical_ms_ = 1.0;
 };
 

@@ -1,5 +1,5 @@
-// Unfetched results: when they pause drawing, and when jobs end because of them or because of their
-// age.
+// The part of JobBoard that handles unfetched results and expiry. It decides when unfetched results
+// pause drawing, and when jobs are ended or forgotten.
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -48,7 +48,8 @@ std::vector<std::string> JobBoard::TakePauses() {
   for (auto& [id, entry] : jobs_) {
     const bool waits = entry.counts[IndexOf(PictureState::kWaiting)] > 0;
     const bool is_paused = waits && PausedBecause(entry.record.owner, unfetched).has_value();
-    // A job whose last waiting picture is gone has reported the end of its pause already.
+    // A change of a job without waiting pictures is not reported, because watchers were already
+    // notified when its last picture ended.
     if (std::exchange(entry.was_paused, is_paused) == is_paused || !waits) continue;
     ++entry.version;
     changed.push_back(id);
@@ -69,7 +70,7 @@ std::size_t JobBoard::Paused() const {
 std::optional<Time> JobBoard::AbandonedAt(const Entry& entry, const Unfetched& unfetched) const {
   if (entry.record.ended_at.has_value() || entry.unfetched == 0) return std::nullopt;
   if (entry.counts[IndexOf(PictureState::kWaiting)] == 0) return std::nullopt;
-  // Pictures that are being drawn must end first.
+  // A job is not abandoned while its pictures are being drawn.
   if (entry.counts[IndexOf(PictureState::kDrawing)] > 0) return std::nullopt;
   if (!PausedBecause(entry.record.owner, unfetched).has_value()) return std::nullopt;
   return entry.last_used + limits_.keep;
@@ -103,8 +104,8 @@ JobBoard::Expired JobBoard::Expire(Time now) {
     if (ended_at.has_value() && *ended_at + limits_.keep <= now) Erase(here);
   }
   Expired expired;
-  // Ends the jobs one by one, the oldest first, because other jobs may continue without its
-  // results.
+  // Ends the jobs one by one, the oldest first, because dropping the results of one job may allow
+  // the other jobs to continue.
   while (true) {
     const Unfetched unfetched = UnfetchedBytes();
     std::optional<Time> first;

@@ -1,5 +1,5 @@
-// The capacity of the board: how many jobs and pictures it accepts, and which ended jobs are
-// forgotten for new ones.
+// The part of JobBoard that limits the numbers of jobs and pictures. It also decides which ended
+// jobs are forgotten to accept new jobs.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -15,7 +15,8 @@
 namespace thunderhead::jobs {
 namespace {
 
-// The time to draw a few pictures. Other owners' jobs end sooner or later.
+// The retry delay when a quota is exhausted. In this time a few pictures are drawn, so jobs may
+// have ended.
 constexpr std::chrono::seconds kRetryAfter{30};
 
 absl::Status TooMany(const std::string& what, std::size_t maximum, const char* unit,
@@ -73,7 +74,7 @@ std::vector<JobBoard::Jobs::iterator> JobBoard::Forgettable(const std::string& f
 
 absl::Status JobBoard::MakeRoomForJob(const NewJob& job) {
   struct Share {
-    const std::string* owner;  // null: all owners
+    const std::string* owner;  // null for all owners
     const char* who;
     std::size_t max_jobs;
     std::size_t max_pictures;
@@ -109,7 +110,7 @@ absl::Status JobBoard::MakeRoomForJob(const NewJob& job) {
                      share.max_pictures, "pictures", "TOO_MANY_JOB_PICTURES");
     }
   }
-  // Jobs are forgotten only after it is clear that this suffices.
+  // Jobs are forgotten only if this makes enough room for the new job.
   for (const Jobs::iterator& one : to_forget) Erase(one);
   return absl::OkStatus();
 }

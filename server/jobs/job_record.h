@@ -1,5 +1,5 @@
-// The stored state of a job. Plain values. A picture's request and the description of its result
-// are bytes that the service makes and reads.
+// The stored state of render jobs. A picture's request is a text of bytes that only the service
+// writes and parses.
 #pragma once
 
 #include <chrono>
@@ -15,20 +15,21 @@ namespace thunderhead::jobs {
 
 using Time = std::chrono::system_clock::time_point;
 
-// Length of a job's id.
+// The number of hexadecimal digits of a job's id.
 inline constexpr std::size_t kIdDigits = 32;
 
 enum class PictureState {
   kWaiting,
-  kDrawing,  // never saved, because the server that drew it no longer runs when the record is read
+  kDrawing,  // this state is never saved, because no picture is being drawn when a server loads the
+             // record
   kDrawn,
   kFailed,
   kCancelled,
-  kDropped,  // its result was evicted
+  kDropped,  // the picture was drawn, but its result was evicted
 };
 inline constexpr std::size_t kPictureStates = 6;
 
-// The reason for a missing picture, as clients are told.
+// The reason why a picture is missing, as reported to clients.
 struct Problem {
   absl::StatusCode code = absl::StatusCode::kOk;
   std::string reason = {};  // as in base::ErrorDetails
@@ -37,12 +38,12 @@ struct Problem {
   bool operator==(const Problem&) const = default;
 };
 
-// The request for a picture.
+// The request for one picture of a job.
 struct PictureOrder {
   std::string name;  // given by the client
   std::string request;
-  // The valid time of the request's time index, to find it again if earlier times are added; empty:
-  // unknown.
+  // The valid time that the request's time index refers to. It identifies the time even if earlier
+  // times are added to the storm. Empty if unknown.
   std::string valid_time;
 
   bool operator==(const PictureOrder&) const = default;
@@ -51,7 +52,8 @@ struct PictureOrder {
 struct PictureRecord {
   PictureOrder order;
   PictureState state = PictureState::kWaiting;
-  int attempts = 0;  // starts, except those that an orderly shutdown put back
+  int attempts = 0;  // number of times that drawing was begun, without attempts that ended by an
+                     // orderly shutdown
   Problem problem;   // set for failed and dropped pictures
   // The following are set for drawn pictures.
   std::uint64_t bytes = 0;
@@ -65,8 +67,8 @@ struct PictureRecord {
 };
 
 struct JobRecord {
-  std::string id;          // unguessable
-  std::string result_key;  // also unguessable, and not derivable from the id
+  std::string id;          // random name, which cannot be guessed
+  std::string result_key;  // a second random name, which cannot be guessed or derived from the id
   std::string owner;
   std::string label;  // given by the client
   Time created_at = {};

@@ -1,5 +1,6 @@
-// Keeps jobs' records while the server is down. Used by one thread at a time; each call may block.
-// A finished call is durable, even after a loss of power.
+// Stores the records of jobs, so that they survive a restart of the server. A store is used by one
+// thread at a time, and each call may block. What a finished call has stored survives even a loss
+// of power.
 #pragma once
 
 #include <cstddef>
@@ -13,11 +14,11 @@
 
 namespace thunderhead::jobs {
 
-// The changes of a job since it was saved.
+// The changes of a job since it was last saved.
 struct JobChange {
   struct Picture {
     std::size_t place = 0;
-    PictureRecord record;  // its order does not change
+    PictureRecord record;  // `order` never changes and is not saved again
   };
 
   std::string id;
@@ -30,11 +31,12 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  // Stores a job with all its pictures. On an error, nothing of it is stored.
+  // Stores a job with all its pictures. If it returns an error, nothing is stored.
   virtual absl::Status Add(const JobRecord& job) = 0;
-  // Saves all changes. On an error, none is saved. Missing jobs are not an error.
+  // Saves all changes. If it returns an error, no change is saved. Changes of jobs that are not in
+  // the store are ignored.
   virtual absl::Status Save(const std::vector<JobChange>& changes) = 0;
-  // Removes the jobs with those ids; missing ids are not an error.
+  // Removes the jobs with these ids. Ids that are not in the store are ignored.
   virtual absl::Status Remove(const std::vector<std::string>& ids) = 0;
   // Returns the jobs in the order of their creation. Unreadable parts are logged and left out.
   virtual absl::StatusOr<std::vector<JobRecord>> Load() = 0;

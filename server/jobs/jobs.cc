@@ -22,7 +22,7 @@ constexpr int kIdWords = kIdDigits / 8;
 constexpr std::chrono::seconds kUnwrittenPause{5};
 // Pause before a picture is drawn again if its job's folder is not writable.
 constexpr std::chrono::seconds kUnwritablePause{60};
-// The system clock may be set while the thread sleeps.
+// The longest sleep. It is limited because the system clock may be set while the thread sleeps.
 constexpr std::chrono::seconds kLongestSleep{60};
 
 void Count(const char* outcome, std::size_t pictures = 1) {
@@ -102,7 +102,8 @@ void Jobs::Create(NewJob job, const Done& done) {
 
 void Jobs::SaveNew(const std::string& id, const Done& done) {
   Lock lock(mutex_);
-  // A client that guessed the id may have cancelled and forgotten the job by now.
+  // The job may no longer exist, because a client that guessed its id may have cancelled and
+  // removed it meanwhile.
   std::optional<JobNews> news = board_.NewsOf(id, 0);
   if (!news.has_value()) {
     lock.unlock();
@@ -216,8 +217,8 @@ void Jobs::Fetched(const PicturePlace& picture) {
     const std::lock_guard lock(mutex_);
     board_.Fetched(picture, Now());
   }
-  // There may be free quota now. This posts a task because the thread may be saving and would miss
-  // a notification.
+  // The quota may have free space now, so the thread must check for pictures to begin. An empty
+  // task wakes it, because it would miss a notification while it is saving.
   Post([] {});
 }
 
@@ -276,7 +277,7 @@ base::TimeSource::Clock::time_point Jobs::WakeTime() const {
   for (const std::optional<Time>& at : {board_.NextRetry(now), board_.NextExpiry()}) {
     if (at.has_value()) wake = std::min(wake, *at);
   }
-  // Unwritten pictures are due when the pause is over, which may be now.
+  // Unwritten pictures are written again when the pause is over, which may already be the case.
   if (paused_until_ > now || !unwritten_.empty()) wake = std::min(wake, paused_until_);
   return time_.Now() + (wake - now);
 }
@@ -328,8 +329,8 @@ void Jobs::RemoveDropped(const std::vector<ResultFile>& dropped) {
 }
 
 void Jobs::BeginPictures(Lock& lock) {
-  // No picture is begun while some wait to be written, even after the pause. Writing may take
-  // longer than the pause, and each turn would begin more pictures.
+  // No picture is begun while others wait to be written, even after the pause. Writing may take
+  // longer than the pause, so more and more unwritten pictures would collect in memory.
   while (started_ && !draining_ && in_hand_.size() < limits_.max_in_hand && unwritten_.empty() &&
          paused_until_ <= Now()) {
     const std::optional<PicturePlace> picture = board_.Begin(Now());
@@ -344,8 +345,8 @@ void Jobs::BeginOne(const PicturePlace& picture, Lock& lock) {
     Count("failed");
     return;
   }
-  // The attempt is recorded before the picture is begun. So a picture that crashes the server is
-  // not tried forever.
+  // The attempt is recorded before the picture is begun. A picture that crashes the server is
+  // therefore not drawn again and again.
   if (!Save(lock).ok()) {
     board_.PutBack(picture, false, Now());
     return;
@@ -425,8 +426,8 @@ void Jobs::Keep(Unwritten picture) {
     base::LogError(
         base::Annotate(written, "pictures of render jobs wait until they can be written"));
   }
-  // Perhaps only this job's folder is affected, for example because it was given to another user.
-  // Other jobs continue.
+  // Possibly only this job's folder cannot be written, for example because it belongs to another
+  // user. Other jobs therefore continue.
   if (absl::IsFailedPrecondition(written)) {
     board_.PutBack(picture.place, false, Now() + kUnwritablePause);
     return;
@@ -469,13 +470,15 @@ absl::Status Jobs::Save(Lock& lock) {
     if (!changes.empty()) saved = store_->Save(changes);
     if (!forgotten.empty()) removed = store_->Remove(forgotten);
   }
-  // Files are removed after the records because every remaining record must have its files.
+  // Files are removed only after the records are removed from the store, because every record in
+  // the store must have its files.
   if (removed.ok()) {
     for (const std::string& id : forgotten) results_.Remove(id);
   }
   lock.lock();
   if (!saved.ok()) board_.GiveBack(changes);
-  // Otherwise the next server would draw a cancelled job again.
+  // Removing the jobs from the store must be tried again. Otherwise a cancelled job would be drawn
+  // again after a restart.
   if (!removed.ok()) board_.GiveBackForgotten(forgotten);
   saved.Update(removed);
   if (saved.ok()) {

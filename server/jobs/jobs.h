@@ -1,7 +1,9 @@
-// Background jobs of pictures. Accepts jobs within quotas, has their pictures drawn a few at a
-// time, fairly among owners and their jobs, and keeps the results. Continues after a restart where
-// it stopped. A picture is written before it is recorded. While a picture cannot be written, for
-// example on a full disk, no picture is begun. Knows no messages and no GL. Safe from any thread.
+// Render jobs: sets of pictures that are drawn in the background. The class Jobs accepts jobs
+// within quotas and keeps their results. It has a few pictures drawn at a time, fairly among owners
+// and their jobs. After a restart of the server, jobs continue. A picture's file is written before
+// the picture is recorded as drawn. While a file cannot be written, for example because the disk is
+// full, no further picture is begun. This code does not depend on the API's messages or on GL. Safe
+// from any thread.
 #pragma once
 
 #include <chrono>
@@ -33,38 +35,41 @@
 namespace thunderhead::jobs {
 
 struct JobsOptions {
-  std::shared_ptr<JobStore> store;  // null: jobs are lost when the server ends
-  std::string folder;               // folder of results; empty: jobs are disabled
-  // Timeout of a call to that folder. A longer call means that its storage hangs.
+  std::shared_ptr<JobStore> store;  // if null, jobs are lost when the server ends
+  std::string folder;               // folder of the results; if empty, jobs are disabled
+  // Timeout of a call to `folder`. If a call takes longer, the folder's storage counts as hanging.
   std::chrono::milliseconds patience = std::chrono::seconds(10);
   JobLimits limits;
-  // The time source for pauses, retries and calls to the folder. It must outlive the jobs.
+  // The time source for pauses, retries and timeouts of calls to the folder. It must outlive the
+  // Jobs object.
   const base::TimeSource* time = &base::SteadyTime();
 };
 
-// A listener that is notified when a job has changed or is gone, or when the server stops.
+// A listener that is notified when a job has changed or was removed, or when the server stops.
 class JobWatcher {
  public:
   virtual ~JobWatcher() = default;
-  // Called on any thread; must not block.
+  // Called on any thread. It must not block.
   virtual void OnJobChanged() = 0;
 };
 
 // The files of a drawn picture.
 struct ResultPlace {
   std::string path;
-  std::string about_path;  // description of the picture
+  std::string about_path;  // path of the file with the picture's description
   std::string sha256;
   std::uint64_t bytes = 0;
 };
 
 struct JobsLoad {
-  std::size_t running = 0;  // jobs that have not ended
+  std::size_t running = 0;  // number of jobs that have not ended
   std::size_t waiting = 0;  // pictures
-  std::size_t paused = 0;   // waiting pictures that may not start until results are fetched
+  std::size_t paused = 0;   // number of waiting pictures that may not be begun until clients fetch
+                            // results
   std::size_t drawing = 0;
   std::uint64_t result_bytes = 0;
-  // How long the thread has been busy with one task, or the folder of results has hung; else 0.
+  // The time in seconds for which the jobs' thread has been busy with one task, or the results
+  // folder has hung. 0 if neither is the case.
   double stalled_s = 0.0;
   std::size_t watchers = 0;
 };
@@ -74,59 +79,63 @@ class Jobs {
   // Called on the jobs' own thread, or on the caller's thread if the call is refused at once.
   using Done = std::function<void(const absl::StatusOr<JobView>&)>;
 
-  // Reads the store and removes results that belong to no job. Begins no picture.
+  // Loads the jobs from the store and removes result files that belong to no job. Does not begin
+  // pictures yet.
   static absl::StatusOr<std::unique_ptr<Jobs>> Open(const JobsOptions& options);
   ~Jobs();
   Jobs(const Jobs&) = delete;
   Jobs& operator=(const Jobs&) = delete;
 
-  // Allows pictures to be begun.
+  // Starts drawing: from now on, pictures are begun by calling `begin`.
   void Start(BeginPicture begin);
 
-  // Creates a job. RESOURCE_EXHAUSTED beyond the limits; UNAVAILABLE while the server drains or if
-  // the job cannot be saved.
+  // Creates a job and passes its state to `done`. The error is RESOURCE_EXHAUSTED if a limit is
+  // exceeded. It is UNAVAILABLE if the server accepts no new jobs (Drain) or the job cannot be
+  // saved.
   void Create(NewJob job, const Done& done);
   absl::StatusOr<JobNews> Get(const std::string& id, const Asker& asker) const;
-  // Returns the owner's jobs, or all jobs if `everybodys`. If `label` is not empty, only jobs with
-  // that label.
+  // Returns the jobs of `owner`, or of all owners if `everybodys` is true. If `label` is not empty,
+  // returns only jobs with that label.
   std::vector<JobView> List(const std::string& owner, bool everybodys,
                             const std::string& label) const;
-  // Ends the pictures at once. `done` is called when the cancellation is durable.
+  // Cancels a job and ends its pictures at once. If `forget` is true, the job is also removed.
+  // `done` is called when the change is saved.
   void Cancel(const std::string& id, const Asker& asker, bool forget, const Done& done);
 
-  // Notifies `watcher` of changes until it is destroyed.
+  // Notifies `watcher` of the job's changes until the watcher is destroyed.
   absl::Status Watch(const std::string& id, const Asker& asker, std::weak_ptr<JobWatcher> watcher);
-  // Works like JobBoard::NewsOf. SHUTTING_DOWN when the server has stopped.
+  // Returns the changes of a job like JobBoard::NewsOf. Returns the error SHUTTING_DOWN when the
+  // server has stopped.
   absl::StatusOr<std::optional<JobNews>> NewsOf(const std::string& id, std::uint64_t version) const;
 
   absl::StatusOr<ResultPlace> Result(const PicturePlace& picture, const Asker& asker) const;
-  // Returns a result by the job's result key, for anyone who has the key. NOT_FOUND for an unknown
-  // key.
+  // Returns the result with index `place` of the job with that result key. Every client that has
+  // the key may call it. Returns NOT_FOUND for an unknown key.
   absl::StatusOr<ResultPlace> ResultOfKey(const std::string& result_key, std::size_t place) const;
-  // Records that a client has received the whole file.
+  // These two functions record that a client has received the whole file of a result.
   void Fetched(const PicturePlace& picture);
   void FetchedByKey(const std::string& result_key, std::size_t place);
 
   JobsLoad Load() const;
 
-  // Refuses new jobs and begins no further pictures. Pictures that were begun continue.
+  // Refuses new jobs and begins no further pictures. Pictures that are being drawn continue.
   void Drain();
-  // Ends the pictures that were begun, too. They will be begun again after a restart.
+  // Ends the pictures that are being drawn. They will be drawn again after a restart.
   void CancelPictures();
-  // Waits for the pictures, saves, and notifies watchers. The caller must have ended the drawing
-  // before. Pictures that still cannot be written are drawn again after the next start. The
-  // destructor calls it, too.
+  // Waits for the pictures that are being drawn, saves all changes, and notifies watchers. Before
+  // the call, the caller must have stopped the drawing thread. Pictures whose files still cannot be
+  // written are drawn again after the next start. The destructor calls Stop, too.
   void Stop();
 
  private:
   using Task = std::function<void()>;
   using Lock = std::unique_lock<std::mutex>;
 
-  // A picture that was begun.
+  // A picture that was begun and has not ended.
   struct InHand {
     base::TimeSource::Clock::time_point begun_at;
-    std::unique_ptr<PictureInHand> picture;  // null until it has been begun
-    absl::Status begun;                      // error if it could not be begun
+    std::unique_ptr<PictureInHand> picture;  // null until the begin function has returned
+    absl::Status begun;                      // the error if the picture could not be begun
     bool cancelled = false;
   };
 
@@ -134,15 +143,15 @@ class Jobs {
   struct Unwritten {
     PicturePlace place;
     std::shared_ptr<const DrawnPicture> drawn;
-    double milliseconds = 0.0;  // time since it was begun
+    double milliseconds = 0.0;  // time between its beginning and its end
   };
 
   Jobs(const JobsOptions& options, ResultFolder results);
   absl::Status Restore();
   void Run();
   void Post(Task task);
-  // Returns the wall-clock time. It is shifted by the difference between time_ and the real steady
-  // clock.
+  // Returns the wall-clock time, shifted by the difference between time_ and
+  // std::chrono::steady_clock. The shift is 0 except in tests.
   Time Now() const;
   base::TimeSource::Clock::time_point WakeTime() const;
 
@@ -158,7 +167,7 @@ class Jobs {
   absl::Status Save(Lock& lock);
   void SaveNew(const std::string& id, const Done& done);
   void Tell(const std::vector<std::string>& ids, Lock& lock);
-  // Needs mutex_.
+  // Requires mutex_.
   void DropGoneWatchers(const std::string& id);
   void RemoveDropped(const std::vector<ResultFile>& dropped);
   void LogOnce(const absl::Status& problem);
@@ -178,11 +187,12 @@ class Jobs {
   std::map<PicturePlace, std::shared_ptr<InHand>> in_hand_;
   std::multimap<std::string, std::weak_ptr<JobWatcher>> watchers_;
   std::deque<Task> tasks_;
-  // Set while the thread works on a task.
+  // The time since which the thread has been working on a task; nothing while it waits.
   std::optional<base::TimeSource::Clock::time_point> busy_since_;
-  Time paused_until_ = {};            // nothing can be written until then
+  Time paused_until_ = {};            // no file is written before this time, because writing has
+                                      // failed
   bool cannot_write_ = false;         // the last write of a picture failed
-  std::vector<Unwritten> unwritten_;  // at most one more than the pictures in hand
+  std::vector<Unwritten> unwritten_;  // pictures to be written again; at most max_in_hand + 1
   bool started_ = false;
   bool draining_ = false;
   bool stopping_ = false;

@@ -17,8 +17,8 @@ constexpr milliseconds kBusyPause = seconds(1);
 constexpr milliseconds kFailedPause = seconds(5);
 constexpr milliseconds kLongestPause = minutes(5);
 
-// Returns true if the failure may be temporary. A refused size is refused until the server restarts
-// with another limit.
+// Returns true if the failure may be temporary. A picture that is too large is not, because the
+// limits do not change while the server runs.
 bool MayPass(const absl::Status& why) {
   const std::string& reason = base::DetailsOf(why).reason;
   if (reason == "PICTURE_TOO_LARGE" || reason == "TOO_MANY_SAMPLES") return false;

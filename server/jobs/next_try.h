@@ -1,4 +1,4 @@
-// The retry policy for a picture that could not be drawn.
+// The retry policy for pictures that could not be drawn.
 #pragma once
 
 #include <chrono>
@@ -9,15 +9,16 @@
 namespace thunderhead::jobs {
 
 struct NextTry {
-  bool counts = false;  // counts as one of the picture's own attempts
+  bool counts = false;  // true if the failed attempt counts towards JobBoard::kMaxAttempts
   std::chrono::milliseconds pause{0};
 };
 
-// Returns how to retry a picture after the failure `why`. It was begun `attempts` times, including
-// this one. Failures of the server and of hanging storage do not count, however long they last,
-// because jobs that run overnight wait for them. Other failures with a retry time may be the
-// picture's own fault, such as losing the device. They count, and their pauses double up to five
-// minutes. None if a retry would not help or the last attempt was made.
+// Returns whether and when to retry a picture after the failure `why`, or nothing if it must not be
+// retried. The picture was begun `attempts` times, including the failed attempt. Failures of the
+// server and of hanging storage do not count as attempts, because jobs must survive them even if
+// they last overnight. Other temporary failures, such as a lost device, may be caused by the
+// picture itself. They count, and the pause doubles with each attempt, up to five minutes. Returns
+// nothing if a retry would not help or the attempts are used up.
 std::optional<NextTry> NextTryAfter(const absl::Status& why, int attempts, bool draining);
 
 }  // namespace thunderhead::jobs

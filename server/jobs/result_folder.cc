@@ -26,7 +26,7 @@ std::vector<fs::path> EntriesOf(const fs::path& folder) {
   return entries;
 }
 
-// Returns true for names of job folders. Nothing else in the folder may be removed.
+// Returns true for names of job folders. Other entries of the folder must not be removed.
 bool IsJobId(const std::string& name) {
   return name.size() == kIdDigits &&
          name.find_first_not_of("0123456789abcdef") == std::string::npos;

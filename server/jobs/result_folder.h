@@ -1,6 +1,7 @@
-// The folder in which drawn pictures wait to be fetched. Each job has a subfolder, with one file
-// per picture and a description of it. Each file appears completely or not at all. Open and Clean
-// may block. The other functions block for `patience` at most, even if the storage hangs.
+// The folder in which drawn pictures are kept for clients to fetch. Each job has a subfolder, with
+// two files for each picture: the picture and its description. Each file appears completely or not
+// at all. Open and Clean may block. The other functions block for at most `patience`, even if the
+// storage hangs.
 #pragma once
 
 #include <chrono>
@@ -21,13 +22,15 @@ namespace thunderhead::jobs {
 
 class ResultFolder {
  public:
-  // Creates the folder, accessible only to this user. INVALID_ARGUMENT if that fails.
+  // Creates the folder at `path`, accessible only to this user. Returns INVALID_ARGUMENT if that
+  // fails.
   static absl::StatusOr<ResultFolder> Open(const std::string& path,
                                            std::chrono::milliseconds patience,
                                            const base::TimeSource& time);
 
-  // Writes the picture at `place` of a job and its description. Errors as in base::WriteWholeFile.
-  // DEADLINE_EXCEEDED while the storage hangs; the files may still be written afterwards.
+  // Writes the picture with index `place` of a job, and its description. Returns the errors of
+  // base::WriteWholeFile, and DEADLINE_EXCEEDED while the storage hangs. In the latter case, the
+  // files may still be written later.
   absl::Status Write(const std::string& job_id, std::size_t place,
                      std::shared_ptr<const DrawnPicture> picture) const;
 
@@ -35,16 +38,16 @@ class ResultFolder {
                      const std::string& extension) const;
   std::string AboutPathOf(const std::string& job_id, std::size_t place) const;
 
-  // Removes the files of a picture or of a job. Missing files are not an error. Files that cannot
-  // be removed because the storage hangs are removed with the next call.
+  // Both functions remove files, those of one picture or of a whole job. Missing files are ignored.
+  // Files that cannot be removed because the storage hangs are removed by the next call.
   void Remove(const std::string& job_id, std::size_t place, const std::string& extension);
   void Remove(const std::string& job_id);
 
-  // Returns how long the storage has hung; 0 if it does not hang.
+  // Returns the time in seconds for which the storage has hung, or 0 if it does not hang.
   double HangingSeconds() const { return calls_->HangingSeconds(); }
 
-  // Removes what a killed server left: partially written files, and the folders of jobs that are
-  // not in `known`.
+  // Removes the files that a killed server may have left: partially written files, and the folders
+  // of jobs whose ids are not in `known`.
   void Clean(const std::set<std::string>& known) const;
 
  private:
@@ -54,7 +57,8 @@ class ResultFolder {
 
   std::string path_;
   std::unique_ptr<base::PatientCalls> calls_;
-  std::vector<std::string> removed_;  // paths that hanging storage has kept from being removed
+  std::vector<std::string> removed_;  // paths that are still to be removed, because the storage
+                                      // hung
 };
 
 }  // namespace thunderhead::jobs

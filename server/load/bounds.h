@@ -1,4 +1,4 @@
-// Bounds that the figures of a load must satisfy, so that a load can be a test.
+// Bounds that the results of a load must satisfy, so that a load run can serve as a test.
 #pragma once
 
 #include <optional>
@@ -9,17 +9,19 @@
 
 namespace thunderhead::load {
 
-// Bounds for the viewers who read everything they are sent. An absent bound is always satisfied.
+// Bounds on the results of the viewers that Report::Main returns. An absent bound is always
+// satisfied.
 struct Bounds {
-  std::optional<double> min_fps;  // of the viewer with the lowest rate
+  std::optional<double> min_fps;  // minimum frame rate of the slowest viewer
   std::optional<double> max_p95_ms;
   std::optional<double> max_p99_ms;
-  std::optional<double> max_spread_ms;  // the 99th percentile
-  std::optional<double> max_growth_mb;  // of the server's memory, from its first figure to its last
+  std::optional<double> max_spread_ms;  // maximum of the 99th percentile of the spread
+  // Maximum growth of the server's memory, from the first sample to the last.
+  std::optional<double> max_growth_mb;
 };
 
-// Returns a sentence for each violated bound. A bound also counts as violated if its figure was not
-// measured.
+// Returns a sentence for each bound that is violated. A bound also counts as violated if its value
+// was not measured.
 std::vector<std::string> NotKept(const Bounds& bounds, const Report& report);
 
 }  // namespace thunderhead::load

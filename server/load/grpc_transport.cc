@@ -46,7 +46,7 @@ void ShowToken(const Access& access, grpc::ClientContext& context) {
 std::shared_ptr<grpc::Channel> Connect(const std::string& address, const Access& access) {
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(-1);
-  // Each channel gets its own connection, as separate clients would have.
+  // Each channel gets a separate connection, as separate clients would have.
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);
   return grpc::CreateCustomChannel(address, CredentialsOf(access), arguments);
 }

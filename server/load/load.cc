@@ -134,7 +134,7 @@ class RunningLoad {
                      static_cast<int>(options_.times.join_patience_s), " seconds"));
   }
 
-  // Turns the camera during the warm-up and the period.
+  // Turns the presenter's camera during the warm-up and the measured period.
   void Steer() {
     period_.begin_s = Now_s() + options_.times.warm_up_s;
     period_.end_s = period_.begin_s + options_.seconds;
@@ -174,8 +174,8 @@ class RunningLoad {
     own_cpu_s_ = OwnCpu_s() - own_cpu_s;
   }
 
-  // Lets passing viewers leave and return, one after another, each after its visit. A viewer
-  // without a frame stays until its timeout.
+  // Lets passing viewers leave and return, one after another, each after the duration of a visit. A
+  // viewer without a frame stays until its timeout.
   void LetPass(double now_s) {
     if (options_.passing == 0 || now_s < next_visit_s_) return;
     // The passing viewers are the last of the viewers.

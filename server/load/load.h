@@ -1,4 +1,4 @@
-// A load on a server: one session with a presenter who turns its camera, and many viewers.
+// A load test of a server: one session with a presenter who turns the camera, and many viewers.
 #pragma once
 
 #include <cstddef>
@@ -19,54 +19,58 @@ namespace thunderhead::load {
 // The encodings of frames that viewers ask for.
 enum class LoadCodec { kJpeg, kVp9 };
 
-// The times of a load that do not depend on the measured scenario.
+// The times of a load test that are not part of the measured scenario.
 struct LoadTimes {
-  double warm_up_s = 1.0;         // before the period, so that first frames are excluded
-  double sampling_s = 1.0;        // between two progress reports, and two samples of the server
-  double visit_s = 2.0;           // of one visit of a passing viewer
-  double join_patience_s = 60.0;  // timeout of first frames, as the storm may have to be read
-  double leave_patience_s = 5.0;  // timeout of calls whose viewers leave
+  // Time before the measured period, so that first frames are excluded.
+  double warm_up_s = 1.0;
+  // Time between two progress reports, and between two samples of the server.
+  double sampling_s = 1.0;
+  double visit_s = 2.0;  // duration of one visit of a passing viewer
+  // Timeout of the first frame of each viewer, during which the storm may have to be read.
+  double join_patience_s = 60.0;
+  double leave_patience_s = 5.0;  // timeout for calls to end after their viewers leave
   double call_patience_s = 60.0;  // timeout of other calls
 };
 
 struct LoadOptions {
-  int viewers = 10;   // that read everything; 0 if all are throttled
-  int looking = 0;    // those of the viewers who look around
-  int throttled = 0;  // in addition to the viewers
-  int stalled = 0;    // in addition to the viewers
-  int passing = 0;    // in addition to the viewers
+  int viewers = 10;   // number of viewers that read everything; 0 if all are throttled
+  int looking = 0;    // number of these viewers who look around
+  int throttled = 0;  // number of throttled viewers, in addition to `viewers`
+  int stalled = 0;    // number of stalled viewers, in addition to `viewers`
+  int passing = 0;    // number of passing viewers, in addition to `viewers`
   LoadCodec codec = LoadCodec::kJpeg;
-  double kbit_per_s = 1000.0;  // read rate of a throttled viewer
+  double kbit_per_s = 1000.0;  // rate at which a throttled viewer reads
   double seconds = 10.0;
   int width_px = 640;
   int height_px = 360;
-  // Updates per second, and motions of each viewer who looks around; 0 for none.
+  // Updates per second by the presenter, and camera moves per second by each viewer who looks
+  // around; 0 for none.
   double steer_hz = 30.0;
-  StillOptions stills;  // requested when the measured time begins
+  StillOptions stills;  // requested when the measured period begins
   LoadTimes times;
 };
 
-// Makes viewers read at a limited rate: `throttled` additional ones, or all of them if no number is
-// given.
+// Sets the number of viewers that read at a limited rate: `throttled` viewers in addition to the
+// others, or all viewers if `throttled` is absent.
 void Throttle(double kbit_per_s, std::optional<int> throttled, LoadOptions& options);
 
 // The progress of a running load.
 struct Progress {
-  double share = 0.0;  // share of the time that has passed
-  int joined = 0;      // viewers that have received a frame
-  // The mean rate of healthy viewers since the last report. Without healthy viewers it is that of
-  // viewers who look around, or of throttled ones.
+  double share = 0.0;  // passed share of the measured time, 0 to 1
+  int joined = 0;      // number of viewers that have received a frame
+  // The mean frame rate of healthy viewers since the last report. Without healthy viewers, it is
+  // the rate of the viewers who look around, or of the throttled ones.
   double frames_per_s = 0.0;
-  // The lowest number of frames that any of those viewers, or of the viewers who look around,
-  // received within the measured time.
+  // The number of frames that the slowest viewer received within the measured period. Healthy
+  // viewers (or the kind that stands for them) and viewers who look around count.
   std::uint64_t least_frames = 0;
   std::size_t visits = 0;  // completed visits of passing viewers
   int errors = 0;
 };
 
-// Runs until the time has passed and every still has arrived. It ends early when every viewer's
-// call has ended. A requested stop ends it with the figures so far, or with an error if there are
-// none. Streams that end with an error are counted in the report.
+// Runs the load test until its time has passed and every still has arrived, or until every viewer's
+// call has ended. If `stop` is requested, it ends early with the results so far, or with an error
+// if there are none. Streams that end with an error are counted in the report.
 absl::StatusOr<Report> Run(const LoadOptions& options, Transport& transport,
                            const std::optional<ServerProcess>& server, const std::stop_token& stop,
                            const std::function<void(const Progress&)>& progress);

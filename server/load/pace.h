@@ -1,4 +1,5 @@
-// The delays of a link with a limited rate, as if each message took time for its transmission.
+// Delays that simulate a link with a limited rate, on which each message takes time to be
+// transmitted.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,8 @@ class Pace {
   explicit Pace(double kbit_per_s) : kbit_per_s_(kbit_per_s) {}
 
   bool IsLimited() const { return kbit_per_s_ > 0.0; }
-  // Returns the time from `now` until a message that was read now has arrived.
+  // Returns how long after `now` a message of `bytes` bytes, which was read at `now`, counts as
+  // arrived.
   Clock::duration DelayOf(std::size_t bytes, Clock::time_point now) {
     const std::chrono::duration<double, std::milli> took(8.0 * static_cast<double>(bytes) /
                                                          kbit_per_s_);
@@ -25,7 +27,7 @@ class Pace {
 
  private:
   double kbit_per_s_;
-  Clock::time_point free_at_;  // when the previous message has arrived
+  Clock::time_point free_at_;  // time at which the previous message counts as arrived
 };
 
 }  // namespace thunderhead::load

@@ -1,5 +1,5 @@
-// The presenter of a session under load, who turns the camera. Its window is hidden, so that the
-// server sends frames only to the viewers.
+// The presenter of a session in a load test, who turns the camera. The presenter's window is
+// hidden, so that the server sends frames only to the viewers.
 #pragma once
 
 #include <atomic>
@@ -40,8 +40,9 @@ class Presenter final : public Listener {
   v1::Camera camera_;
   std::uint64_t request_count_ = 0;
   std::mutex mutex_;
-  std::map<std::uint64_t, double> unanswered_s_;  // when each request was sent, by its id
-  std::map<std::uint64_t, double> sent_s_;        // when each revision's update was sent
+  // Sending times of requests without an answer, by request id.
+  std::map<std::uint64_t, double> unanswered_s_;
+  std::map<std::uint64_t, double> sent_s_;  // sending times of accepted updates, by revision
   std::atomic<bool> leaving_{false};
   std::atomic<bool> ended_{false};
   std::unique_ptr<Link> link_;

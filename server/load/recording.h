@@ -1,4 +1,4 @@
-// The record of a running load, from which its report is made.
+// What a load test records while it runs. The report is made from it.
 #pragma once
 
 #include <chrono>
@@ -13,14 +13,14 @@
 
 namespace thunderhead::load {
 
-// Returns the time in seconds, on the clock of all recorded times.
+// Returns the current time in seconds, on the clock that all recorded times use.
 inline double Now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 enum class ViewerKind {
   kHealthy,
-  kLooking,    // reads everything from its own view, which it turns
+  kLooking,    // looks around: reads everything in its own view, whose camera it turns
   kThrottled,  // reads at a limited rate
   kStalled,    // joins and never reads
   kPassing,    // leaves without notice and returns, repeatedly
@@ -28,9 +28,9 @@ enum class ViewerKind {
 
 struct ViewerRecord {
   ViewerKind kind = ViewerKind::kHealthy;
-  std::vector<double> first_frames_ms;  // from connecting to the first frame, for each visit
+  std::vector<double> first_frames_ms;  // times from connecting to the first frame, for each visit
   std::vector<Arrival> frames;
-  // Totals within the period.
+  // Totals within the measured period.
   std::uint64_t bytes = 0;
   std::uint64_t frame_count = 0;
   std::uint64_t frame_bytes = 0;
@@ -56,7 +56,8 @@ class Errors {
 // The record of single pictures.
 struct StillRecord {
   int asked = 0;
-  std::vector<double> came_ms;  // from the request to each picture that arrived
+  // Times from the request to the picture, for each picture that arrived.
+  std::vector<double> came_ms;
 };
 
 struct Recording {

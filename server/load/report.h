@@ -1,4 +1,4 @@
-// The figures of a load, as text and as JSON.
+// The results of a load test, as text and as JSON.
 #pragma once
 
 #include <map>
@@ -12,19 +12,20 @@
 
 namespace thunderhead::load {
 
-// The figures of all viewers of one kind.
+// The results of all viewers of one kind.
 struct ViewerFigures {
   int viewers = 0;
   double fps_min = 0.0;
   double fps_median = 0.0;
   std::optional<Percentiles> latency_ms;  // absent if the presenter did not steer
-  std::optional<Percentiles> spread_ms;   // from the first viewer that shows an update to the last
+  // Time from the first viewer that shows an update to the last.
+  std::optional<Percentiles> spread_ms;
   Growth latency_growth;
-  double kbit_per_viewer = 0.0;  // per second
+  double kbit_per_viewer = 0.0;  // mean data rate of a viewer
   double bytes_per_frame = 0.0;
 };
 
-// Times from connecting to the first frame, for each visit of a viewer.
+// The times from connecting to the first frame, over all visits of the viewers of one kind.
 struct FirstFrames {
   std::size_t count = 0;
   std::optional<double> median_ms;
@@ -35,8 +36,9 @@ struct ServerFigures {
   double rss_first_mb = 0.0;
   double rss_last_mb = 0.0;
   double rss_most_mb = 0.0;
-  std::vector<std::pair<double, double>> rss_over_time_mb;  // seconds and memory, at most 20
-  double cpu = 0.0;                                         // number of busy processors
+  // Pairs of seconds and memory, at most 20.
+  std::vector<std::pair<double, double>> rss_over_time_mb;
+  double cpu = 0.0;  // mean number of busy processors
 };
 
 struct StillFigures {
@@ -54,7 +56,7 @@ struct Report {
   double steer_hz = 0.0;
   double throttle_kbit_per_s = 0.0;
   ViewerFigures healthy;
-  ViewerFigures looking;  // without latencies, because own views count their own revisions
+  ViewerFigures looking;  // has no latencies, because own views count their revisions separately
   ViewerFigures throttled;
   int stalled = 0;
   FirstFrames healthy_first;
@@ -65,11 +67,12 @@ struct Report {
   StillFigures stills;
   std::optional<ServerFigures> server;  // absent if the server is not on this machine
   double own_cpu = 0.0;                 // number of processors that this program kept busy
-  std::map<std::string, int> errors;    // counts by message
+  std::map<std::string, int> errors;    // number of errors by message
 
   int ErrorCount() const;
-  // Returns the viewers that represent the whole load: the healthy ones, or without them the ones
-  // who look around, or the throttled ones.
+  // Returns the results that represent the whole load: those of the healthy viewers. Without
+  // healthy viewers, they are those of the viewers who look around, or else of the throttled
+  // viewers.
   const ViewerFigures& Main() const {
     if (healthy.viewers > 0) return healthy;
     return looking.viewers > 0 ? looking : throttled;

@@ -28,7 +28,7 @@ std::string Json(const std::optional<Percentiles>& latency) {
                       ", \"p99\": ", json(values.p99), "}");
 }
 
-// Returns the keys of `figures` as lines of JSON, without braces.
+// Returns the values of `figures` as lines of JSON, without braces.
 std::string Keys(const ViewerFigures& figures) {
   if (figures.viewers == 0) {
     const std::string none = Json(std::optional<Percentiles>());

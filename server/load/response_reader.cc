@@ -19,8 +19,8 @@ constexpr std::uint32_t MessageTag(int field) {
   return WireFormatLite::MakeTag(field, WireFormatLite::WIRETYPE_LENGTH_DELIMITED);
 }
 
-// Reads only as far as necessary and never parses the picture. Servers write the sequence and the
-// view before the rest.
+// Reads only as far as necessary and never parses the picture. This is possible because servers
+// write sequence and own_view before the rest.
 bool ReadFrame(CodedInputStream& stream, Response& response) {
   response.part = Part::kFrame;
   while (response.sequence == 0 || response.scene_revision == 0) {

@@ -1,5 +1,6 @@
-// Reads only the fields of an InteractResponse that a load needs, without copying or parsing the
-// frame. This matters because the client shares its processor with the server that it measures.
+// Reads only those fields of an InteractResponse that a load test needs, without copying or parsing
+// the picture. This matters because the test shares its processors with the server that it
+// measures.
 #pragma once
 
 #include <cstdint>

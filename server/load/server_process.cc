@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Returns true if the address is one of this machine's, since only such addresses can be bound.
+// Returns true if `host` is an address of this machine. Only such an address can be bound.
 bool IsThisMachine(const std::string& host) {
   addrinfo* found = nullptr;
   addrinfo wanted{};
@@ -37,8 +37,9 @@ bool IsThisMachine(const std::string& host) {
   return bound;
 }
 
-// Returns the inode of the socket that listens on the port, from /proc/net/tcp or tcp6. The columns
-// are 2 (address and port in hexadecimal), 4 (state) and 10 (inode).
+// Returns the inode of the socket that listens on the port, from /proc/net/tcp or tcp6. In these
+// tables, field 2 has the address and port in hexadecimal, field 4 the state, and field 10 the
+// inode.
 std::optional<std::string> ListeningInode(int port) {
   for (const char* table : {"/proc/net/tcp", "/proc/net/tcp6"}) {
     std::ifstream lines(table);

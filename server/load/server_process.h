@@ -1,5 +1,5 @@
-// The processor time and the memory of a server on this machine, which is found by its listening
-// port. It reads /proc, so it works only on Linux.
+// The processor time and the memory of a server process on this machine. The process is found by
+// its listening port. This class reads /proc, so it works only on Linux.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 namespace thunderhead::load {
 
 struct ProcessSample {
-  double at_s = 0.0;   // as Now_s()
+  double at_s = 0.0;   // on the clock of Now_s()
   double cpu_s = 0.0;  // processor time since the process began
   double rss_mb = 0.0;
 };
@@ -16,7 +16,7 @@ struct ProcessSample {
 class ServerProcess {
  public:
   // Returns nothing if `host` is not this machine, or if no process that may be inspected listens
-  // there.
+  // on `port`.
   static std::optional<ServerProcess> Find(const std::string& host, int port);
 
   // Returns nothing once the process has ended.

@@ -1,4 +1,4 @@
-// An Asio stream over plain TCP or TLS for a connection to a server. It must be used on one thread.
+// An Asio stream over plain TCP or TLS for a connection to a server. Used on one thread.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -25,17 +25,17 @@ class ServerStream : public streams::OptionalTls<boost::beast::unlimited_rate_po
  public:
   using Then = std::function<void(boost::system::error_code)>;
 
-  // If `tls` is null, the stream is plain.
+  // If `tls` is null, the stream uses plain TCP.
   ServerStream(boost::asio::io_context& io, std::shared_ptr<boost::asio::ssl::context> tls);
 
   void Connect(const boost::asio::ip::tcp::resolver::results_type& found, Then then);
-  // Performs the TLS handshake, which must be the first operation after connecting. On a TLS
-  // stream, `then` gets the result after the certificate was verified for that host name or
-  // address. On a plain stream, `then` is called at once.
+  // Performs the TLS handshake, which must be the first operation after connecting. The server's
+  // certificate is verified for `host`, a name or an address; then `then` gets the result. On a
+  // plain stream, `then` is called at once.
   void Handshake(const std::string& host, Then then);
 };
 
-// Hooks for Beast's end of a WebSocket, which end its TCP connection.
+// Functions that Beast calls to close the TCP connection when a WebSocket ends.
 void beast_close_socket(ServerStream& stream);
 void teardown(boost::beast::role_type role, ServerStream& stream, boost::system::error_code& error);
 template <typename Handler>

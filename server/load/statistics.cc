@@ -9,8 +9,8 @@
 namespace thunderhead::load {
 namespace {
 
-// Returns when a viewer first showed each update or a newer one, or the period's end if it had not
-// by then.
+// Returns for each update when the viewer first showed it or a newer one. If the viewer did not
+// show it by the end of the period, this end is returned.
 std::vector<double> ShownAt_s(const std::vector<Update>& updates,
                               const std::vector<Arrival>& arrivals, const Period& period) {
   std::vector<double> shown_s;

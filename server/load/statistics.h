@@ -1,5 +1,5 @@
-// Statistics of a load: percentiles, and latency from an update to the frame that shows it. Pure
-// functions. Times are seconds on one clock.
+// Statistics of a load test: percentiles, and the latency from an update to the frame that shows
+// it. Pure functions. All times are seconds on one clock.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,13 @@
 
 namespace thunderhead::load {
 
-// A frame that reached a viewer.
+// The arrival of a frame at a viewer.
 struct Arrival {
   double at_s = 0.0;
   std::uint64_t scene_revision = 0;
 };
 
-// An update that the server accepted.
+// An update of the scene that the server accepted.
 struct Update {
   double sent_s = 0.0;
   std::uint64_t scene_revision = 0;
@@ -40,30 +40,30 @@ struct Percentiles {
   double p99 = 0.0;
 };
 
-// Returns the smallest value that at least `share` of the values, 0 to 1, do not exceed. Returns
-// nothing if there are no values.
+// Returns the smallest value that is not exceeded by at least a share `share` (0 to 1) of the
+// values. Returns nothing if there are no values.
 std::optional<double> Percentile(std::vector<double> values, double share);
 std::optional<Percentiles> PercentilesOf(const std::vector<double>& values);
 std::optional<Percentiles> PercentilesOf(const std::vector<Latency>& latencies);
 
-// Returns the latency of each update sent in the period, for one viewer. The latency ends at the
-// first frame with the update's revision or a newer one. `updates` must be in the order of their
-// revisions, and `arrivals` in that of time. An update that was not shown by the end counts with
-// its age at that time, if this exceeds all other latencies. So a viewer that no longer receives
-// frames counts as late rather than as absent.
+// Returns, for one viewer, the latency of each update that was sent in the period. The latency ends
+// at the first frame with the update's revision or a newer one. `updates` must be ordered by
+// revision, and `arrivals` by time. An update that was not shown by the end of the period counts
+// with its age at that time, if this age exceeds all other latencies. So a viewer that no longer
+// receives frames counts as late rather than as absent.
 std::vector<Latency> LatenciesOf(const std::vector<Update>& updates,
                                  const std::vector<Arrival>& arrivals, const Period& period);
 
-// Returns the spread of each update sent in the period that a viewer showed. It is the time in
-// milliseconds from the first viewer that showed the update, or a newer one, to the last. A viewer
-// that had not shown it by the end counts until the end. The updates must be in the order of their
-// revisions, and the arrivals of each viewer in that of time.
+// Returns the spread of each update that was sent in the period and that at least one viewer
+// showed. The spread is the time in milliseconds from the first viewer that showed the update or a
+// newer one to the last such viewer. A viewer that had not shown it by the end of the period counts
+// with that end. `updates` must be ordered by revision, and each viewer's arrivals by time.
 std::vector<double> SpreadsOf(const std::vector<Update>& updates,
                               const std::vector<const std::vector<Arrival>*>& viewers,
                               const Period& period);
 
-// The growth of latency: its median for the updates sent in the first and in the last third of the
-// period.
+// The growth of latency: the median latency of the updates that were sent in the first and in the
+// last third of the period.
 struct Growth {
   std::optional<double> first_third_ms;
   std::optional<double> last_third_ms;

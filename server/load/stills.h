@@ -1,4 +1,5 @@
-// A burst of single pictures during a load. All are requested at once, each by a separate call.
+// A burst of single pictures (RenderImage) during a load test. All are requested at once, each by a
+// separate call.
 #pragma once
 
 #include <mutex>
@@ -16,25 +17,25 @@ struct StillOptions {
   int count = 0;
   int width_px = 640;
   int height_px = 360;
-  int slices = 0;  // 0 means the default
+  int slices = 0;  // number of slices; 0 means the default
   double patience_s = 3600.0;
 };
 
 class Stills {
  public:
-  // `stop` ends the waiting. `transport` and `errors` must outlive this object.
+  // `stop` ends waiting for the pictures. `transport` and `errors` must outlive this object.
   Stills(const StillOptions& options, Transport& transport, std::stop_token stop, Errors& errors)
       : options_(options), transport_(transport), stop_(std::move(stop)), errors_(errors) {}
   ~Stills() { Join(); }
   Stills(const Stills&) = delete;
   Stills& operator=(const Stills&) = delete;
 
-  // Requests all of them. Storm and light are the server's defaults, and the camera of each is
-  // turned a little further.
+  // Requests all pictures. Storm and light are the server's defaults. The camera of each picture is
+  // turned a little further than that of the one before.
   void Begin();
   // Waits until each picture has arrived, was refused or has timed out.
   void Join();
-  // Returns the times from the request to each picture. It must be called after Join.
+  // Returns the times from the request to each picture. Must be called after Join.
   StillRecord Record() const { return {options_.count, came_ms_}; }
 
  private:

@@ -1,4 +1,4 @@
-// The motion of a camera under load.
+// Moves a camera in a load test.
 #pragma once
 
 #include <cmath>

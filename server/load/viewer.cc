@@ -48,7 +48,7 @@ void Viewer::Turn(double angle_deg) {
 
 void Viewer::ComeAgain(Transport& transport, const std::string& key) {
   Stop();
-  // A call that ended on its own has already reported its error.
+  // If the call ended on its own, it has already reported its error.
   if (waits_since_s_.has_value() && !ended_)
     errors_.Add("a viewer left without having had a frame");
   ended_ = false;
@@ -71,7 +71,7 @@ void Viewer::OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::
   if (response->part == Response::Part::kRefused) return errors_.Add(response->refusal);
   if (response->part != Response::Part::kFrame) return;
   Acknowledge(response->sequence, response->own_view);
-  // Frames of the session's view may arrive until the own view exists, and are not counted.
+  // Until the own view exists, frames of the session's view may arrive. They are not counted.
   if (kind() == ViewerKind::kLooking && !response->own_view) return;
   if (waits_since_s_.has_value()) {
     record_.first_frames_ms.push_back(1e3 * (now_s - *waits_since_s_));

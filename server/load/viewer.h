@@ -1,5 +1,5 @@
-// A viewer of a session under load. It joins, acknowledges each frame, and records when each
-// arrived.
+// A viewer of a session in a load test. It joins, acknowledges each frame, and records when each
+// frame arrived.
 #pragma once
 
 #include <atomic>
@@ -17,12 +17,15 @@ namespace thunderhead::load {
 
 class Viewer final : public Listener {
  public:
-  // Bytes are recorded while `measuring` is true. It and `errors` must outlive the viewer.
+  // Bytes are counted only while `measuring` is true. `measuring` and `errors` must outlive the
+  // viewer.
   Viewer(ViewerKind kind, const std::atomic<bool>& measuring, Errors& errors);
 
-  // Connects and joins. A throttled viewer reads at that rate. With `takes_video` it asks for VP9.
+  // Connects and joins. `kbit_per_s` is the rate at which the viewer reads; 0 means no limit. With
+  // `takes_video` it asks for VP9.
   void Join(Transport& transport, const std::string& key, double kbit_per_s, bool takes_video);
-  // Leaves the session's view for the viewer's own view, which begins with that orbit camera.
+  // Leaves the session's view for the viewer's own view, which begins with the orbit camera
+  // `camera`.
   void LookAround(const v1::Camera& camera);
   // Turns the camera of the viewer's own view by an angle.
   void Turn(double angle_deg);
@@ -38,7 +41,7 @@ class Viewer final : public Listener {
   std::uint64_t Frames() const { return frames_; }
   // Returns the number of frames received while `measuring` was true.
   std::uint64_t MeasuredFrames() const { return measured_frames_; }
-  // Returns true until the first frame since the last join has arrived, or the call has ended.
+  // Returns true while no frame has arrived since the last join and the call has not ended.
   bool WaitsForFirstFrame() const { return !ended_ && frames_ == frames_before_; }
   // Returns the time of the last join.
   double joined_at_s() const { return joined_at_s_; }
@@ -57,11 +60,11 @@ class Viewer final : public Listener {
   ViewerRecord record_;
   std::atomic<std::uint64_t> frames_{0};
   std::atomic<std::uint64_t> measured_frames_{0};
-  std::uint64_t frames_before_ = 0;  // frames before the last join
+  std::uint64_t frames_before_ = 0;  // number of frames received before the last join
   double joined_at_s_ = 0.0;
   bool takes_video_ = false;
   v1::Camera own_camera_;
-  std::optional<double> waits_since_s_;  // the time since which it waits for its first frame
+  std::optional<double> waits_since_s_;  // time of the join whose first frame has not arrived yet
   std::atomic<bool> leaving_{false};
   std::atomic<bool> ended_{false};
   std::unique_ptr<Link> link_;

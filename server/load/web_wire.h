@@ -1,5 +1,5 @@
-// Parses the ends of calls as the gateway writes them: gRPC-Web's response body, and trailers as
-// text.
+// Parses the end of a call as the gateway sends it: as the response body of gRPC-Web, or as
+// trailers in text form.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace thunderhead::load {
 // Returns the call's status from a block of trailers, which has lines "name:value".
 absl::Status StatusOfTrailers(std::string_view trailers);
 
-// Returns the only message of a unary call's response body, or the call's error.
+// Returns the message of a unary call's response body, or the call's error.
 absl::StatusOr<std::string> UnaryMessage(std::string_view body);
 
 }  // namespace thunderhead::load

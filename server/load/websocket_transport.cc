@@ -39,8 +39,8 @@ constexpr char kSubprotocol[] = "grpc-websocket.v1";
 constexpr char kMessageKind = 0x00;
 constexpr char kHalfCloseKind = 0x01;
 constexpr char kTrailersKind = static_cast<char>(0x80);
-// The receive buffer of a reader with a limited rate, or that never reads. It is small so that few
-// messages wait in the kernel.
+// The size of the receive buffer of a viewer that reads at a limited rate or never. It is small, so
+// that few messages wait in the kernel.
 constexpr int kSlowReceiveBufferBytes = 64 << 10;
 
 struct Host {
@@ -148,7 +148,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
     if (!writing_) return;
     socket_.async_write(net::buffer(unsent_.front()),
                         [self = shared_from_this()](error_code error, std::size_t) {
-                          // The reader reports an error.
+                          // The pending read reports the error.
                           if (error) return;
                           self->unsent_.pop_front();
                           self->WriteNext();

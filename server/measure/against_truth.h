@@ -1,5 +1,5 @@
-// Compares pictures of a scene with the reference's picture of it, except next to the sun, where
-// the two differ by design (reference/near_sun.h).
+// Compares pictures of a scene with its path-traced reference picture. Pixels next to the sun are
+// left out, because the two pictures differ there by design (reference/near_sun.h).
 #pragma once
 
 #include <vector>
@@ -13,13 +13,14 @@ namespace thunderhead::measure {
 
 class AgainstTruth {
  public:
-  // Creates a comparison. `truth` must be traced with `peak_cut_deg` and have a standard error.
-  // INVALID_ARGUMENT if it shows almost nothing but the sun.
+  // Creates a comparison. `truth`, the reference picture, must be traced with `peak_cut_deg` and
+  // have a standard error. Returns INVALID_ARGUMENT if almost all of its pixels are next to the
+  // sun.
   static absl::StatusOr<AgainstTruth> Of(const scene::Scene& scene,
                                          const volume::HydrometeorFields& fields,
                                          picture::LinearPicture truth, double peak_cut_deg);
 
-  // Return the errors of a picture of the reference's size, as measure/image_error.h defines them.
+  // Return the errors of a picture of the reference's size, as defined in measure/image_error.h.
   double RelativeRmseWithoutNoise(const picture::LinearPicture& image) const;
   double RelativeBias(const picture::LinearPicture& image) const;
   // Returns the relative RMSE of the reference's own noise.

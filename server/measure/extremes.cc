@@ -15,7 +15,7 @@ namespace {
 // Rounding error of a number near 1 in the light volume's half-float buffers.
 constexpr double kHalfStep = 0x1p-11;
 
-// Rounding error of each factor of a transmittance.
+// Rounding error of each factor of a transmittance in single precision.
 constexpr double kSingleStep = 0x1p-24;
 
 }  // namespace

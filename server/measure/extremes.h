@@ -1,6 +1,6 @@
-// Cases with extreme input from storms or users, each with its analytic or limiting result.
-// `thunderhead measure extremes` prints them; tests/accuracy runs the same list. Uses the current
-// GL context.
+// Test cases with extreme input from storms or users, each with its analytic or limiting result.
+// `thunderhead measure extremes` prints their results, and tests/accuracy runs the same list. The
+// cases use the current GL context.
 #pragma once
 
 #include <functional>
@@ -23,7 +23,8 @@ struct Extreme {
   std::function<absl::StatusOr<Verdict>(Probe& probe)> check;
 };
 
-// Returns the cases of files and numbers, then the cases of pictures of each technique.
+// Returns first the cases of extreme files and numbers, then the cases of pictures of each
+// technique.
 std::vector<Extreme> Extremes();
 
 }  // namespace thunderhead::measure

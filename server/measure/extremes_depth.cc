@@ -1,4 +1,4 @@
-// Cases with extreme optical depths, numbers of slices and particle radii.
+// Test cases with extreme optical depths, numbers of slices and particle radii.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -14,11 +14,12 @@
 namespace thunderhead::measure::internal {
 namespace {
 
-// Thinner media are drawn in single precision. Half floats cannot represent opacities below 5e-4 or
-// radiances below 6e-8.
+// Optical depth below which media are drawn in single precision. Half floats cannot represent
+// opacities below 5e-4 or radiances below 6e-8.
 constexpr double kThin = 0.01;
 
-// Returns the isotropic single scattering of a layer of any profile, lit and seen from the zenith.
+// Returns the radiance of isotropic single scattering by a layer with any vertical profile. The
+// layer is lit and seen from the zenith.
 double Reflected(double depth) { return -std::expm1(-2.0 * depth) / 2.0 / (4 * std::numbers::pi); }
 
 constexpr int kFewSlices = 8;
@@ -49,13 +50,14 @@ Extreme DepthPerSlice(const accuracy::PlainTechnique& plain, double per_slice,
           }};
 }
 
-// Ratio of a thin layer's reflectance in the paper's transport to the exact one. The paper's
-// display normalisation shows an isotropic phase function as white, 1/2 (common/phase.glsl),
-// instead of 1 / (4 pi).
+// Ratio of a thin layer's reflectance in the paper's transport to the exact reflectance. The
+// paper's display normalisation shows an isotropic phase function as white, with the value 1/2
+// (common/phase.glsl). The exact value is 1 / (4 pi).
 constexpr double kPaperBrightness = 2.0 * std::numbers::pi;
 
-// Slices are so thin that light is scattered only once, so radiance is proportional to the optical
-// depth. Transmittance could not show that: 1 - 1e-8 rounds to 1 in single precision.
+// Checks light scattered by slices that are so thin that light is scattered only once. Radiance
+// must be proportional to the optical depth. Transmittance could not show this, because 1 - 1e-8
+// rounds to 1 in single precision.
 Extreme ThinSlices(const accuracy::PlainTechnique& plain, double per_slice,
                    const accuracy::Named<scene::Transport>& transport) {
   const std::string name = absl::StrFormat("%s: light scattered by slices of optical depth %g, %s",
@@ -116,7 +118,7 @@ Extreme Radius(const accuracy::PlainTechnique& plain, float radius_m) {
           }};
 }
 
-// All scattered light continues forwards; energy must not grow.
+// Checks the energy if all scattered light continues forwards. The energy must not grow.
 Extreme LightEnergy(const accuracy::PlainTechnique& plain,
                     const accuracy::Named<scene::Transport>& transport) {
   return {absl::StrFormat("%s: light is never more than came in, theta_f 90, %s", plain.name,
@@ -129,11 +131,12 @@ Extreme LightEnergy(const accuracy::PlainTechnique& plain,
             THUNDERHEAD_ASSIGN_OR_RETURN(
                 const Seen seen, probe.Draw(scene, *FieldsOf({.optical_depth = 100.0}), {}));
             // The eye sees the multiply scattered light that returns towards the sun. A deep cloud
-            // without absorption returns the most. The paper's radiances have their own unit.
+            // without absorption returns the most light. The paper's radiances have a different
+            // unit.
             const double most = transport.value == scene::Transport::kPaper
                                     ? std::numeric_limits<double>::infinity()
                                     : kMaxFluence / (4.0 * std::numbers::pi);
-            // Some light must be lost; otherwise there would be no medium.
+            // If no light were lost, the medium would have no effect.
             const bool lit = seen.least_light < 0.999 && seen.radiance > 0.0;
             return Sound(
                 seen,

@@ -1,5 +1,5 @@
-// Cases with extreme file contents: empty, negative and missing values; and the whole range of half
-// floats.
+// Test cases with extreme file contents (empty, negative and missing values), and over the whole
+// range of half floats.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +16,8 @@ namespace {
 constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Returns one layer of air, 1 m thick and with 1 kg/m3, with a column for each of `values`.
+// Returns one layer of air, 1 m thick and with a density of 1 kg/m3. It has a column for each of
+// `values`.
 storm_files::LayerAir AirOver(const std::vector<float>& values) {
   storm_files::LayerAir air;
   air.levels = 1;
@@ -27,8 +28,8 @@ storm_files::LayerAir AirOver(const std::vector<float>& values) {
   return air;
 }
 
-// Reads mixing ratios as from a file. Checks how many are negative and missing, and that only valid
-// ones remain.
+// Reads mixing ratios as from a file. Checks how many values are negative or missing, and that only
+// valid values remain.
 Extreme MixingRatios(const std::string& name, const std::vector<float>& values, int negative,
                      int missing, float left_kg_per_m3) {
   return {name, [=](Probe&) -> absl::StatusOr<Verdict> {
@@ -54,7 +55,7 @@ Extreme MixingRatios(const std::string& name, const std::vector<float>& values, 
 Extreme HalfFloats() {
   return {"half floats: relative error from 6.1e-5 to 65504",
           [](Probe&) -> absl::StatusOr<Verdict> {
-            constexpr int kValues = 56000;  // evenly spaced in the logarithm
+            constexpr int kValues = 56000;  // values evenly spaced in the logarithm
             const double span = std::log(65500.0 / 6.2e-5);
             double worst = 0.0;
             for (int i = 0; i <= kValues; ++i) {

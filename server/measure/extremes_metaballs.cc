@@ -1,5 +1,5 @@
-// Cases with metaballs at extreme optical depths, domains and cells. A fit does not represent a box
-// exactly, so the cases check soundness and bounds.
+// Test cases with metaballs at extreme optical depths, domains and cells. Fitted balls do not
+// represent a box exactly, so the cases check that values are valid and within bounds.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,8 +27,8 @@ scene::Scene BallScene(scene::Transport transport) {
   return scene;
 }
 
-// Passes if `got` lies between `low` and `high`. `without` is the value of a picture without balls;
-// it must lie outside.
+// Passes if `got` lies between `low` and `high`. `without` is the value for a picture without
+// balls, which must lie outside this range.
 Verdict Within(double got, double low, double high, double without) {
   Verdict verdict{absl::StrFormat("%g to %g", low, high), absl::StrFormat("%g", got),
                   got >= low && got <= high};
@@ -39,7 +39,7 @@ Verdict Within(double got, double low, double high, double without) {
   return verdict;
 }
 
-// Passes if the middle ray's transmittance lies between `low` and `high` for any fit.
+// Passes if the transmittance of the middle ray lies between `low` and `high`.
 Extreme Between(const std::string& what, const Box& box, const Look& look, double low,
                 double high) {
   return {absl::StrFormat("%s: %s", kPlain.name, what),
@@ -52,14 +52,15 @@ Extreme Between(const std::string& what, const Box& box, const Look& look, doubl
           }};
 }
 
-// In the middle of a full box the fit's optical depth is off by at most a fifth.
+// Checks the transmittance in the middle of a full box. The optical depth of the fitted balls may
+// differ from the box's by at most a fifth.
 Extreme Depth(double depth) {
   return Between(absl::StrFormat("optical depth %g", depth), {.optical_depth = depth}, {},
                  std::exp(-1.2 * depth), std::exp(-0.8 * depth));
 }
 
-// The same tolerance applies to light scattered once by a thin box, even if 1 minus the depth
-// rounds to 1.
+// Checks light scattered once by a thin box, with the same tolerance. The light is measurable even
+// if 1 minus the optical depth rounds to 1.
 Extreme ThinLight(double depth) {
   return {absl::StrFormat("%s: light scattered at optical depth %g", kPlain.name, depth),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
@@ -84,7 +85,8 @@ Extreme Empty() {
 
 // Returns the optical depth of the balls along a ray from `origin_m`, as in Man's paper. Each ball
 // contributes a product of three factors. They are tau, the ball's density relative to the mean
-// density (at most 1), and the ball's field at the ray's nearest point.
+// density (at most 1), and the ball's field function. The field function is taken at the point of
+// the ray nearest to the ball's centre.
 double PaperDepth(const std::vector<renderers::Ball>& balls, double tau, const glm::dvec3& origin_m,
                   const glm::dvec3& direction) {
   double sum = 0.0;
@@ -101,8 +103,8 @@ double PaperDepth(const std::vector<renderers::Ball>& balls, double tau, const g
   return depth;
 }
 
-// Man's densities are relative and his optical depth is a setting. So the picture does not depend
-// on the storm's own optical depth.
+// In Man's transport, densities are relative and the optical depth is a setting. The picture must
+// therefore not depend on the storm's own optical depth.
 Extreme Paper(double depth) {
   return {
       absl::StrFormat("%s: paper transport, optical depth %g", kPlain.name, depth),

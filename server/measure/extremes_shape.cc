@@ -1,4 +1,4 @@
-// Cases with domains of extreme sizes, cells of extreme shapes, volumes of one cell, too many
+// Test cases with domains of extreme sizes, cells of extreme shapes, volumes of one cell, too many
 // cells, and empty volumes.
 #include <epoxy/gl.h>
 
@@ -46,7 +46,7 @@ Extreme TooManyCells(const accuracy::PlainTechnique& plain) {
           }};
 }
 
-// Nothing must be drawn: transmittance is exactly 1 and radiance exactly 0.
+// Checks that an empty scene draws nothing: transmittance is exactly 1 and radiance exactly 0.
 Extreme Nothing(const accuracy::PlainTechnique& plain, const std::string& what, const Box& box,
                 bool visible) {
   return {absl::StrFormat("%s: %s", plain.name, what),

@@ -1,5 +1,5 @@
-// Cases with extreme views: along, against and across the light, a sweep past 90 degrees, a camera
-// inside the cloud, and the sun at the horizon and below.
+// Test cases with extreme views. The view is along, against or across the light, or moves past 90
+// degrees from the sun. The camera is inside the cloud, or the sun is at the horizon or below.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -37,8 +37,9 @@ double MeanRadiance(const Seen& seen) {
   return sum / (static_cast<double>(seen.eye.size()) / 4.0);
 }
 
-// At 90 degrees from the sun, half-angle slices change their orientation. The picture must not jump
-// there: the change over that step must be near the mean of the steps before and after.
+// Checks a camera that moves past 90 degrees from the sun, where half-angle slices change their
+// orientation. The picture must not jump there. The change over that step must be near the mean of
+// the changes over the steps before and after it.
 Extreme Sweep(const accuracy::PlainTechnique& plain,
               const accuracy::Named<scene::Transport>& transport) {
   return {absl::StrFormat("%s: pop when the view passes 90 degrees from the sun, %s", plain.name,
@@ -68,7 +69,7 @@ Extreme Sweep(const accuracy::PlainTechnique& plain,
           }};
 }
 
-// Half-float and float buffers must give the same picture.
+// Checks that half-float and float buffers give the same picture.
 Extreme HalfAgainstSingle(const accuracy::PlainTechnique& plain) {
   return {absl::StrFormat("%s: half-float buffers against float buffers", plain.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
@@ -82,8 +83,8 @@ Extreme HalfAgainstSingle(const accuracy::PlainTechnique& plain) {
             if (half.eye == single.eye) {
               return Verdict{"two pictures", "one: both buffers are the same", false};
             }
-            // The tolerance results from 2^-11 in the square root of the light's optical depth,
-            // after a few optical depths.
+            // The tolerance follows from the rounding error 2^-11 in the square root of the light's
+            // optical depth, at an optical depth of a few.
             return Sound(half, Near(MeanRadiance(half) / MeanRadiance(single), 1.0, 0.002, 0.0));
           }};
 }
@@ -97,8 +98,8 @@ Extreme InsideTheCloud(const accuracy::PlainTechnique& plain, double elevation_d
                 const Seen seen,
                 probe.Draw(scene, *FieldsOf({.optical_depth = 2.0}),
                            {.view_elevation_deg = elevation_deg, .distance_in_boxes = 1e-6}));
-            // Half the box lies in front of the eye. Of the 64 half-angle slices there, the slice
-            // that contains the eye counts completely or not at all.
+            // Half of the box lies in front of the eye, with 64 half-angle slices. The slice that
+            // contains the eye counts completely or not at all.
             constexpr DepthErrors kInside = {.half_angle = 1.0 / 64.0 + kUpright.half_angle,
                                              .light_volume = kUpright.light_volume};
             return TransmittanceNear(plain, seen, 1.0, kInside,
@@ -106,7 +107,7 @@ Extreme InsideTheCloud(const accuracy::PlainTechnique& plain, double elevation_d
           }};
 }
 
-// Returns a whole picture with sky and ground as red, green and blue of each pixel.
+// Returns a whole picture with sky and ground. It holds red, green and blue of each pixel.
 absl::StatusOr<std::vector<float>> WholePicture(const scene::Scene& scene) {
   const std::shared_ptr<const volume::HydrometeorFields> fields =
       FieldsOf({.size_m = glm::dvec3(4000.0), .optical_depth = 20.0, .shape = Box::Shape::kRound});
@@ -134,14 +135,15 @@ scene::Scene LowSunScene(const accuracy::PlainTechnique& plain, double elevation
   return scene;
 }
 
-// Checks the maximum radiance, which is of the order of the sky's mean (10 times that near a
-// setting sun). The storm must be visible, by at least a tenth of the mean, and lit everywhere. No
-// pixel may be darker than a tenth of its background. Deep in the night the whole picture is black.
+// Checks pictures with a low sun. The maximum radiance must be of the order of the sky's mean
+// radiance (up to 10 times the mean near a setting sun). The storm must change the picture by at
+// least a tenth of the mean, and be lit everywhere. No pixel may be darker than a tenth of its
+// background. Deep in the night the whole picture must be black.
 Verdict LowSunVerdict(const scene::Scene& scene, const std::vector<float>& storm,
                       const std::vector<float>& bare) {
   double brightest = 0.0;
   double changed = 0.0;
-  double darkest = 1.0;  // relative to its background
+  double darkest = 1.0;  // relative to the background behind the pixel
   for (std::size_t i = 0; i < storm.size(); ++i) {
     if (!std::isfinite(storm[i]) || storm[i] < 0.0F) {
       return {"radiances", absl::StrFormat("%g in the picture", storm[i]), false};
@@ -182,7 +184,7 @@ void AppendViewExtremes(const accuracy::PlainTechnique& plain, std::vector<Extre
   extremes->push_back(AgainstLight(plain, "a hair from across", 250.001, 45.0));
   for (const auto& transport : accuracy::kTransportNames)
     extremes->push_back(Sweep(plain, transport));
-  // Half-angle's buffers are always floats.
+  // The buffers of half-angle slicing are always floats, so only the light volume is tested.
   if (plain.name == scene::LightVolume::kName) extremes->push_back(HalfAgainstSingle(plain));
   extremes->push_back(InsideTheCloud(plain, 89.9));
   extremes->push_back(InsideTheCloud(plain, -89.9));

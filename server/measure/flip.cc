@@ -1,4 +1,4 @@
-// FLIP by Andersson et al. 2020, for pictures of low dynamic range. Constants are those of the
+// FLIP by Andersson et al. 2020, for pictures of low dynamic range. The constants are those of the
 // paper.
 #include <algorithm>
 #include <array>
@@ -25,7 +25,7 @@ constexpr double kCutOff = 0.4;              // p_c
 constexpr double kCutOffValue = 0.95;        // p_t
 constexpr double kFeatureWidth_deg = 0.082;  // width of an edge that the eye detects
 
-// Three planes with a picture's size.
+// Three colour planes of a picture.
 struct Planes {
   glm::ivec2 size{0};
   std::vector<glm::dvec3> values;
@@ -45,13 +45,13 @@ Planes Mapped(const Planes& planes, const std::function<glm::dvec3(const glm::dv
   return mapped;
 }
 
-// Matrix from linear sRGB to CIE XYZ under D65, with columns for red, green and blue.
+// Matrix from linear sRGB to CIE XYZ under D65. Its columns are for red, green and blue.
 const glm::dmat3 kXyzFromRgb(0.4124564, 0.2126729, 0.0193339, 0.3575761, 0.7151522, 0.1191920,
                              0.1804375, 0.0721750, 0.9503041);
 const glm::dvec3 kWhite = kXyzFromRgb * glm::dvec3(1.0);
 
 // Returns opponent colours (luminance, red-green, blue-yellow). They are linear in radiance, so
-// that they can be filtered.
+// that filters can be applied to them.
 glm::dvec3 OpponentOf(const glm::dvec3& rgb) {
   const glm::dvec3 xyz = kXyzFromRgb * rgb / kWhite;
   return {116.0 * xyz.y - 16.0, 500.0 * (xyz.x - xyz.y), 200.0 * (xyz.y - xyz.z)};
@@ -63,7 +63,7 @@ glm::dvec3 RgbOf(const glm::dvec3& opponent) {
   return glm::inverse(kXyzFromRgb) * (xyz * kWhite);
 }
 
-// Returns CIE L*a*b* with the Hunt effect: dim colours have less chroma.
+// Returns CIE L*a*b* with the Hunt effect, by which dim colours have less chroma.
 glm::dvec3 LabOf(const glm::dvec3& rgb) {
   const glm::dvec3 xyz = kXyzFromRgb * rgb / kWhite;
   const auto f = [](double t) {
@@ -79,7 +79,7 @@ double HybridDistance(const glm::dvec3& a, const glm::dvec3& b) {
   return std::abs(d.x) + std::hypot(d.y, d.z);
 }
 
-// A filter of each plane as a sum of two separable Gaussians.
+// A filter of one colour plane, which is the sum of two separable Gaussians.
 struct Gaussians {
   double a1, b1, a2, b2;
 
@@ -147,8 +147,8 @@ std::vector<double> ColorDifference(const Planes& image, const Planes& truth) {
   return difference;
 }
 
-// One-dimensional kernels: a Gaussian, and its first or second derivative. The derivative's
-// positive weights and its negative weights add up to one each.
+// One-dimensional kernels: a Gaussian, and its first or second derivative. The positive weights of
+// the derivative add up to 1, and so do the absolute values of its negative weights.
 struct Kernels {
   std::vector<double> smooth, derivative;
 };
@@ -174,11 +174,11 @@ Kernels KernelsOf(bool edges) {
   return kernels;
 }
 
-// Returns the strength of edges or points at each pixel, from luminance.
+// Returns the strength of edges (if `edges` is true) or points at each pixel, from luminance.
 std::vector<double> Features(const Planes& opponent, bool edges) {
   const Kernels kernels = KernelsOf(edges);
   const int radius = static_cast<int>(kernels.smooth.size() / 2);
-  // x: smoothed horizontally; y: horizontal derivative.
+  // x is the luminance smoothed horizontally, y its horizontal derivative.
   Planes rows{opponent.size, std::vector<glm::dvec3>(opponent.values.size())};
   std::vector<double> strength(opponent.values.size());
   const auto each = [&](const auto& visit) {

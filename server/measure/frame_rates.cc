@@ -22,8 +22,9 @@
 namespace thunderhead::measure {
 namespace {
 
-constexpr int kWarmFrames = 2;  // not measured, because the first compiles shaders
-constexpr int kMinFrames = 3;   // in one run
+// Frames that are not measured, because the first frame compiles shaders.
+constexpr int kWarmFrames = 2;
+constexpr int kMinFrames = 3;  // minimum number of frames in a run
 constexpr double kStep_deg = 1.0;
 
 using scene::FrameStage;
@@ -44,7 +45,7 @@ class Frames {
   void MoveCamera() { std::get<scene::OrbitCamera>(scene_.camera).azimuth_deg += kStep_deg; }
   void MoveSun() { scene_.sun.azimuth_deg += kStep_deg; }
 
-  // Draws and encodes a frame; appends each stage's milliseconds to `stages`.
+  // Draws and encodes a frame. Appends the milliseconds of each stage to `stages`.
   absl::Status Draw(Samples* stages) {
     renderers::StageTimes times;
     THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped mapped, DrawAsMoving(&times));
@@ -61,8 +62,8 @@ class Frames {
     return absl::OkStatus();
   }
 
-  // Returns the frames per second over at least `seconds`, while `move` changes the scene before
-  // each frame.
+  // Returns the frames per second, measured over at least `seconds`. `move` changes the scene
+  // before each frame.
   absl::StatusOr<double> Rate(void (Frames::*move)(), double seconds, Samples* stages) {
     const base::Stopwatch stopwatch;
     int frames = 0;
@@ -74,8 +75,8 @@ class Frames {
     return 1e3 * frames / stopwatch.ElapsedMs();
   }
 
-  // Returns FLIP of the moving frame against the frame that follows at rest, at the exposure of the
-  // moving frame.
+  // Returns the FLIP difference between a frame drawn during a move and the following frame at
+  // rest. Both have the exposure of the former.
   absl::StatusOr<std::optional<double>> MovingFlip() {
     renderers::StageTimes times;
     THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped moving, DrawAsMoving(&times));
@@ -92,7 +93,8 @@ class Frames {
   }
 
  private:
-  // Draws as sessions do while something moves; appends the times of its stages.
+  // Draws a frame as sessions do while the camera or the sun moves. Appends the times of its
+  // stages.
   absl::StatusOr<frame::ToneMapped> DrawAsMoving(renderers::StageTimes* times) {
     const accuracy::FrameQuality quality{.sparse = accuracy::MovesSparsely(scene_)};
     THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -148,8 +150,8 @@ absl::StatusOr<FrameRateRow> MeasureRow(
   }
   frames.MoveCamera();
   THUNDERHEAD_ASSIGN_OR_RETURN(row.camera_flip, frames.MovingFlip());
-  // After fully solved light, the first step is as good as it can be, so some steps precede the
-  // measurement.
+  // The light was just solved fully, so the first step of the sun would be more accurate than
+  // usual. Some steps therefore precede the measurement.
   for (int i = 0; i < kWarmFrames; ++i) {
     frames.MoveSun();
     THUNDERHEAD_RETURN_IF_ERROR(frames.Draw(&warming));
@@ -172,8 +174,8 @@ struct Case {
   std::string_view mode;
 };
 
-// The presets and the default have no traced light here, because tracing waits until the view is at
-// rest.
+// Returns all settings to measure. The presets and the default are without path-traced correction
+// here, because tracing waits until the view is at rest.
 std::vector<Case> CasesOf(const FrameRateOptions& options) {
   std::vector<Case> cases;
   for (const accuracy::PlainTechnique& plain : accuracy::kPlainTechniques) {

@@ -1,5 +1,6 @@
 // Frame rates of one storm in all named settings: each technique in the papers' modes, and the
-// presets. Measures whole frames, from a changed scene to a JPEG. Uses the current GL context.
+// presets. A frame is measured from the changed scene to its JPEG. The measurement uses the current
+// GL context.
 #pragma once
 
 #include <functional>
@@ -18,11 +19,12 @@
 namespace thunderhead::measure {
 
 struct FrameRateOptions {
-  int width_px = 300;  // the papers' size and slices
+  int width_px = 300;  // Size and number of slices as in the papers.
   int height_px = 300;
   int slices = scene::HalfAngle{}.slices;
-  scene::Transport transport = scene::Transport::kConsistent;  // for the papers' translucent modes
-  int runs = 5;                                                // results are their medians
+  // Transport for the papers' translucent modes.
+  scene::Transport transport = scene::Transport::kConsistent;
+  int runs = 5;  // number of runs, whose median is the result
   double seconds_a_run = 0.4;
   std::string only_mode{};  // if not empty, only rows of this mode are measured
 };
@@ -34,13 +36,14 @@ struct StageMedian {
 
 struct FrameRateRow {
   std::string_view technique;
-  std::string_view mode;    // the papers' mode or preset; "default": the setting of a new scene
-  double camera_fps = 0.0;  // the camera moves every frame
-  double sun_fps = 0.0;     // the sun moves every frame
+  std::string_view mode;    // the papers' mode or a preset; "default" is the setting of a new scene
+  double camera_fps = 0.0;  // frames per second if the camera moves before every frame
+  double sun_fps = 0.0;     // frames per second if the sun moves before every frame
   // The stages that a camera move reruns, and the light stage, which only a sun move reruns.
   std::vector<StageMedian> stages;
-  // FLIP of such a frame against one with one ray per pixel and fully solved light, after a camera
-  // move and after a sun move. None if frames are drawn in full anyway.
+  // FLIP difference between a frame as drawn during a move and one with one ray a pixel and fully
+  // solved light, after a camera move and after a sun move. No value if frames during a move are
+  // drawn in full anyway.
   std::optional<double> camera_flip{};
   std::optional<double> sun_flip{};
 };
@@ -52,7 +55,7 @@ absl::StatusOr<std::vector<FrameRateRow>> MeasureFrameRates(
 std::string ToJson(const Machine& machine, const std::vector<FrameRateRow>& rows);
 std::string ToTable(const Machine& machine, const std::vector<FrameRateRow>& rows);
 
-// Returns the mass of all condensate, which is largest in a mature storm.
+// Returns the mass of all condensate. It is largest in a mature storm.
 double Condensate_kg(const volume::HydrometeorFields& fields);
 
 }  // namespace thunderhead::measure

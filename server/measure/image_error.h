@@ -1,5 +1,5 @@
-// Differences between a picture and the reference: errors of linear radiance, and perceived
-// differences. Pure functions of pixels; images are rows from top to bottom.
+// Differences between a picture and the path-traced reference picture: errors of linear radiance,
+// and perceived differences. The functions are pure. Images have rows from top to bottom.
 #pragma once
 
 #include <vector>
@@ -18,22 +18,24 @@ picture::LinearPicture Without(const std::vector<bool>& left_out,
 // black.
 double RelativeRmse(const picture::LinearPicture& image, const picture::LinearPicture& truth);
 
-// Returns the same for the reference's standard error, which must be present. It is the expected
-// RelativeRmse between the exact picture and this reference.
+// Returns the root mean square of the reference's standard error, relative to its mean radiance.
+// The standard error must be present. The result is the expected RelativeRmse between the exact
+// picture and this reference.
 double RelativeNoise(const picture::LinearPicture& truth);
 
-// Returns RelativeRmse after subtracting the reference's RelativeNoise. The noise is independent of
-// the picture, so mean squares add up. 0 if the difference is all noise.
+// Returns RelativeRmse without the part that the reference's noise causes. `truth_noise` is
+// RelativeNoise of the reference. The noise is independent of the picture, so its mean square is
+// subtracted. The result is 0 if the whole difference is noise.
 double RelativeRmseWithout(double truth_noise, const picture::LinearPicture& image,
                            const picture::LinearPicture& truth);
 
-// Returns the mean difference relative to the reference's mean radiance. It is above 0 if the
+// Returns the mean difference relative to the reference's mean radiance. It is positive if the
 // picture is too bright.
 double RelativeBias(const picture::LinearPicture& image, const picture::LinearPicture& truth);
 
-// Returns the mean perceived difference, 0 to 1, by FLIP (Andersson et al. 2020, A Difference
-// Evaluator for Alternating Images) at 67 pixels per degree. It compares colours after the eye's
-// contrast sensitivity, and edges and points.
+// Returns the mean perceived difference, 0 to 1, by FLIP at 67 pixels per degree. FLIP compares
+// colours after the eye's contrast sensitivity, and edges and points (Andersson et al. 2020, A
+// Difference Evaluator for Alternating Images).
 double Flip(const frame::RgbImage& image, const frame::RgbImage& truth);
 
 }  // namespace thunderhead::measure

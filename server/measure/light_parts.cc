@@ -84,7 +84,7 @@ absl::StatusOr<picture::LinearPicture> DrawPart(
   THUNDERHEAD_ASSIGN_OR_RETURN(picture::LinearPicture image,
                                Draw(renderer, lit, fields, quality, finer));
   if (part != LightPart::kSky) return image;
-  // Light is additive: the skylight is the difference from a picture with a black sky.
+  // Light is additive, so the skylight is the difference from a picture with a black sky.
   lit.sky.brightness = 0.0;
   THUNDERHEAD_ASSIGN_OR_RETURN(const picture::LinearPicture sun,
                                Draw(renderer, lit, fields, quality, finer));

@@ -1,6 +1,7 @@
-// Parts of the light, to find which part a renderer gets wrong. A part is the same scene with fewer
-// light sources, or with single scattering only, for the renderer and the reference alike. Owns GL
-// objects: use it on the context's thread.
+// Parts of the light, used to find out which part a renderer computes wrongly. A part is the same
+// scene with fewer light sources, or with single scattering only. It is drawn by the renderer and
+// traced by the path-traced reference. The functions own GL objects, so use them on the context's
+// thread.
 #pragma once
 
 #include <memory>
@@ -17,20 +18,23 @@
 namespace thunderhead::measure {
 
 enum class LightPart {
-  kOnce,  // sunlight scattered once, uniform phase, black sky and ground: both sides are exact
-  kSun,   // sunlight scattered any number of times, black sky and ground
-  kSky,   // only skylight, black ground
+  // Sunlight scattered once, with the same phase function for all fields and with black sky and
+  // ground. Renderer and reference are both exact.
+  kOnce,
+  kSun,  // sunlight scattered any number of times, black sky and ground
+  kSky,  // only skylight, black ground
   kAll
 };
 
 std::string NameOf(LightPart part);
 
-// Return the scene that the reference traces for that part of `scene`, and its options.
+// Return the scene that the reference traces for `part` of `scene`, and the options of its tracing.
 scene::Scene SceneOf(LightPart part, scene::Scene scene);
 reference::TraceOptions TraceOptionsOf(LightPart part, double peak_cut_deg);
 
-// Draws one part with `scene`'s renderer and transport, at `finer` times its width and height.
-// Averages blocks of pixels, because the reference averages over a pixel. `correction` may be null.
+// Draws one part with `scene`'s technique and transport, at `finer` times its width and height.
+// Then it averages blocks of `finer` x `finer` pixels, because the reference also averages over a
+// pixel. `correction` may be null.
 absl::StatusOr<picture::LinearPicture> DrawPart(
     renderers::SceneRenderer& renderer, const scene::Scene& scene,
     const std::shared_ptr<const volume::HydrometeorFields>& fields, LightPart part, int finer,

@@ -20,7 +20,8 @@ double LogPlot::Axis::At(double value) const {
   return from_px + (std::log10(value) - low) / (high - low) * (to_px - from_px);
 }
 
-// Returns 1, 2 and 5 times powers of ten; over more than three decades only the powers.
+// Returns 1, 2 and 5 times powers of ten. If the axis spans more than three decades, it returns
+// only the powers.
 std::vector<double> LogPlot::Axis::Ticks() const {
   std::vector<double> ticks;
   for (int power = static_cast<int>(std::floor(low)); power <= std::ceil(high); ++power) {

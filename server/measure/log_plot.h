@@ -1,4 +1,5 @@
-// An SVG plot with two logarithmic axes that fit the data. Pure functions of numbers and text.
+// An SVG plot with two logarithmic axes that fit the data. The class works on numbers and text
+// only.
 #pragma once
 
 #include <string>
@@ -9,12 +10,12 @@ namespace thunderhead::measure {
 
 class LogPlot {
  public:
-  // Creates axes that contain all points of `x` and `y`. There must be at least one point, and all
-  // values must be above 0. `title` is above the plot, `note` below.
+  // Creates axes that contain all values of `x` and `y`. Neither may be empty, and all values must
+  // be above 0. `title` is above the plot, `note` below.
   LogPlot(const std::vector<double>& x, const std::vector<double>& y, const std::string& title,
           const std::string& note);
 
-  // Connects the points in their order.
+  // Draws a line that connects the points in their order.
   void Line(const std::vector<std::pair<double, double>>& points, const std::string& color);
   // Adds a dot of `radius` pixels with the tool tip `tip`.
   void Dot(double x, double y, int radius, const std::string& fill, const std::string& stroke,

@@ -20,13 +20,14 @@ namespace thunderhead::measure {
 namespace {
 
 constexpr float kCovered = 0.95F;
-constexpr double kTowerRadius = 1.0 / 2.0;  // as shares of the core's height
+constexpr double kTowerRadius = 1.0 / 2.0;  // radii and heights as shares of the core's height
 constexpr double kTowerFoot = 1.0 / 6.0;
 constexpr double kBaseRadius = 1.0 / 3.0;
 constexpr double kBaseHeight = 1.0 / 4.0;
 constexpr double kOwnShadow = 1.0 / 8.0;
 constexpr double kHighestBase_m = 2000.0;
-const double kDarkest = base::LinearOfSrgb(0.5 / 255.0);  // half of the first step
+// Luminance of half of the first 8-bit step.
+const double kDarkest = base::LinearOfSrgb(0.5 / 255.0);
 
 class Places {
  public:
@@ -39,7 +40,7 @@ class Places {
         view_(scene::ViewOf(scene, fields)),
         towards_sun_(scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg)) {}
 
-  // Returns the region of the pixel at device coordinates from -1 to 1, y upwards.
+  // Returns the region of the pixel at device coordinates `at`, from -1 to 1, with y upwards.
   Region At(const glm::dvec2& at) const {
     const glm::dvec3 origin_m = view_.eye_m + at.x * view_.half_width_m * view_.right +
                                 at.y * view_.half_height_m * view_.up;
@@ -93,7 +94,7 @@ class Places {
   const glm::dvec3 towards_sun_;
 };
 
-// Returns a percentile of `values`, which must not be empty.
+// Returns the percentile `share` (0 to 1) of `values`, which must not be empty.
 double Percentile(std::vector<double> values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());

@@ -1,4 +1,4 @@
-// Describes the machine of a measurement.
+// A description of the machine on which a measurement ran.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace thunderhead::measure {
 
 struct Machine {
   std::string processor;  // name reported by the system
-  int threads = 0;        // number of parallel threads
+  int threads = 0;        // number of threads that run in parallel
   std::string device;     // "software" or "gpu 0"
   std::string gl_renderer;
   std::string gl_version;
@@ -19,7 +19,7 @@ Machine MachineOf(const gl::ContextInfo& context);
 
 std::string ToJson(const Machine& machine);
 
-// Returns `text` as a JSON string.
+// Returns `text` as a quoted JSON string.
 std::string JsonText(const std::string& text);
 
 }  // namespace thunderhead::measure

@@ -19,7 +19,7 @@
 namespace thunderhead::measure {
 namespace {
 
-// Exponent of the round box, whose extinction falls to 0.25 % at its faces.
+// Exponent of the Gaussian of the round box. Its extinction falls to 0.25 % at the box's faces.
 constexpr double kSteepness = 24.0;
 
 renderers::RenderSettings SettingsOf(const scene::Scene& scene,
@@ -43,8 +43,8 @@ renderers::RenderSettings SettingsOf(const scene::Scene& scene,
   return settings;
 }
 
-// Returns the ratio of the extinction to that of a full box with the same optical depth. `place` is
-// from -1/2 to 1/2.
+// Returns the extinction at `place`, relative to that of a full box with the same optical depth.
+// Coordinates of `place` are from -1/2 to 1/2.
 double ShareAt(Box::Shape shape, const glm::dvec3& place) {
   switch (shape) {
     case Box::Shape::kFull:
@@ -87,7 +87,7 @@ std::shared_ptr<volume::HydrometeorFields> FieldsOf(const Box& box) {
 }
 
 std::shared_ptr<const volume::HydrometeorFields> SmoothCloud(double optical_depth) {
-  // The mean of the Gaussian over a side, whose ends are practically at infinity.
+  // The mean of the Gaussian over a side of the box, whose ends are practically at infinity.
   const double mean = std::sqrt(std::numbers::pi / kSteepness);
   return FieldsOf({.cells = glm::ivec3(32),
                    .size_m = glm::dvec3(4000.0),

@@ -17,12 +17,12 @@ namespace thunderhead::measure {
 namespace {
 
 constexpr std::array kCounts = {8, 16, 32, 64, 128, 256};
-constexpr int kLimit = 2048;  // number of slices that stands for infinitely many
+constexpr int kLimit = 2048;  // number of slices whose picture stands for the converged picture
 
 // Relative rounding error of half floats.
 constexpr double kFrameRounding = 0x1p-12;
 
-// Value drawn instead of zero on a logarithmic axis.
+// Error drawn in place of smaller errors, because the axis is logarithmic.
 constexpr double kMinSliceError = 1e-9;
 
 absl::StatusOr<picture::LinearPicture> DrawWith(

@@ -1,6 +1,7 @@
-// Convergence of pictures with the number of slices, for both transports. Measures the error of
-// linear radiance against the same transport with many more slices, and the order of convergence.
-// measure/trade.h measures the error of the limit itself. Uses the current GL context.
+// Convergence of pictures with the number of slices, for each transport. The error of linear
+// radiance is measured against a picture of the same transport with many more slices. The order of
+// convergence is fitted to the errors. measure/trade.h measures the error of the converged picture.
+// The functions use the current GL context.
 #pragma once
 
 #include <functional>
@@ -27,14 +28,14 @@ struct SliceCurve {
   double order = 0.0;  // exponent of a power law through the points: error ~ slices^-order
 };
 
-// Draws `scene` (its renderer, mode and size) with 8 to 256 slices and both transports.
+// Draws `scene` with its technique, mode and size, with 8 to 256 slices and each transport.
 absl::StatusOr<std::vector<SliceCurve>> MeasureSliceConvergence(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
     const std::function<void(double share)>& progress);
 
-// Returns the order of the power law that fits the points best (least squares of the logarithms).
-// Ignores points within ten rounding errors of the frame's half floats if at least two other points
-// remain.
+// Returns the exponent of the power law that fits the points best (least squares of the
+// logarithms). Points whose error is within ten rounding errors of the frame's half floats are
+// ignored if at least two other points remain.
 double OrderOf(const std::vector<SlicePoint>& points);
 
 std::string ToTable(const std::vector<SliceCurve>& curves);

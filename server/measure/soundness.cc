@@ -10,7 +10,8 @@
 namespace thunderhead::measure {
 namespace {
 
-// Returns the texture's texels with `channels` floats each, as many as `format` has; x fastest.
+// Returns the texels of a texture with `channels` floats each, which must suit `format`. x varies
+// fastest.
 std::vector<float> Texels(const gl::Texture3D& texture, GLenum format, std::size_t channels) {
   const glm::ivec3 size = texture.Size();
   std::vector<float> texels(channels * static_cast<std::size_t>(size.x) *
@@ -30,8 +31,8 @@ void InspectRoot(float root, const char* where, Soundness* found) {
   }
 }
 
-// Checks that both optical depths only grow along the ray. Layers that no cell reads are never
-// written and are 0.
+// Checks that both optical depths do not decrease along the ray. Layers that no cell reads are
+// never written and are 0.
 void InspectRays(const gl::Texture3D& carried, Soundness* found) {
   const std::vector<float> texels = TwoChannels(carried);
   const glm::ivec3 size = carried.Size();

@@ -9,34 +9,35 @@
 
 namespace thunderhead::measure {
 
-// 1 plus a tolerance, because a ray's transmittance is a product of rounded factors.
+// Upper limit of a share: 1 plus a tolerance, because a ray's transmittance is a product of rounded
+// factors.
 inline constexpr float kMaxShare = 1.0F + 1e-5F;
 
-// Ratio of the fluence of multiply scattered light to the sun's irradiance, deep in an infinite
-// conservative cloud with the sun in the zenith (Eddington).
+// Upper limit of the fluence of multiply scattered light, relative to the sun's irradiance. It is
+// reached deep in an infinite conservative cloud with the sun in the zenith (Eddington).
 inline constexpr double kMaxFluence = 5.0;
 
 // The result of a check.
 struct Soundness {
-  std::string unsound;       // the first invalid value; empty if there is none
+  std::string unsound;  // description of the first invalid value; empty if all values are valid
   double least_light = 1.0;  // smallest share of sunlight anywhere
 };
 
-// Returns the first fault of radiance or transmittance, with four floats per pixel; empty if there
-// is none.
+// Describes the first invalid radiance or transmittance in `eye`, which has four floats a pixel.
+// Returns an empty text if all values are valid.
 std::string UnsoundPicture(const std::vector<float>& eye);
 
-// Checks half-angle slicing's light buffer, with four floats per texel. The first two are the share
-// of sunlight and its optical depth.
+// Checks the light buffer of half-angle slicing, which has four floats a texel. The first float is
+// the share of sunlight, the second an optical depth.
 Soundness LightBufferSoundness(const std::vector<float>& light);
 
-// Checks the light volume after carry.comp and arrive.comp. The optical depth of sunlight must be 0
-// or more everywhere and must not decrease along any ray of the sun.
+// Checks the light of the light volume after carry.comp and arrive.comp. The optical depth of
+// sunlight must be 0 or more everywhere. It must not decrease along any ray of the sun.
 Soundness LightVolumeSoundness(const renderers::LightVolumeRenderer& renderer);
 
-// Checks the solution of diffusion transport, which has as many cells as the medium. The fluence of
-// sunlight must nowhere exceed that deep in an infinite conservative cloud. `transport_share` is
-// the ratio of the similarity-scaled extinction to the eye's.
+// Checks the solution of diffusion transport. The fluence of sunlight must nowhere exceed
+// kMaxFluence. `transport_share` is the ratio of the similarity-scaled extinction to the extinction
+// for the eye.
 Soundness DiffusionSoundness(const renderers::LightVolumeRenderer& renderer,
                              double transport_share);
 

@@ -32,7 +32,7 @@ Setting WithCount(scene::Technique technique, int count) {
   return {technique};
 }
 
-// Adds variants of the light volume with each field's own phase function.
+// Adds variants of the light volume in which each field has its own phase function.
 void AddVariants(scene::Transport transport, std::vector<Setting>* settings) {
   const Setting usual{LightVolume(transport)};
   for (const double scale : {0.25, 0.5, 0.75}) {
@@ -55,7 +55,7 @@ void AddVariants(scene::Transport transport, std::vector<Setting>* settings) {
   }
 }
 
-// Moves the camera by an invisible amount.
+// Moves the camera by a distance too small to be visible, so that the view stage runs again.
 void Nudge(scene::Camera* camera) {
   constexpr double kStep = 1e-9;
   std::visit(
@@ -195,8 +195,8 @@ absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_
                                CorrectionOf(scene, setting.million_paths, stop));
   std::vector<double> milliseconds;
   std::string jpeg;
-  // A moving camera makes the view stage run again. The first frame is not measured because it also
-  // compiles shaders and propagates the light.
+  // The camera is moved before each frame, so that the view stage runs again. The first frame is
+  // not measured because it also compiles shaders and propagates the light.
   for (int i = -1; i < kTimedFrames; ++i) {
     Nudge(&scene.camera);
     const base::Stopwatch stopwatch;

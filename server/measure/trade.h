@@ -1,5 +1,6 @@
-// Speed against accuracy: the cost of each setting of the renderers for one scene, and the error of
-// its picture against the reference. Owns GL objects: use it on the context's thread.
+// The trade of speed against accuracy. For each setting of the renderers and one scene, the class
+// measures the time and the error of the picture against the path-traced reference. It owns GL
+// objects, so use it on the context's thread.
 #pragma once
 
 #include <limits>
@@ -29,53 +30,56 @@ inline constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
 
 struct TradeRow {
   Setting setting;
-  double milliseconds = 0.0;         // median for a frame with a moved camera, JPEG included
-  double milliseconds_spread = 0.0;  // difference between its quartiles
+  double milliseconds = 0.0;         // median time from a moved camera to the frame's JPEG
+  double milliseconds_spread = 0.0;  // difference between the quartiles of that time
   std::size_t bytes = 0;             // size of the JPEG
-  double relative_rmse = 0.0;        // of linear radiance, without the reference's own noise
+  // Error of linear radiance, without the part that the reference's noise causes.
+  double relative_rmse = 0.0;
   double relative_bias = 0.0;
-  double flip = 0.0;  // of the decoded JPEG
-  // The relative RMSE as a server, which has no reference picture, estimates it. NaN if it was not
-  // estimated.
+  double flip = 0.0;  // FLIP difference of the decoded JPEG
+  // The estimate of the relative RMSE that a server without a reference picture makes. NaN if it
+  // was not estimated.
   accuracy::Estimated estimated_error{kUnmeasured, kUnmeasured, kUnmeasured};
   bool pareto = false;  // no other setting is both faster and more accurate
 };
 
-// Returns all renderers, modes, transports and numbers of slices at full size. For metaballs it has
-// the default mode and several numbers of balls. The default renderer and mode also have smaller
-// pictures, 4 rays per pixel, finer and coarser light volumes, single precision and other JPEG
-// qualities. They also have light traced with each of `million_paths`.
+// Returns the settings to measure. They contain all techniques, modes, transports and numbers of
+// slices at full size. Metaballs have only the default mode, with several numbers of balls. The
+// default technique and mode also appear with smaller pictures, with 4 rays a pixel, with finer and
+// coarser light volumes, with single precision and with other JPEG qualities. They also appear with
+// light corrected by path tracing, once for each number in `million_paths`.
 std::vector<Setting> DefaultSweep(const std::vector<double>& million_paths);
 
 // Returns settings of the light volume only, as viewers see it. Each field has its own phase
-// function, with consistent transport and with diffusion, and with light traced with each of
-// `million_paths`.
+// function. The transports are consistent transport and diffusion. Diffusion also appears with
+// light corrected by path tracing, once for each number in `million_paths`.
 std::vector<Setting> TransportSweep(const std::vector<double>& million_paths);
 
 // Marks the Pareto front of milliseconds and relative RMSE.
 void MarkPareto(std::vector<TradeRow>* rows);
 
-// Returns the scene that the reference traces: each field has its own phase function and true
-// colours.
+// Returns the scene that the reference traces. Each field has its own phase function, and there are
+// no false colours.
 scene::Scene TrueScene(scene::Scene scene);
 
 class Trade {
  public:
-  // `scene` gives the settings that are not swept. The reference `truth` must have its size. Each
-  // picture's error is also estimated for `error_seconds`; 0: not estimated.
+  // `scene` gives the settings that are not varied. The reference picture `truth` must have the
+  // size of the scene. A server's error estimate is also made for each picture, for `error_seconds`
+  // seconds. With 0 there is no estimate.
   Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
         AgainstTruth truth, double error_seconds);
 
-  // Measures a setting. CANCELLED if `stop` was requested while paths were traced. Traced paths are
-  // kept for the next setting, so settings that differ only in their number are best measured in
-  // ascending order.
+  // Measures a setting. Returns CANCELLED if `stop` was requested during path tracing. Traced paths
+  // are kept for the next setting. Settings that differ only in the number of paths are therefore
+  // best measured in ascending order.
   absl::StatusOr<TradeRow> Measure(const Setting& setting, const std::stop_token& stop);
 
  private:
   absl::Status Estimate(const scene::Scene& scene, const picture::LinearPicture& image,
                         const std::stop_token& stop, accuracy::Estimated* estimate);
   absl::StatusOr<frame::RgbImage> Display(const gl::Texture2D& linear);
-  // Returns the correction by that many paths; null for 0 paths.
+  // Returns the correction fitted to that many million paths, or null for 0 paths.
   absl::StatusOr<std::shared_ptr<const renderers::LightCorrection>> CorrectionOf(
       const scene::Scene& scene, double million_paths, const std::stop_token& stop);
 
@@ -85,10 +89,10 @@ class Trade {
   double error_seconds_;
   frame::RgbImage truth_display_;
   renderers::SceneRenderer renderer_;
-  // Programs of the correctors and error meters.
+  // Shader programs of the correctors and the error estimates.
   const std::shared_ptr<gl::ProgramCache> programs_ = std::make_shared<gl::ProgramCache>();
   std::unique_ptr<accuracy::LightCorrector> corrector_;
-  double corrected_by_ = 0.0;  // million paths of the last request
+  double corrected_by_ = 0.0;  // number of paths (in millions) of the last CorrectionOf
   frame::ToneMapper tone_mapper_;
 };
 

@@ -31,7 +31,7 @@ const char* PrecisionOf(const Setting& setting) {
   return setting.single_precision ? kSingle : kHalf;
 }
 
-// Values drawn instead of zero on a logarithmic axis.
+// Values drawn in place of smaller values, because both axes are logarithmic.
 constexpr double kMinMilliseconds = 1e-3;
 constexpr double kMinTradeError = 1e-6;
 
@@ -79,8 +79,8 @@ const char* ColorOf(const scene::Technique& technique) {
   return "#000000";
 }
 
-// Blue: light volume; orange: half-angle slices; green: metaballs; violet: surfaces; hollow: paper
-// transport.
+// Colours: blue is the light volume, orange half-angle slicing, green metaballs and violet
+// surfaces. Hollow dots are the paper's transport.
 void AddDot(const TradeRow& row, LogPlot* plot) {
   const scene::Technique& technique = row.setting.technique;
   const char* color = ColorOf(technique);
@@ -110,7 +110,7 @@ std::vector<std::pair<double, double>> FrontOf(const std::vector<TradeRow>& rows
   return front;
 }
 
-// JSON has no NaN, so an unmeasured error is left out.
+// JSON has no NaN, so the values of an estimate that was not made are left out.
 std::string EstimateJson(const TradeRow& row) {
   const accuracy::Estimated& error = row.estimated_error;
   if (std::isnan(error.value)) return "\"measured\": false, ";
@@ -150,7 +150,7 @@ absl::StatusOr<std::vector<TradeRow>> ReadCsv(std::string_view text, std::string
   }
   std::vector<TradeRow> rows;
   const std::vector<absl::string_view> lines = absl::StrSplit(rest, '\n');
-  // After the last line break there is nothing or an incomplete line.
+  // After the last line break, the text is empty or an incomplete line.
   for (std::size_t i = 0; i + 1 < lines.size(); ++i) {
     const std::optional<TradeRow> row = RowOf(lines[i]);
     if (!row.has_value()) {

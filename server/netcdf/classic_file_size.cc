@@ -11,14 +11,15 @@ namespace {
 
 std::uintmax_t Padded(std::uintmax_t bytes) { return (bytes + 3) / 4 * 4; }
 
-// Sizes of the numbers in a header. CDF-5 widened counts and lengths, and CDF-2 widened file
-// offsets.
+// The sizes in bytes of the numbers in a header. Counts and lengths are wider in CDF-5, and file
+// offsets are wider from CDF-2 on.
 struct HeaderWidths {
   std::uintmax_t count;
   std::uintmax_t offset;
 };
 
-// Returns the product, limited so that sums cannot overflow. A header can announce any size.
+// Returns the product of `a` and `b`, limited so that sums of products cannot overflow. This is
+// necessary because a damaged header can contain any size.
 std::uintmax_t BoundedProduct(std::uintmax_t a, std::uintmax_t b) {
   constexpr std::uintmax_t kMax = std::numeric_limits<std::int64_t>::max() / 4096;
   std::uintmax_t product = 0;
@@ -56,7 +57,7 @@ std::uintmax_t AttributesSize(int handle, int variable, int attributes,
 
 struct VariableSizes {
   std::uintmax_t header = 0;
-  std::uintmax_t data = 0;  // of one record, for a variable with records
+  std::uintmax_t data = 0;  // size of the values; for a variable with records, of one record
   bool has_records = false;
 };
 
@@ -116,8 +117,8 @@ std::uintmax_t ClassicFileSize(int handle) {
     data += sizes.has_records ? BoundedProduct(sizes.data, records) : sizes.data;
     record_variables += sizes.has_records ? 1 : 0;
   }
-  // A complete file may lack the padding after its last value. A single record variable has no
-  // padding between records.
+  // A complete file may lack the padding after its last value. If there is only one record
+  // variable, its records have no padding in between.
   const std::uintmax_t slack = 3 * (record_variables == 1 ? records + 1 : 1);
   return bytes + data - (data < slack ? data : slack);
 }

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::uint64_t kTagBytes = 4;
 
-// Size of a value in bytes, by the number of its type, from NC_BYTE (1) to NC_UINT64 (11).
+// The size in bytes of a value of each type. The index is netCDF's number of the type, from NC_BYTE
+// (1) to NC_UINT64 (11).
 constexpr std::array<std::uint64_t, 12> kTypeBytes = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
 
 absl::Status Damaged(const std::string& what) {
@@ -45,7 +46,8 @@ class Header {
     return file_ ? number : 0;
   }
 
-  // Skips `count` values of `bytes` each. A header can announce more values than any file has.
+  // Skips `count` values of `bytes` each. A damaged header can specify more values than any file
+  // can hold.
   void Skip(std::uint64_t count, std::uint64_t bytes) {
     constexpr std::uint64_t kMax = std::numeric_limits<std::streamsize>::max() / 2;
     std::uint64_t all = 0;

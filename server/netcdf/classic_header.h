@@ -1,6 +1,6 @@
 // Checks lengths in the header of a netCDF file in a classic format. NetCDF-C copies names and
-// lists of dimensions to buffers of NC_MAX_NAME and NC_MAX_VAR_DIMS, however long they are in the
-// file.
+// lists of dimensions to buffers of fixed lengths, NC_MAX_NAME and NC_MAX_VAR_DIMS, without
+// checking their lengths in the file.
 #pragma once
 
 #include <istream>
@@ -11,7 +11,7 @@ namespace thunderhead::netcdf {
 
 // Reads the header by the layouts of CDF-1, 2 and 5 in the netCDF file format specification.
 // Returns DATA_LOSS if a name or a list of dimensions is longer than netCDF-C's buffers, or if the
-// header ends before its last entry. Accepts any file that is not in a classic format.
+// header ends before its last entry. Returns OK for any file that is not in a classic format.
 absl::Status CheckClassicHeader(std::istream& file);
 
 }  // namespace thunderhead::netcdf

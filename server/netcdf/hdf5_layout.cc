@@ -11,7 +11,8 @@
 namespace thunderhead::netcdf {
 namespace {
 
-// Maximum number of objects, more than any model writes. It limits the time that a check takes.
+// The maximum number of objects in a file. It limits the time that a check takes. No model writes
+// as many objects.
 constexpr int kMostObjects = 100'000;
 
 constexpr unsigned char kSignature[] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
@@ -36,7 +37,7 @@ class Handle {
 // The state of a traversal of the file.
 struct Walk {
   int objects = 0;
-  std::set<haddr_t> groups;  // their addresses in the file
+  std::set<haddr_t> groups;  // addresses in the file of the groups found so far
   std::string complaint;
 };
 

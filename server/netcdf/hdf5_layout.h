@@ -1,5 +1,6 @@
 // Checks the structure of an HDF5 file before netCDF-C opens it. HDF5 can store the values of a
-// variable in other files. A viewer could then see any file that the server's user can read.
+// variable in other files. A hostile storm file could therefore show a viewer the contents of any
+// file that the server may read.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +11,8 @@
 
 namespace thunderhead::netcdf {
 
-// HDF5's signature is at the start of a file, at this offset, or at this offset times a power of
-// two.
+// The smallest nonzero offset in bytes of HDF5's signature. The signature is at the start of a
+// file, at this offset, or at this offset times a power of two.
 inline constexpr std::size_t kFirstHdf5Offset = 512;
 
 // Returns whether the bytes begin with HDF5's signature of eight bytes.
@@ -23,8 +24,8 @@ bool IsHdf5Signature(std::span<const std::byte> bytes);
 // - A link leads to another file, or to a group to which another link leads.
 // - The structure cannot be read.
 //
-// They return OK for a file that is not HDF5. The caller must hold NetcdfLock. The bytes are not
-// copied.
+// They return OK for a file that is not HDF5. The caller must hold NetcdfLock. CheckHdf5Bytes does
+// not copy the bytes.
 absl::Status CheckHdf5File(const std::string& path);
 absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> bytes);
 

@@ -36,11 +36,12 @@ constexpr int kNoHandle = -1;
 // storm is that large.
 constexpr double kLargestValue = 1e30;
 
-// Maximum length of an attribute. Readers need no longer ones.
+// Maximum length in bytes of a text attribute. No attribute that a reader needs is longer.
 constexpr std::size_t kLongestText = 1 << 20;
 
-// Returns whether a writer holds the file. HDF5 locks a file that it writes with flock(2). Its
-// reader then fails with the code that netCDF-C returns for any damage (NC_EHDFERR).
+// Returns whether a program that is writing the file has locked it. HDF5 locks a file that it
+// writes with flock(2). Opening a locked file for reading fails with NC_EHDFERR, which netCDF-C
+// also returns for any damage.
 bool IsHeldByWriter(int file) {
   if (flock(file, LOCK_SH | LOCK_NB) != 0) return errno == EWOULDBLOCK;
   flock(file, LOCK_UN);
@@ -78,7 +79,7 @@ absl::Status OpenError(const std::string& path, int code) {
   }
 }
 
-// A variable's packing attributes. Its fill values are packed values.
+// The packing attributes of a variable. The fill values are packed values, like the stored values.
 struct Packing {
   nc_type type = NC_FLOAT;
   double scale = 1.0;
@@ -111,7 +112,7 @@ double DefaultFill(nc_type type) {
       return NC_FILL_USHORT;
     case NC_UINT:
       return NC_FILL_UINT;
-    default:  // bytes have none by convention; those of real numbers are above kLargestValue
+    default:  // bytes have no default; the defaults of floating-point types exceed kLargestValue
       return std::numeric_limits<double>::quiet_NaN();
   }
 }
@@ -179,7 +180,7 @@ absl::Status CheckHeader(const std::string& path, std::istream& file) {
 
 // Opens the bytes. NetCDF-C neither writes to the bytes nor frees them.
 int OpenMemory(const MemoryFile& file, int& handle) {
-  constexpr std::size_t kMagicBytes = 8;  // with fewer, netCDF-C reports an invalid argument
+  constexpr std::size_t kMagicBytes = 8;  // for fewer bytes, netCDF-C reports an invalid argument
   if (file.bytes.size() < kMagicBytes) return NC_ENOTNC;
   return nc_open_mem(file.path.c_str(), NC_NOWRITE, file.bytes.size(),
                      const_cast<std::byte*>(file.bytes.data()), &handle);

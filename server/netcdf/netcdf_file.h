@@ -1,6 +1,6 @@
-// An open netCDF file: reads text and numbers, and replaces all codes for "no value" by NaN. This
-// class does not depend on any model or storm. NetCDF-C and HDF5 are not thread-safe, so every call
-// holds a lock of the whole process (NetcdfLock). No other code may call netCDF-C.
+// An open netCDF file. The class reads text and numbers, and replaces all codes for missing values
+// by NaN. This class does not depend on any model or storm. NetCDF-C and HDF5 are not thread-safe,
+// so every call holds a lock of the whole process (NetcdfLock). No other code may call netCDF-C.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ class NetcdfFile {
   // (truncated or damaged); UNAVAILABLE (another program is writing it).
   static absl::StatusOr<NetcdfFile> Open(const std::string& path);
 
-  // Makes this process read the file at `path`, and no other file, from these bytes. It is for a
+  // Makes Open read the file at `path` from `bytes`, and refuse every other path. It is for a
   // process that may not open files. The bytes must stay valid.
   static void ReadFromMemory(const std::string& path, std::span<const std::byte> bytes);
 
@@ -30,7 +30,7 @@ class NetcdfFile {
 
   // Checks an open file before anything parses it. Returns INVALID_ARGUMENT if it does not begin
   // like a netCDF file, and DATA_LOSS if it is empty. Returns UNAVAILABLE while another program
-  // writes it, which HDF5 marks with a lock.
+  // writes it, in which case HDF5 has locked it.
   static absl::Status CheckStart(const std::string& path, int file);
 
   const std::string& Path() const { return path_; }
@@ -49,27 +49,27 @@ class NetcdfFile {
   // Returns the lengths of the variable's dimensions, slowest first.
   absl::StatusOr<std::vector<std::size_t>> Shape(const std::string& variable) const;
 
-  // Return an attribute, or nothing if it is absent or has another type. An empty `variable` means
-  // the global attributes.
+  // These two functions return an attribute, or nothing if it is absent or has another type. An
+  // empty `variable` means the global attributes.
   std::optional<std::string> TextAttribute(const std::string& variable,
                                            const std::string& attribute) const;
   std::optional<double> NumberAttribute(const std::string& variable,
                                         const std::string& attribute) const;
   // Returns a text attribute, or an empty text if it is absent. An attribute of another type is
-  // returned as "(not text)". No reader recognizes that text, so it is refused like any other
-  // unknown text.
+  // returned as "(not text)". Readers refuse that text like any other text that they do not know.
   std::string TextOrEmpty(const std::string& variable, const std::string& attribute) const;
 
   // Returns the rows of a two-dimensional character variable, each up to its first NUL.
   absl::StatusOr<std::vector<std::string>> ReadRows(const std::string& variable) const;
 
   // Returns how many values a record of the variable has, computed from its dimensions without
-  // reading values. Returns DATA_LOSS if that is more than any memory holds.
+  // reading values. Returns DATA_LOSS if the number is larger than any memory can hold.
   absl::StatusOr<std::size_t> RecordLength(const std::string& variable) const;
 
   // Reads one record (an index of the slowest dimension) of a numeric variable. Unpacks values
-  // (scale_factor, add_offset). Missing values become NaN: the variable's fill values, anything of
-  // 1e30 or more, NaN and infinities. Denormals become zero. Reuses the memory of `values`.
+  // (scale_factor, add_offset). Missing values become NaN: the variable's fill values, values of
+  // magnitude 1e30 or more, NaN and infinities. Subnormal values become zero. Reuses the memory of
+  // `values`.
   absl::Status ReadRecord(const std::string& variable, std::size_t record,
                           std::vector<float>& values) const;
 
@@ -91,8 +91,8 @@ class NetcdfFile {
   absl::Status ReadFloats(const std::string& variable, const std::vector<std::size_t>& start,
                           const std::vector<std::size_t>& count, std::vector<float>& values) const;
   // Returns the id of a variable if its type is an allowed numeric type and it has `rank`
-  // dimensions. Otherwise returns INVALID_ARGUMENT. Every function that reads numbers calls it
-  // first. The caller must hold NetcdfLock.
+  // dimensions. Otherwise returns INVALID_ARGUMENT. Every function that reads numbers calls this
+  // function first. The caller must hold NetcdfLock.
   absl::StatusOr<int> NumbersId(const std::string& variable, std::size_t rank) const;
   absl::StatusOr<std::size_t> CountThatFits(const std::string& variable,
                                             const std::vector<std::size_t>& lengths,

@@ -8,12 +8,12 @@
 
 namespace thunderhead::netcdf {
 
-// A guard that must be held around every call of netCDF-C.
+// A lock guard. It must exist during every call of netCDF-C or HDF5.
 class NetcdfLock {
  public:
   NetcdfLock() : lock_(Mutex()) {
-    // HDF5 prints failed look-ups unless printing is switched off in each thread. NetCDF switches
-    // it off only in the thread that opens the first file.
+    // HDF5 prints an error for each failed look-up unless printing is switched off in the calling
+    // thread. NetCDF-C switches printing off only in the thread that opens the first file.
     thread_local const herr_t silenced = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     static_cast<void>(silenced);
   }

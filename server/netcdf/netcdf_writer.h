@@ -1,5 +1,5 @@
-// A netCDF-4 file that is being written. The writer holds the lock of netCDF-C as long as it lives.
-// It keeps the first error, after which calls do nothing.
+// A writer of one netCDF-4 file. It holds NetcdfLock as long as it lives. It keeps the code of the
+// first error; after an error, further calls do nothing.
 #pragma once
 
 #include <netcdf.h>
@@ -22,7 +22,7 @@ class NetcdfWriter {
   NetcdfWriter(const NetcdfWriter&) = delete;
   NetcdfWriter& operator=(const NetcdfWriter&) = delete;
 
-  // Both functions return netCDF-C's id of the new dimension or variable.
+  // Dimension and Variable define a dimension or a variable and return its id in netCDF-C.
   int Dimension(const char* name, std::size_t length);
   // Defines a variable, compressed if it has several dimensions. The last dimension runs fastest.
   int Variable(const char* name, nc_type type, const std::vector<int>& dimensions);
@@ -32,15 +32,15 @@ class NetcdfWriter {
   void Number(int variable, const char* name, double number) {
     Numbers(variable, name, {&number, 1});
   }
-  // Sets the value of cells without data.
+  // Sets the variable's fill value, which marks cells without data.
   void Fill(int variable, float value);
   void EndDefinitions();
 
-  // Both functions write all values of a variable.
+  // These two functions write all values of a variable.
   void Values(int variable, absl::Span<const float> values);
   void Values(int variable, absl::Span<const double> values);
 
-  // Closes the file, which is complete after this unless there was an error.
+  // Closes the file. The file is then complete, unless there was an error.
   void Close();
   // Closes a file in memory and returns its bytes.
   std::string Take();

@@ -1,5 +1,5 @@
-// The thermodynamics of air that reading a storm file needs: temperature from potential
-// temperature, and density of dry air. The functions are pure and use SI units.
+// The thermodynamics of air needed to read a storm file: temperature from potential temperature,
+// and density of dry air. The functions are pure and use SI units.
 #pragma once
 
 namespace thunderhead::physics {

@@ -13,8 +13,8 @@
 namespace thunderhead::physics {
 namespace {
 
-// Vertical optical depth of 300 Dobson units of ozone at 650, 550 and 450 nm, in a layer around 25
-// km (Chappuis bands).
+// Vertical optical depth of 300 Dobson units of ozone at 650, 550 and 450 nm (Chappuis bands). The
+// ozone is in a layer around a height of 25 km.
 const glm::vec3 kOzoneDepth(0.020F, 0.027F, 0.0014F);
 constexpr float kOzoneMiddle_m = 2.5e4F;
 constexpr float kOzoneHalfWidth_m = 1.5e4F;
@@ -31,7 +31,7 @@ glm::vec3 Densities(float height_m) {
 }
 
 // Returns the height at `distance_m` along a ray. It uses double precision, because in single
-// precision the difference of radii would be wrong by metres.
+// precision the difference of two radii would be wrong by metres.
 float HeightAlong(float height_m, float sine, float distance_m) {
   const double radius = static_cast<double>(kEarthRadius_m) + height_m;
   const double d = distance_m;
@@ -39,8 +39,8 @@ float HeightAlong(float height_m, float sine, float distance_m) {
                             kEarthRadius_m);
 }
 
-// Return the distance along a ray to a sphere of the given height around the Earth. The first is
-// for a point inside the sphere, the second for a point outside.
+// Return the distance along a ray to a sphere of the given height around the Earth. DistanceUpTo_m
+// is for a point inside the sphere, the second function for a point outside.
 float DistanceUpTo_m(float target_m, float height_m, float sine) {
   const double radius = static_cast<double>(kEarthRadius_m) + height_m;
   const double target = static_cast<double>(kEarthRadius_m) + target_m;
@@ -57,8 +57,8 @@ float DistanceDownTo_m(float target_m, float height_m, float sine) {
   return static_cast<float>(-across - std::sqrt(std::max(inside, 0.0)));
 }
 
-// Returns the row of a height in a table whose rows are spaced evenly in the square root of height,
-// up to the atmosphere's top.
+// Returns the position of a height in a table. The rows of the table are spaced evenly in the
+// square root of the height, up to the atmosphere's top.
 TableRow RowAt(float height_m, int rows) {
   const float high = std::sqrt(glm::clamp(height_m / kAtmosphereTop_m, 0.0F, 1.0F));
   const float place = high * static_cast<float>(rows - 1);
@@ -77,9 +77,10 @@ glm::vec3 Between(const std::vector<glm::vec3>& table, int columns, float column
   return glm::mix(glm::mix(low[0], low[1], share), glm::mix(high[0], high[1], share), row.share);
 }
 
-// Amounts of air, haze and ozone from a point to space, in metres at their maximum densities. They
-// do not depend on turbidity, so one table serves all atmospheres. Its axes are height and, from
-// the horizon up, sine of elevation, both spaced evenly in the square root.
+// Table of the amounts of air, haze and ozone from a point to space, in metres at their maximum
+// densities. The amounts do not depend on turbidity, so one table serves all atmospheres. Its axes
+// are the height, and the sine of the elevation from the horizon upwards. Both are spaced evenly in
+// the square root.
 class ColumnsToSpace {
  public:
   static const ColumnsToSpace& Get() {
@@ -127,7 +128,7 @@ class ColumnsToSpace {
 
 constexpr int kDiffuseHeights = 10;
 constexpr int kDiffuseSines = 24;
-// Sine of the lowest elevation of the sun. For lower suns the atmosphere is dark.
+// Lowest sine of the sun's elevation in the table. For lower suns the atmosphere is dark.
 constexpr float kLowestSine = -0.4F;
 
 AirLevel LevelAt(float height_m) {
@@ -203,14 +204,14 @@ Atmosphere::Line Atmosphere::Along(const Ray& ray) const {
   if (line.end_m <= 0.0F) return line;
   float from_m = 0.0F;
   for (int i = 1; i <= ray.steps; ++i) {
-    // Steps grow with distance, because the air usually gets thinner.
+    // Steps grow with distance from the start, because the air usually gets thinner.
     const float share = static_cast<float>(i) / static_cast<float>(ray.steps);
     const float to_m = line.end_m * share * share;
     const float middle_m = 0.5F * (from_m + to_m);
     const float height_m = height_at(middle_m);
     const AirOptics optics = At(height_m);
     const glm::vec3 transmittance = glm::exp(-optics.extinction * (to_m - from_m));
-    // The step itself attenuates the light that is scattered within it.
+    // The light that is scattered within the step is also attenuated by the step itself.
     const glm::vec3 seen = line.transmittance * (1.0F - transmittance) /
                            glm::max(optics.extinction, glm::vec3(1e-20F));
     line.steps.push_back(
@@ -241,7 +242,7 @@ Atmosphere::Gathered Atmosphere::Gather(const Line& line, const Sunwards& sun) c
     const glm::vec3 sunlight = SunTransmittance(step.level, sun_sine);
     gathered.air += sunlight * step.air;
     gathered.haze += sunlight * step.haze;
-    // diffuse_ is empty while the constructor computes the higher orders.
+    // While the constructor computes the higher orders, diffuse_ is still empty.
     if (!diffuse_.empty()) {
       gathered.diffuse +=
           (step.air + step.haze) * DiffuseMeanRadiance(step.level.diffuse, sun_sine);
@@ -254,7 +255,8 @@ glm::vec3 Atmosphere::SumOrders(const AirPlace& place, float ground_albedo) cons
   constexpr int kDirections = 40;
   const float across = std::sqrt(std::max(1.0F - place.sun_sine * place.sun_sine, 0.0F));
   glm::vec3 second(0.0F);
-  glm::vec3 again(0.0F);  // share of uniform light that returns after one more scattering
+  // Share of uniform light that returns to the point after one more scattering.
+  glm::vec3 again(0.0F);
   for (int i = 0; i < kDirections; ++i) {
     // A Fibonacci spiral spreads the directions evenly over the sphere.
     const float sine = 1.0F - 2.0F * (static_cast<float>(i) + 0.5F) / kDirections;

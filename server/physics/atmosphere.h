@@ -1,8 +1,9 @@
 // Clear air around a round Earth: its transmittance for sunlight, and its radiance including all
 // orders of scattering. The components are air (Rayleigh scattering), haze (optical depth from
 // turbidity) and ozone (absorption only). Light scattered more than once counts as isotropic, as if
-// the air were everywhere as bright as at the point. All orders then sum to a geometric series
-// (Hillaire 2020, A scalable and production ready sky and atmosphere rendering technique, 5.5).
+// all the air were as bright as the air at the point. The orders of scattering then form a
+// geometric series (Hillaire 2020, A scalable and production ready sky and atmosphere rendering
+// technique, 5.5).
 #pragma once
 
 #include <vector>
@@ -12,9 +13,10 @@
 
 namespace thunderhead::physics {
 
-// The radius of a sphere without refraction on which straight rays rise as refracted rays do above
-// the Earth. It is 7/6 of the mean radius, which is the surveyors' coefficient of refraction (1/7)
-// for visible light. Radar's 4/3 is for microwaves, which water vapour refracts more.
+// The effective radius of the Earth, which accounts for refraction. Straight rays above a sphere of
+// this radius rise as refracted rays do above the Earth. It is 7/6 of the mean radius, from the
+// surveyors' coefficient of refraction (1/7) for visible light. Radar uses 4/3, because water
+// vapour refracts microwaves more.
 constexpr double kEffectiveEarthRadius_m = 7.0 / 6.0 * 6.371e6;
 constexpr float kEarthRadius_m = static_cast<float>(kEffectiveEarthRadius_m);
 constexpr float kAtmosphereTop_m = 8e4F;
@@ -29,18 +31,18 @@ struct AirOptics {
   glm::vec3 extinction{0.0F};
 };
 
-// A point in the atmosphere. Only its height and the sun's elevation matter.
+// A point in the atmosphere, as far as its light depends on it.
 struct AirPlace {
   float height_m = 0.0F;
   float sun_sine = 0.0F;  // sine of the sun's elevation at the point
 };
 
-// Returns the sine of the elevation of the horizon. Rays from `height_m` that go lower meet the
-// ground at `ground_m`. Both heights are above sea level.
+// Returns the sine of the elevation of the horizon. Rays from `height_m` with a lower elevation
+// meet the ground at height `ground_m`. Both heights are above sea level.
 float HorizonSine(float height_m, float ground_m = 0.0F);
 
 // The position of a height between two rows of a table: the lower row, and the weight of the upper
-// one.
+// row.
 struct TableRow {
   int low = 0;
   float share = 0.0F;
@@ -49,7 +51,7 @@ struct TableRow {
 // A height, prepared for looking up the light that arrives there.
 struct AirLevel {
   float horizon_sine = 0.0F;
-  TableRow columns;  // rows in the table of air towards space
+  TableRow columns;  // rows in the table of the air columns from a height to space
   TableRow diffuse;
 };
 
@@ -59,12 +61,12 @@ class Atmosphere {
 
   AirOptics At(float height_m) const;
 
-  // Returns the transmittance from the point to the sun. It falls gradually to zero while the disc
-  // sets.
+  // Returns the transmittance from the point to the sun. While the sun's disc sets, it falls
+  // gradually to zero.
   glm::vec3 SunTransmittance(const AirPlace& place) const;
 
-  // Returns the mean radiance over all directions of light scattered at least once, for a sun of
-  // irradiance 1.
+  // Returns the mean radiance, over all directions, of light that was scattered at least once. The
+  // sun has the irradiance 1.
   glm::vec3 DiffuseMeanRadiance(const AirPlace& place) const;
 
   struct Ray {
@@ -87,8 +89,8 @@ class Atmosphere {
     float height_m = 0.0F;
     std::vector<Step> steps;
     glm::vec3 transmittance{1.0F};  // over the whole ray
-    // Air masses of air and haze: amounts along the ray relative to those of a vertical column from
-    // sea level.
+    // Air masses of air and haze: their amounts along the ray, relative to the amounts in a
+    // vertical column from sea level.
     glm::vec2 air_mass{0.0F};
     float end_m = 0.0F;
     float end_height_m = 0.0F;

@@ -11,12 +11,13 @@
 namespace thunderhead::physics {
 namespace {
 
-// Rings around the sun that hold the cut light. Their radii grow with the square of the index, so
-// the inner rings are narrow.
+// Number of rings around the sun among which the cut light is divided. The radii of the rings grow
+// with the square of the index, so the inner rings are narrow.
 constexpr int kAureoleRings = 600;
-// Wave numbers of the Hankel transform, in 1/rad. They reach 15 divided by the disc's radius. The
-// tables are averaged over the disc, so they hold nothing beyond that. The steps are so small that
-// aliases appear only beyond four times the largest angle.
+// Number of wave numbers of the Hankel transform, and their step in 1/rad. They reach 15 divided by
+// the radius of the sun's disc. The phase tables are averaged over the disc, so they contain no
+// higher wave numbers. The step is so small that aliases appear only beyond four times the largest
+// angle.
 constexpr int kWaves = 800;
 constexpr double kWaveStep = 4.0;
 
@@ -25,7 +26,8 @@ struct Ring {
   glm::dvec3 share{0.0};  // share of all scattered light
 };
 
-// Returns 2 sin(angle / 2). With this radius, equal areas of rings are equal solid angles.
+// Returns 2 sin(angle / 2). With this radius, the area of a ring in the plane equals its solid
+// angle.
 double RingRadius(double angle_rad) { return 2.0 * std::sin(0.5 * angle_rad); }
 
 std::vector<Ring> RingsOf(const PhaseFunction& phase, double cut_rad) {
@@ -42,8 +44,8 @@ std::vector<Ring> RingsOf(const PhaseFunction& phase, double cut_rad) {
   return rings;
 }
 
-// Returns the transform of the rings at each wave number. At wave number 0 it is the share of the
-// light that is cut.
+// Returns the transform of the rings at each wave number. At wave number 0, the transform is the
+// share of the light that is cut.
 std::vector<glm::dvec3> TransformOf(const std::vector<Ring>& rings) {
   std::vector<glm::dvec3> transform;
   for (int k = 0; k < kWaves; ++k) {
@@ -74,7 +76,8 @@ Aureole Aureole::Of(const PhaseFunction& phase, double cut_rad) {
   aureole.radiances.assign(static_cast<std::size_t>(kAngles) * kDepths, glm::vec3(0.0F));
   if (aureole.share <= 0.0) return aureole;
   const std::vector<glm::dvec3> transform = TransformOf(RingsOf(phase, cut_rad));
-  // By angle, then wave number; includes the factors of the transform's integral.
+  // Bessel functions by angle, then wave number. They include the factors of the transform's
+  // integral.
   std::vector<double> bessel;
   for (int a = 0; a < kAngles; ++a) {
     const double radius = RingRadius(aureole.end_rad * Squared(a, kAngles));

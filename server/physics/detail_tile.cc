@@ -18,15 +18,17 @@ constexpr int kWarpOctaves = 2;
 constexpr double kBillowPersistence = 0.65;
 constexpr double kWarpDeviation = 0.4;  // standard deviation relative to the full displacement
 constexpr double kFibreStretch = 6.0;   // stretch along the shear
-constexpr double kFibreWidth = 0.7;     // across the shear, relative to the billows
+constexpr double kFibreWidth = 0.7;     // width across the shear, relative to that of the billows
 constexpr double kMinShear_m_per_s = 1.0;
 constexpr double kDriftPeriod_s = 3.0 * 3600.0;  // a divisor of a day
 constexpr double kWarpInCells = 1.0;
-constexpr double kUpwardWarpInCells = 2.0;  // larger, because layers are thin
+// Larger than the horizontal warp, because layers are thin.
+constexpr double kUpwardWarpInCells = 2.0;
 constexpr double kWarpInWavelengths = 0.25;
 
-// Adds `octaves` of noise, beginning with octave `first`. Each amplitude is `persistence` times the
-// one before. With `billows`, the absolute values are added.
+// Adds `octaves` octaves of noise, beginning with octave number `first`. The amplitude of each
+// octave is `persistence` times that of the octave before. If `billows` is true, the absolute
+// values are added.
 std::vector<float> Sum(int first, int octaves, double persistence, std::uint32_t seed,
                        bool billows) {
   std::vector<float> sums(kTexels, 0.0F);
@@ -64,7 +66,7 @@ void StoreRanks(const std::vector<float>& values, std::size_t channel, DetailTil
   }
 }
 
-// Scales values, whose mean is nearly 0, by their standard deviation.
+// Scales values by their standard deviation. Their mean must be nearly 0.
 void StoreDisplacement(const std::vector<float>& values, std::size_t channel, DetailTile* tile) {
   double mean = 0.0;
   double square = 0.0;
@@ -87,7 +89,8 @@ DetailTile MakeDetailTile(int octaves, std::uint32_t seed) {
   DetailTile tile;
   tile.texels.resize(4 * kTexels);
   StoreRanks(Sum(0, octaves, kBillowPersistence, seed, true), 0, &tile);
-  // An offset above all seeds of scenes, so that the displacement has other seeds than the billows.
+  // An offset larger than any seed of a scene. The displacement therefore never has the same seed
+  // as the billows.
   constexpr std::uint32_t kOtherSeeds = 1U << 20U;
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     StoreDisplacement(Sum(0, kWarpOctaves, 0.5, seed + kOtherSeeds * (axis + 1), false), axis + 1,

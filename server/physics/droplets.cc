@@ -19,8 +19,8 @@ std::complex<double> WaterIndex(std::size_t channel, double shift_um = 0.0) {
   return {WaterRefractiveIndex(kWavelengthsUm[channel] + shift_um), kWaterAbsorption[channel]};
 }
 
-// Returns the cross section per logarithm of the radius, r^3 n(r), at r = radius / effective
-// radius. It is scaled to 1 at its peak.
+// Returns the geometric cross section per logarithm of the radius, r^3 n(r), where r is the radius
+// divided by the effective radius. It is scaled to 1 at its peak.
 double AreaDensity(double r, double variance) {
   const double power = 1.0 / variance;
   return std::exp(power * (std::log(r) - r + 1.0));
@@ -80,7 +80,7 @@ PhaseAccumulator ScatterByDroplets(const DropletSizes& sizes, const std::vector<
   std::vector<double> cosines;
   for (const double angle : angles.angles_rad) cosines.push_back(std::cos(angle));
 
-  // Drops are distributed in turn, so that every chunk has small and large ones.
+  // Drops are distributed to the chunks in turn, so that every chunk has small and large drops.
   constexpr int kChunks = 64;
   using Sums = std::array<std::vector<double>, kPhaseChannels>;
   std::vector<Sums> chunk_sums(kChunks);
@@ -91,7 +91,7 @@ PhaseAccumulator ScatterByDroplets(const DropletSizes& sizes, const std::vector<
       for (std::size_t i = static_cast<std::size_t>(chunk); i < drops.radii_um.size();
            i += kChunks) {
         const double x = SizeParameter(drops.radii_um[i], c, shift_um);
-        // |s|^2 / x^2 is scattering per geometric cross section.
+        // |s|^2 / x^2 is the scattering relative to the geometric cross section.
         MieSeries(x, WaterIndex(c, shift_um))
             .AddIntensities(cosines, drops.area_shares[i] / (x * x), sums[c]);
       }

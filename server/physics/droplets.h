@@ -7,24 +7,24 @@
 
 namespace thunderhead::physics {
 
-// The gamma distribution by effective radius a and effective variance b. Hansen and Travis 1974
-// (Space Sci. Rev. 16, 527), eq. 2.56: n(r) ~ r^((1 - 3 b) / b) exp(-r / (a b)).
+// The gamma distribution of droplet radii with effective radius a and effective variance b. Hansen
+// and Travis 1974 (Space Sci. Rev. 16, 527), eq. 2.56: n(r) ~ r^((1 - 3 b) / b) exp(-r / (a b)).
 struct DropletSizes {
   double effective_radius_um;
   double effective_variance;
 };
 
-// Radii and their shares of the geometric cross section, which sum to 1. They are `count`
-// Gauss-Legendre points in the logarithm of the radius. They omit less than 1e-5 of the cross
-// section.
+// Radii and their shares of the geometric cross section, which add up to 1. The radii are `count`
+// Gauss-Legendre points in the logarithm of the radius. The omitted sizes have less than 1e-5 of
+// the cross section.
 struct SizeQuadrature {
   std::vector<double> radii_um;
   std::vector<double> area_shares;
 };
 SizeQuadrature QuadratureOf(const DropletSizes& sizes, int count);
 
-// Extinction efficiency, albedo and asymmetry of the whole distribution in each channel. The
-// efficiency is per geometric cross section.
+// Extinction efficiency, albedo and asymmetry of the whole distribution in each colour channel. The
+// efficiency is relative to the geometric cross section.
 struct DropletOptics {
   PhaseRgb extinction{};
   PhaseRgb albedo{};
@@ -35,9 +35,9 @@ DropletOptics OpticsOf(const DropletSizes& sizes, int radii);
 // Returns the extinction of 1 kg of drops, in m2/kg, from their mean extinction efficiency.
 double MassExtinction_m2_per_kg(const DropletSizes& sizes, double efficiency);
 
-// Returns the light that water drops scatter, by angle, at kWavelengthsUm. The arguments `radii`
-// and `points` (within each step of the grid) set the fineness of the quadratures over size and
-// angle. The argument `shift_um` is added to all three wavelengths.
+// Returns the light that water drops scatter, by angle, at kWavelengthsUm. The quadrature over
+// sizes has `radii` points. The quadrature over angles has `points` points in each step of
+// `angles_deg`. `shift_um` is added to all three wavelengths.
 PhaseAccumulator ScatterByDroplets(const DropletSizes& sizes, const std::vector<double>& angles_deg,
                                    int radii, int points, const WorkPlan& plan,
                                    double shift_um = 0.0);

@@ -1,4 +1,5 @@
-// The texts of data/phase by table name. cmake/embed_texts.cmake builds them into the program.
+// The texts of the files in data/phase by table name. cmake/embed_texts.cmake builds them into the
+// program.
 #pragma once
 
 #include <map>

@@ -13,9 +13,10 @@ namespace {
 constexpr int kPatternSide = glsl::kFieldMapCells;
 constexpr std::uint64_t kFieldSeed = 1862;
 constexpr std::uint64_t kGrainSeed = 1803;
-constexpr float kBrightest = 2.35F;  // the largest factor of reflectance, including grain
+constexpr float kBrightest = 2.35F;  // largest factor of the reflectance, including the grain
 
-// The crop of a field. Both values range from -1 (dark, green) to 1 (bright, dry).
+// The crop of a field. Brightness ranges from -1 (dark) to 1 (bright), dryness from -1 (green) to 1
+// (dry).
 struct Crop {
   float brightness = 0.0F;
   float dryness = 0.0F;
@@ -42,8 +43,8 @@ Crop RandomCrop(CounterRandom* random) {
   return crop;
 }
 
-// The map of fields. A section has four quarters, and a quarter has four cells. A field is a
-// section, a quarter, half of a quarter or a cell.
+// The map of fields. A section (a square mile) has four quarters, and a quarter has four cells. A
+// field is a section, a quarter, half of a quarter or a cell.
 class FieldMap {
  public:
   FieldMap() : crops_(At(kPatternSide - 1, kPatternSide - 1) + 1), pivots_(crops_.size(), 0.0F) {
@@ -109,8 +110,8 @@ class FieldMap {
   std::vector<float> pivots_;
 };
 
-// Returns value noise of octaves that each repeat over the map. Its mean is 0 and its range is -1
-// to 1.
+// Returns the grain: value noise whose octaves each repeat over the map. Its mean is 0 and its
+// range is -1 to 1.
 std::vector<float> GrainMap() {
   std::vector<float> grain(At(kPatternSide - 1, kPatternSide - 1) + 1, 0.0F);
   const int coarsest = static_cast<int>(glsl::kCoarsestGrain_m / glsl::kGrainCell_m);

@@ -1,7 +1,7 @@
-// Fields of crops on the one-mile grid of the Great Plains. This pattern covers the ground of
-// idealised runs, which have no land use. It is decoration: random numbers decide which field is
-// where. The geometry comes from shaders/physics/ground_cover.glsl, compiled for the CPU here. This
-// file adds the map of fields, and samples it as a GPU does.
+// A pattern of crop fields on the one-mile grid of the Great Plains. It covers the ground of
+// idealised runs, which have no land use. The pattern is decoration: random numbers decide which
+// field is where. The geometry comes from shaders/physics/ground_cover.glsl, compiled for the CPU
+// here. This file adds the map of fields, and samples it as a GPU does.
 #pragma once
 
 #include <cstdint>
@@ -35,24 +35,24 @@ using glm::vec4;
 
 }  // namespace glsl
 
-// The map. Red, green and blue of a texel of 402 m hold brightness, dryness and centre pivots of
-// fields. Alpha holds the grain, with texels of 0.8 m. The means of red, green and alpha are 128 /
-// 255.
+// The map of the crop fields. Its red, green and blue hold the brightness, dryness and centre
+// pivots of fields, with texels of 402 m. Its alpha holds the grain, with texels of 0.8 m. The
+// means of red, green and alpha are 128 / 255.
 class FieldPattern {
  public:
-  // Returns the only pattern.
+  // Returns the only pattern, which is created on first use.
   static const FieldPattern& Plains();
 
-  // Returns the texels, kFieldMapCells squared.
+  // Returns the texels, kFieldMapCells along each side.
   const std::vector<glm::u8vec4>& Texels() const { return texels_; }
 
-  // Returns the reflectance by colour relative to the ground's mean (of the same luminance). The
-  // place is in world metres, and the result is averaged over a footprint in metres. A `contrast`
-  // of 1 shows the pattern in full.
+  // Returns the reflectance in red, green and blue relative to the ground's mean reflectance, which
+  // has the same luminance. The place is in world metres, and the result is averaged over a
+  // footprint in metres. A `contrast` of 1 shows the full pattern.
   glm::vec3 Reflectance(const glm::vec2& place_m, const glm::vec2& footprint_m,
                         float contrast) const;
 
-  // Returns only the factor of the grain.
+  // Returns only the factor of the grain in the reflectance.
   float Grain(const glm::vec2& place_m, const glm::vec2& footprint_m, float contrast) const;
 
  private:
@@ -61,11 +61,11 @@ class FieldPattern {
   glm::vec4 Linear(const glm::vec2& cell, int level) const;
 
   std::vector<glm::u8vec4> texels_;
-  std::vector<std::vector<glm::vec4>> levels_;  // the mip chain, 0 to 1
+  std::vector<std::vector<glm::vec4>> levels_;  // the mip chain, with values from 0 to 1
 };
 
-// Returns the largest contrast at which no texel reflects more light than it receives, for a given
-// mean reflectance.
+// Returns the largest contrast at which no texel reflects more light than it receives, for ground
+// with the given mean reflectance.
 float FieldContrast(const glm::vec3& mean_reflectance);
 
 }  // namespace thunderhead::physics

@@ -73,7 +73,7 @@ BoundaryRays CrossBoundary(const PolarizedRay& incident, const dvec3& normal, do
   const dvec3 p = glm::cross(d, s);
   const dvec3 p_reflected = glm::cross(rays.reflected.direction, s);
   const dvec3 p_refracted = glm::cross(rays.refracted.direction, s);
-  // The rest of the energy is refracted, in phase with the incident field.
+  // The energy that is not reflected is refracted, in phase with the incident field.
   const double t_s = std::sqrt(std::fmax(1.0 - std::norm(r.s), 0.0));
   const double t_p = std::sqrt(std::fmax(1.0 - std::norm(r.p), 0.0));
   for (std::size_t i = 0; i < incident.fields.size(); ++i) {

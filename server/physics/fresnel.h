@@ -28,9 +28,9 @@ struct PolarizedRay {
 PolarizedRay UnpolarizedRay(const glm::dvec3& direction);
 
 // The reflected and the refracted ray of `incident` at a boundary. The `normal` points to the side
-// from which the ray comes, so its dot product with the direction is below 0. The `index_ratio` is
+// of the incident ray, so its dot product with the ray's direction is below 0. The `index_ratio` is
 // the refractive index on that side divided by the index on the other side. Energies are fluxes
-// through the boundary. The two energies sum to the incident one.
+// through the boundary. The energies of both rays add up to the incident energy.
 struct BoundaryRays {
   PolarizedRay reflected;
   PolarizedRay refracted;
@@ -39,7 +39,7 @@ struct BoundaryRays {
 BoundaryRays CrossBoundary(const PolarizedRay& incident, const glm::dvec3& normal,
                            double index_ratio);
 
-// Returns the reflectance for unpolarised light at a cosine of the angle of incidence.
+// Returns the reflectance for unpolarised light. `cosine` is that of the angle of incidence.
 double Reflectance(double cosine, double index_ratio);
 
 }  // namespace thunderhead::physics

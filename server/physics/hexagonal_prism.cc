@@ -56,7 +56,8 @@ dvec3 HexagonalPrism::PointOn(std::size_t face, double u, double v) const {
   if (face < 6) {
     return Edge(face) + u * (Edge(face + 1) - Edge(face)) + (2.0 * v - 1.0) * up;
   }
-  // The hexagon consists of three rhombi, each between two edges 120 degrees apart.
+  // The hexagon consists of three rhombi. The sides of each rhombus are two vectors to edges 120
+  // degrees apart.
   const double scaled = 3.0 * u;
   const auto rhombus = static_cast<std::size_t>(scaled);
   const dvec3 point =

@@ -31,7 +31,8 @@ class HexagonalPrism {
   // [0, 1).
   glm::dvec3 PointOn(std::size_t face, double u, double v) const;
 
-  // The face through which a line from a point inside or on the prism leaves it, and the distance.
+  // The face through which a line leaves the prism, and the distance to it. The line starts at a
+  // point inside or on the prism.
   struct Exit {
     std::size_t face;
     double distance;
@@ -39,7 +40,8 @@ class HexagonalPrism {
   Exit ExitOf(const glm::dvec3& point, const glm::dvec3& direction) const;
 
  private:
-  glm::dvec3 Edge(std::size_t corner) const;  // vector from the axis to the corner-th edge, 0 to 5
+  // Vector from the axis to edge number `corner` (0 to 5).
+  glm::dvec3 Edge(std::size_t corner) const;
 
   double edge_;  // edge length of the hexagon: half its width
   double half_length_;

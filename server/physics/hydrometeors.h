@@ -1,11 +1,12 @@
 // The kinds of hydrometeors and the optics of one particle of each: radius, bulk density, albedo,
 // phase function and false colour. This code does not use files or GL.
 //
-// The default radii are observed ones. Cloud droplets have 10 um and ice crystals 30 um. The others
-// are effective radii of observed exponential distributions at 1 g/m3. The sources are Marshall and
-// Palmer 1948 for rain and Houze et al. 1979 for snow at -20 C. For graupel it is Rutledge and
-// Hobbs 1984, for hail Federer and Waldvogel 1975. The papers' radii and false colours are from
-// Riley et al. 2003 (AMS), Tables II and III. Densities are those of common bulk microphysics.
+// The default radii are observed radii. Cloud droplets have 10 um and ice crystals 30 um. The other
+// kinds have the effective radius of an observed exponential size distribution at 1 g/m3. The
+// sources for rain and snow are Marshall and Palmer 1948, and Houze et al. 1979 at -20 C. The
+// sources for graupel and hail are Rutledge and Hobbs 1984, and Federer and Waldvogel 1975. The
+// papers' radii and false colours are from Riley et al. 2003 (AMS), Tables II and III. Densities
+// are those of common bulk microphysics.
 #pragma once
 
 #include <array>
@@ -42,9 +43,8 @@ enum class PhaseKind {
   kWaterNarrow
 };
 
-// The name of each kind. It is the name of the enumerator in the message PhaseFunction.Kind, in
-// lower case and without KIND_. Messages are converted by this name, so the kinds may be in any
-// order.
+// The names of the kinds. A name is that of the enumerator in the message PhaseFunction.Kind, in
+// lower case and without KIND_. Messages are converted by name, so the kinds may be in any order.
 struct PhaseKindName {
   PhaseKind kind;
   std::string_view name;
@@ -61,7 +61,8 @@ inline constexpr std::array kPhaseKindNames = {
 };
 
 // The computed tables (docs/phase_tables.md) of the kinds that are not formulas. Water droplets
-// have tables for several radii, of which the nearest is chosen. Other kinds have no radius.
+// have tables for several radii, of which the nearest radius is chosen. For the other kinds,
+// `droplet_radius_m` is 0 and unused.
 struct PhaseTableName {
   PhaseKind kind;
   float droplet_radius_m;
@@ -86,7 +87,7 @@ struct PhaseFunction {
   bool operator==(const PhaseFunction&) const = default;
 };
 
-// Optics of the particles of a field. All particles count as equal.
+// Optics of the particles of a field. All particles of a field have the same optics.
 struct ParticleOptics {
   float radius_m;
   float density_kg_per_m3;
@@ -95,7 +96,7 @@ struct ParticleOptics {
   glm::vec3 false_color;  // linear sRGB
 };
 
-// The properties of one kind. The rows are in the order of Hydrometeor.
+// The properties of one kind of hydrometeor. The rows are in the order of Hydrometeor.
 struct HydrometeorRow {
   Hydrometeor hydrometeor;
   std::string_view name;
@@ -103,10 +104,10 @@ struct HydrometeorRow {
   ParticleOptics optics;
 };
 
-// The asymmetry parameters apply if a scene chooses a formula. Water has 0.85 (Mie, r_e 10 um, 0.55
-// um, rounded down for the broad part of the lobe). Smooth ice crystals have 0.78, roughened and
-// rimed ice 0.76. The false colours are Okabe and Ito's (#E69F00, #56B4E9, #CC79A7, #F0E442,
-// #009E73, #D55E00). People with any colour vision can tell them apart.
+// The asymmetry parameters apply if a scene chooses a formula. Water has 0.85 (Mie theory for an
+// effective radius of 10 um at 0.55 um, rounded down for the broad part of the lobe). Smooth ice
+// crystals have 0.78, roughened and rimed ice 0.76. The false colours are Okabe and Ito's (#E69F00,
+// #56B4E9, #CC79A7, #F0E442, #009E73, #D55E00). People with any colour vision can tell them apart.
 inline constexpr std::array kHydrometeorRows = {
     HydrometeorRow{
         Hydrometeor::kCloud,
@@ -140,16 +141,17 @@ inline constexpr std::array kHydrometeorRows = {
         {2.6e-3F, 900.0F, 1.0F, {PhaseKind::kIceRough, 0.76F}, {0.6654F, 0.1119F, 0.0F}}},
 };
 
-// Returns the defaults of a hydrometeor.
+// Returns the default optics of a hydrometeor.
 const ParticleOptics& DefaultOptics(Hydrometeor hydrometeor);
 
 // Returns the radius of Riley et al. 2003 (AMS), Table II. The table omits hail, for which the
-// radius is 1 cm.
+// function returns 1 cm.
 float PapersRadius_m(Hydrometeor hydrometeor);
 
-// Returns the mass extinction coefficient in m2/kg: extinction (1/m) per mass of condensate in a
-// volume of air (kg/m3), 3 / (2 rho_f R_f). The source is Riley et al. 2003 (AMS), eq. 4: geometric
-// optics with an extinction efficiency of 2. `density_kg_per_m3` and `radius_m` must be above zero.
+// Returns the mass extinction coefficient in m2/kg, which is 3 / (2 rho_f R_f). It is the
+// extinction (1/m) per mass of condensate in a volume of air (kg/m3). The source is Riley et al.
+// 2003 (AMS), eq. 4: geometric optics with an extinction efficiency of 2. `density_kg_per_m3` and
+// `radius_m` must be above zero.
 float MassExtinction_m2_per_kg(float density_kg_per_m3, float radius_m);
 
 }  // namespace thunderhead::physics

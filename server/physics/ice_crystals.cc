@@ -21,14 +21,14 @@ using glm::dvec3;
 
 constexpr int kCrystalChunks = 128;
 
-// A ray ends when its energy is below this share of the initial one, or after this many encounters
-// with faces.
+// Limits at which a ray ends. Its energy is below kMinEnergy times the initial energy, or it has
+// met a face kMaxEncounters times.
 constexpr double kMinEnergy = 1e-5;
 constexpr int kMaxEncounters = 200;
 
-// Returns five numbers for a ray, such that the points of all rays fill the unit cube evenly. The
-// points follow an additive recurrence whose step consists of the powers of the root of r^6 = r + 1
-// (Roberts 2018). 64-bit integers keep it exact.
+// Returns five numbers for a ray, chosen so that the points of all rays fill the unit cube evenly.
+// The points follow an additive recurrence. Its step consists of the powers of the root of r^6 = r
+// + 1 (Roberts 2018). 64-bit integers keep the recurrence exact.
 std::array<double, 5> EvenPoint(std::uint64_t index, std::uint64_t seed) {
   constexpr double kRoot = 1.1347241384015194;
   CounterRandom shift(seed, 0);
@@ -43,8 +43,8 @@ std::array<double, 5> EvenPoint(std::uint64_t index, std::uint64_t seed) {
   return point;
 }
 
-// Returns the direction of light in the crystal's frame. By symmetry, a 24th of the sphere covers
-// all orientations.
+// Returns the direction of light in the crystal's frame. Because of the crystal's symmetry, a 24th
+// of the sphere covers all orientations.
 dvec3 DirectionOf(double u, double v) {
   const double z = -u;
   const double azimuth = v * std::numbers::pi / 6.0;
@@ -52,7 +52,8 @@ dvec3 DirectionOf(double u, double v) {
   return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
 }
 
-// The entry of a ray: a lit face, chosen in proportion to its projected area, and a point on it.
+// The point at which a ray enters the crystal. It lies on a lit face, which is chosen in proportion
+// to its projected area.
 struct Entry {
   std::size_t face;
   dvec3 point;
@@ -72,7 +73,7 @@ Entry EntryOf(const HexagonalPrism& prism, const dvec3& direction, double choice
   return {chosen, prism.PointOn(chosen, u, v)};
 }
 
-// Tilts `normal` at random by slopes with a root mean square of `roughness`.
+// Tilts `normal` at random. The slopes of the tilt have a root mean square of `roughness`.
 dvec3 Tilted(const dvec3& normal, double roughness, CounterRandom& random) {
   const double slope = roughness * std::sqrt(-std::log(1.0 - random.Next()));
   const double azimuth = 2.0 * std::numbers::pi * random.Next();
@@ -83,8 +84,8 @@ dvec3 Tilted(const dvec3& normal, double roughness, CounterRandom& random) {
 }
 
 // Returns the reflected and refracted rays at a face with the normal `normal`. If the crystal is
-// rough, the face is tilted at random. A tilt that sends either ray to the wrong side of the face
-// is drawn again.
+// rough, the face is tilted at random. If a tilt sends either ray to the wrong side of the face,
+// another tilt is drawn.
 BoundaryRays CrossFace(const PolarizedRay& ray, const dvec3& normal, double index_ratio,
                        double roughness, CounterRandom& random) {
   constexpr int kTries = 20;
@@ -100,8 +101,8 @@ BoundaryRays CrossFace(const PolarizedRay& ray, const dvec3& normal, double inde
   return CrossBoundary(ray, normal, index_ratio);
 }
 
-// Traces single rays through a crystal, and adds the light that leaves it to one channel of a
-// result.
+// Traces single rays through a crystal, and adds the light that leaves the crystal to one colour
+// channel of a result.
 class Tracer {
  public:
   Tracer(const HexagonalPrism& prism, double roughness, std::size_t channel, RayScattering& result)
@@ -143,7 +144,7 @@ class Tracer {
   }
 
   void Scatter(const dvec3& direction, const PolarizedRay& ray, double weight) {
-    // The arc tangent keeps the digits of small angles, which the arc cosine loses.
+    // The arc tangent is accurate for small angles, for which the arc cosine is not.
     const double angle = std::atan2(glm::length(glm::cross(direction, ray.direction)),
                                     glm::dot(direction, ray.direction));
     result_.light.Add(angle, weight * ray.Energy(), channel_);
@@ -181,8 +182,8 @@ RayScattering TraceRays(const IceCrystal& crystal, const std::vector<double>& an
       const Entry entry = EntryOf(prism, direction, point[2], point[3], point[4]);
       const double shadow = prism.ProjectedArea(direction);
       for (std::size_t c = 0; c < kPhaseChannels; ++c) {
-        // Every channel has the same random tilts, so that colours differ by refraction and not by
-        // noise.
+        // Every channel has the same random tilts. The colours therefore differ only by refraction,
+        // not by noise.
         Tracer(prism, crystal.roughness, c, part)
             .Trace(entry, direction, shadow, CounterRandom(seed, stream));
       }

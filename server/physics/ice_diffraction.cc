@@ -34,8 +34,8 @@ double AreaOf(const std::vector<dvec2>& polygon) {
   return area;
 }
 
-// Returns the outline of the shadow counter-clockwise, which is the convex hull of the corners'
-// projections.
+// Returns the outline of the crystal's shadow, counter-clockwise. It is the convex hull of the
+// corners' projections.
 std::vector<dvec2> ShadowOf(const HexagonalPrism& prism, const dvec3& direction) {
   const dvec3 x = glm::normalize(glm::cross(
       direction, std::abs(direction.z) < 0.7 ? dvec3(0.0, 0.0, 1.0) : dvec3(1.0, 0.0, 0.0)));
@@ -48,7 +48,8 @@ std::vector<dvec2> ShadowOf(const HexagonalPrism& prism, const dvec3& direction)
   }
   std::sort(points.begin(), points.end(),
             [](const dvec2& a, const dvec2& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-  // Andrew's monotone chain: the lower hull from left to right, then the upper one back.
+  // Andrew's monotone chain computes the lower hull from left to right, then the upper hull from
+  // right to left.
   std::vector<dvec2> hull;
   for (int pass = 0; pass < 2; ++pass) {
     const std::size_t start = hull.size();
@@ -69,7 +70,8 @@ std::vector<dvec2> ShadowOf(const HexagonalPrism& prism, const dvec3& direction)
 Complex FourierTransform(const std::vector<dvec2>& polygon, double area, const dvec2& q,
                          double size) {
   const double q2 = glm::dot(q, q);
-  // For small q the sum is a difference of large numbers, and the transform is flat.
+  // For small q the sum is a difference of large numbers. The transform is flat there, so its value
+  // at q = 0 is used.
   if (q2 * size * size < 1e-8) return area;
   Complex sum = 0.0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -104,15 +106,15 @@ PhaseAccumulator Diffract(const IceCrystal& crystal, const std::vector<double>& 
       const std::vector<dvec2> shadow = ShadowOf(prism, direction);
       const double area = AreaOf(shadow);
       for (std::size_t j = 0; j < angles.angles_rad.size(); ++j) {
-        // One azimuth of scattering for each angle is enough, because random orientations cover all
-        // azimuths.
+        // One random azimuth of scattering for each angle is enough, because the random
+        // orientations cover all azimuths.
         const double turn = 2.0 * std::numbers::pi * random.Next();
         const double sine = std::sin(angles.angles_rad[j]);
         for (std::size_t c = 0; c < kPhaseChannels; ++c) {
           const double wave_number = 2.0 * std::numbers::pi / kWavelengthsUm[c];
           const dvec2 q = wave_number * sine * dvec2(std::cos(turn), std::sin(turn));
-          // |F|^2 k^2 / (4 pi^2) is energy into unit solid angle for light of unit irradiance,
-          // before the obliquity factor ((1 + cos) / 2)^2.
+          // |F|^2 k^2 / (4 pi^2) is the energy scattered into unit solid angle for light of unit
+          // irradiance. The obliquity factor ((1 + cos) / 2)^2 is applied in addition.
           const double slant = 0.5 * (1.0 + std::cos(angles.angles_rad[j]));
           const double energy = std::norm(FourierTransform(shadow, area, q, size)) * wave_number *
                                 wave_number / (2.0 * std::numbers::pi) * slant * slant;

@@ -103,7 +103,7 @@ glm::vec3 LandReflectance(const LandUse& use, const LandState& state) {
       std::isfinite(state.snow_share) ? std::clamp(state.snow_share, 0.0F, 1.0F) : 0.0F;
   const bool known = std::isfinite(state.albedo) && state.albedo > 0.0F && state.albedo <= 1.0F;
   const float albedo = known ? state.albedo : glm::mix(use.albedo, kSnowAlbedo, snow);
-  // The hue is weighted by reflected light, and snow reflects more than the ground it leaves bare.
+  // The hue is weighted by reflected light, because snow reflects more than the uncovered ground.
   const float of_snow = snow * kSnowAlbedo;
   const float of_rest = (1.0F - snow) * use.albedo;
   const glm::vec3 mixed = (of_snow * OfLuminanceOne(kSnow) + of_rest * hue) / (of_snow + of_rest);

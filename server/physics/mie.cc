@@ -12,13 +12,14 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Number of angles per block, small enough for their recurrences to fit the first-level cache.
+// Number of angles in a block. It is so small that the recurrences of the block fit into the
+// first-level cache.
 constexpr std::size_t kBlock = 256;
 
-// Returns the logarithmic derivative D_n(z) of psi_n, n = 0 ... count, by downward recurrence (eq.
-// 4.89). The recurrence is stable for any absorption. It starts from 0. The error of that start
-// vanishes before n = |z| if the start is a few times the cube root of |z| above |z|. A start at
-// the usual 15 terms above |z| leaves an error of 1e-5 in the efficiencies.
+// Returns the logarithmic derivative D_n(z) of psi_n for n = 0 ... count, by downward recurrence
+// (eq. 4.89). The recurrence is stable for any absorption. It starts from the value 0. The error of
+// this start vanishes before n = |z| if the start index exceeds |z| by a few times the cube root of
+// |z|. With the usual excess of 15, an error of 1e-5 would remain in the efficiencies.
 std::vector<Complex> LogarithmicDerivatives(Complex z, std::size_t count) {
   const double turning = std::abs(z);
   const auto above = static_cast<std::size_t>(turning + 8.0 * std::cbrt(turning) + 16.0);
@@ -33,9 +34,9 @@ std::vector<Complex> LogarithmicDerivatives(Complex z, std::size_t count) {
   return d;
 }
 
-// Returns psi_n(x), n = 0 ... count. The upward recurrence is used while n < x. Beyond, it would
-// lose all digits, so the ratios psi_n / psi_n-1 of the downward recurrence are used. The ratios
-// are safe there, because psi_n has no zero below n.
+// Returns psi_n(x) for n = 0 ... count. The upward recurrence is used while n < x. For larger n it
+// would lose all digits, so the ratios psi_n / psi_n-1 of the downward recurrence are used. These
+// ratios are finite there, because psi_n has no zero below n.
 std::vector<double> PsiFunctions(double x, std::size_t count) {
   const std::size_t top = std::max(count, static_cast<std::size_t>(x)) + 40;
   std::vector<double> ratios(count + 1);
@@ -46,7 +47,7 @@ std::vector<double> PsiFunctions(double x, std::size_t count) {
   }
   std::vector<double> psi(count + 1);
   psi[0] = std::sin(x);
-  // The closed form of psi_1 is a difference of nearly equal numbers when x is small.
+  // For small x, the closed form of psi_1 is a difference of nearly equal numbers.
   psi[1] = x < 0.1 ? psi[0] * ratios[1] : psi[0] / x - std::cos(x);
   for (std::size_t n = 2; n <= count; ++n) {
     psi[n] = static_cast<double>(n) < x
@@ -120,8 +121,8 @@ MieAmplitudes MieSeries::Amplitudes(double mu) const {
 
 void MieSeries::AddIntensities(const std::vector<double>& cosines, double factor,
                                std::vector<double>& sums) const {
-  // s1 + s2 and s1 - s2 are sums of (a + b)(pi + tau) and (a - b)(pi - tau). They need half the
-  // work of s1 and s2 and give the same intensity.
+  // s1 + s2 and s1 - s2 are sums of (a + b)(pi + tau) and (a - b)(pi - tau). Computing these sums
+  // takes half the work of s1 and s2, and they give the same intensity.
   for (std::size_t begin = 0; begin < cosines.size(); begin += kBlock) {
     const std::size_t size = std::min(kBlock, cosines.size() - begin);
     std::array<double, kBlock> mu{};

@@ -10,7 +10,7 @@
 
 namespace thunderhead::physics {
 
-// Cross sections divided by the geometric one, pi r^2. `back` is the radar backscattering
+// Cross sections divided by the geometric cross section pi r^2. `back` is the radar backscattering
 // efficiency.
 struct MieEfficiencies {
   double extinction = 0.0;
@@ -35,8 +35,8 @@ class MieSeries {
 
   MieAmplitudes Amplitudes(double mu) const;  // eq. 4.74
 
-  // Adds factor (|s1|^2 + |s2|^2) / 2 at each cosine to `sums`. Processing all cosines in one call
-  // makes it fast.
+  // Adds factor (|s1|^2 + |s2|^2) / 2 at each cosine to `sums`. One call with all cosines is much
+  // faster than many calls.
   void AddIntensities(const std::vector<double>& cosines, double factor,
                       std::vector<double>& sums) const;
 

@@ -15,8 +15,8 @@
 namespace thunderhead::physics {
 namespace {
 
-// Returns the integral of f(angle) over low..high by Simpson's rule. Phase functions up to g = 0.99
-// need steps of about 0.1 degree for six digits.
+// Returns the integral of f(angle) from `low_rad` to `high_rad` by Simpson's rule. For six correct
+// digits, phase functions up to g = 0.99 need steps of about 0.1 degree.
 template <typename F>
 double IntegrateOverAngle(double low_rad, double high_rad, const F& f) {
   constexpr int kIntervals = 4096;
@@ -68,7 +68,7 @@ double Luminance(const F& value_of_channel) {
 }
 
 double HenyeyGreenstein(double g, double mu) {
-  // Using 1 - mu avoids cancellation in the forward peak.
+  // The form with 1 - mu avoids cancellation in the forward peak.
   const double base = (1.0 - g) * (1.0 - g) + 2.0 * g * (1.0 - mu);
   return (1.0 - g) * (1.0 + g) / (base * std::sqrt(base));
 }

@@ -11,9 +11,10 @@ namespace thunderhead::physics {
 
 inline constexpr int kMaxPerlinSide = 128;  // texels along an edge of a tile
 inline constexpr int kPerlinWaves = 8;      // wavelengths of the first octave along an edge
-inline constexpr std::int64_t kPerlinOne = std::int64_t{1} << 12U;  // a weight of 1
-// Texel centres lie at odd multiples of half a texel. With at most 16 texels a cell, that is 1 / 32
-// of a cell.
+// Fixed-point value of a weight of 1.
+inline constexpr std::int64_t kPerlinOne = std::int64_t{1} << 12U;
+// Units in a lattice cell. Texel centres lie at odd multiples of half a texel. With at most 16
+// texels in a cell, half a texel is at least 1 / 32 of a cell.
 inline constexpr std::int64_t kPerlinPlaceUnits = 2 * kMaxPerlinSide / kPerlinWaves;
 
 struct PerlinGradient {
@@ -26,7 +27,7 @@ struct PerlinOctave {
   int cells = 0;            // number along an edge of the tile
   int texels_per_cell = 0;  // at least 1
   std::vector<PerlinGradient> gradients;
-  std::vector<std::int64_t> place;  // place of texel i in its cell
+  std::vector<std::int64_t> place;  // position of texel i in its cell
   std::vector<std::int64_t> fade;   // 6 t^5 - 15 t^4 + 10 t^3, in units of 1 / kPerlinOne
 
   const PerlinGradient& At(int x, int y, int z) const {
@@ -36,12 +37,12 @@ struct PerlinOctave {
   }
 };
 
-// Creates octave `index`, counted from 0, of a tile of `side` texels. It has 2^index times
-// kPerlinWaves cells along an edge, at most `side`.
+// Creates octave number `index`, counted from 0, of a tile with `side` texels along an edge. The
+// octave has 2^index times kPerlinWaves cells along an edge, at most `side`.
 PerlinOctave MakePerlinOctave(int index, int side, std::uint32_t seed);
 
-// The gradients at one lattice point of a row of texels, interpolated across the row. The noise
-// along the row is slope * place + offset.
+// The gradients at one lattice point, interpolated for a row of texels in y and z. The noise along
+// the row is slope * place + offset.
 struct PerlinCorner {
   std::int64_t slope = 0;
   std::int64_t offset = 0;
@@ -50,7 +51,7 @@ struct PerlinCorner {
 PerlinCorner CornerOf(const PerlinOctave& octave, int cell_x, int y, int z);
 
 // Calls take(texel, noise) for each texel of the row (y, z). The noise is below 2^43: three weights
-// of 12 bits, a place of 5, and a factor of 4.
+// of 12 bits each, a place of 5 bits, and a factor of 4.
 template <typename Take>
 void AddPerlinRow(const PerlinOctave& octave, int y, int z, const Take& take) {
   PerlinCorner low = CornerOf(octave, 0, y, z);

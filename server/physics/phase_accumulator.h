@@ -1,6 +1,7 @@
 // A histogram of scattered light by angle, from which a phase table is made. A ray's energy is
-// divided between the two nearest angles of the grid. The table, linear in between, therefore holds
-// exactly the energy that was added. Ray tracing and quadrature over the angle use it.
+// divided between the two nearest angles of the grid. The table is linear between its angles, so it
+// holds exactly the energy that was added. Both ray tracing and quadrature over the angle use this
+// class.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +11,14 @@
 
 namespace thunderhead::physics {
 
-// A part of the grid. Its angles up to `end_deg` are `step_deg` apart.
+// A part of the angle grid. It ends at `end_deg`, and its angles are `step_deg` apart.
 struct GridSpan {
   double end_deg;
   double step_deg;
 };
 
-// Returns the angles of consecutive spans from 0. The last span must end at 180, and each span must
-// be a multiple of its step.
+// Returns the angles of consecutive spans, beginning at 0. The last span must end at 180 degrees.
+// The length of each span must be a multiple of its step.
 std::vector<double> AngleGrid(const std::vector<GridSpan>& spans);
 
 class PhaseAccumulator {

@@ -1,5 +1,5 @@
 // Closed-form integrals over the sphere of functions that are linear in the scattering angle
-// between two angles. They serve to integrate, normalise and sample tables of phase functions.
+// between two angles. They are used to integrate, normalise and sample tables of phase functions.
 #pragma once
 
 #include <cmath>
@@ -15,8 +15,8 @@ struct LinearPiece {
   double end_value;
 };
 
-// Returns the integral of value(t) sin(k t) over the piece, for k = 1 or 2. It is expanded about
-// the middle of the piece, because the textbook form suffers from cancellation on the steep pieces
+// Returns the integral of value(t) sin(k t) over the piece, for k = 1 or 2. The formula is expanded
+// about the middle of the piece. The textbook form suffers from cancellation on the steep pieces
 // next to 0.
 inline double IntegralOverSine(const LinearPiece& piece, double k) {
   const double middle = k * 0.5 * (piece.start_rad + piece.end_rad);

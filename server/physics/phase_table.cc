@@ -121,8 +121,8 @@ double PhaseTable::SampleAngle(double u, std::size_t channel) const {
   double low = angles_rad_[i];
   double high = angles_rad_[i + 1];
   double angle = 0.5 * (low + high);
-  // Newton's method bisects when a step would leave the bracket, because the share is flat at angle
-  // 0.
+  // If a Newton step would leave the bracket, the bracket is bisected instead. This happens because
+  // the share is flat at angle 0.
   for (int step = 0; step < 60; ++step) {
     const double excess = ShareWithin(i, angle, channel) - missing;
     (excess > 0.0 ? high : low) = angle;

@@ -1,6 +1,6 @@
-// A tabulated phase function: red, green and blue values on a grid of scattering angles, linear in
-// the angle in between. Its mean over the sphere is 1, like that of the formulas in optics.h. This
-// code reads and writes the text of data/phase, but does not use files.
+// A tabulated phase function: red, green and blue values on a grid of scattering angles,
+// interpolated linearly in the angle. Its mean over the sphere is 1, like that of the formulas in
+// optics.h. This code reads and writes the text format of data/phase, but does not use files.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ using PhaseRgb = std::array<double, kPhaseChannels>;
 struct PhaseTableContent {
   std::string name;
   PhaseRgb wavelengths_um{};
-  std::vector<double> angles_deg;  // from 0 to 180, ascending
+  std::vector<double> angles_deg;  // ascending angles from 0 to 180
   std::vector<PhaseRgb> values;    // one for each angle
 };
 
@@ -30,15 +30,15 @@ class PhaseTable {
  public:
   static constexpr double kForwardAngleDeg = 5.0;
 
-  // Checks `content` and scales its values so that their mean over the sphere is exactly 1. Rejects
-  // values with a mean further than `mean_tolerance` from 1.
+  // Checks `content` and scales its values so that their mean over the sphere is exactly 1. Fails
+  // if the mean before scaling differs from 1 by more than `mean_tolerance`.
   static absl::StatusOr<PhaseTable> Create(PhaseTableContent content, double mean_tolerance);
 
-  // Reads text in the format of ToText. Errors name the line.
+  // Reads text in the format of ToText. Error messages name the line.
   static absl::StatusOr<PhaseTable> Load(std::string_view text);
 
   // Returns the table as text that Load can read. Each line of `provenance` becomes a comment at
-  // its top.
+  // the top of the text.
   std::string ToText(std::string_view provenance) const;
 
   const std::string& name() const { return content_.name; }
@@ -64,8 +64,8 @@ class PhaseTable {
   // Returns the share of light scattered within kForwardAngleDeg.
   double ForwardShare(std::size_t channel) const;
 
-  // Returns the share cut off if the value at `angle_rad` replaces the function at all smaller
-  // angles. It is the `forward_share` of physics::DeltaScaling.
+  // Returns the share of light that is cut off if the function's value at `angle_rad` replaces its
+  // values at all smaller angles. It is the `forward_share` of physics::DeltaScaling.
   double CutShare(double angle_rad, std::size_t channel) const;
 
  private:

@@ -1,5 +1,6 @@
-// The text form of a phase table. An angle of `forward_share` and `angles` is in degrees. It is
-// followed by the share of light within it or, below `angles`, by the values:
+// The text form of a phase table. In the line `forward_share`, an angle in degrees is followed by
+// the share of light within it. The line `angles` gives the number of lines below it. Each of these
+// lines holds an angle in degrees and the values at that angle for red, green and blue:
 //
 //   # comments
 //   name cloud_re10
@@ -25,8 +26,8 @@
 namespace thunderhead::physics {
 namespace {
 
-// Tolerance for the mean and for the figures in the header. Values are written with six digits, so
-// a valid file is well within it.
+// Tolerance for the mean over the sphere and for the figures in the header. Values are written with
+// six digits, so the errors of a valid file are much smaller.
 constexpr double kFileTolerance = 1e-3;
 
 absl::string_view AbslView(std::string_view text) { return {text.data(), text.size()}; }
@@ -112,7 +113,7 @@ absl::StatusOr<Header> ReadHeader(Lines& lines, PhaseTableContent& content) {
   return header;
 }
 
-// Checks the figures in the header against the curve.
+// Checks that the figures in the header agree with the tabulated curve.
 absl::Status CheckFigures(const Header& header, const PhaseTable& table) {
   if (header.forward_angle_deg != PhaseTable::kForwardAngleDeg) {
     return absl::InvalidArgumentError(

@@ -5,9 +5,9 @@
 namespace thunderhead::physics {
 
 double WaterRefractiveIndex(double wavelength_um) {
-  constexpr double kDensity = 999.70 / 1000.0;  // relative to the formulation's 1000 kg/m3
+  constexpr double kDensity = 999.70 / 1000.0;  // density relative to the formulation's 1000 kg/m3
   constexpr double kTemperature = 283.15 / 273.15;
-  // Converts from an index relative to vacuum to one relative to air.
+  // Converts an index relative to vacuum to an index relative to air.
   constexpr double kAir = 1.00028;
   const double wavelength = wavelength_um / 0.589;
   const double w2 = wavelength * wavelength;

@@ -14,11 +14,11 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kWater_kg_per_m3 = 1000.0;
 
-// WRF's limits of the effective radius of droplets.
+// WRF's limits of the effective radius of cloud droplets.
 constexpr double kMinDroplet_m = 2.51e-6;
 constexpr double kLargestDroplet_m = 50e-6;
 
-// Spheres of one density whose number decreases exponentially with diameter.
+// Spheres of the same density whose number decreases exponentially with their diameter.
 struct Exponential {
   double intercept_per_m4;
   double density_kg_per_m3;
@@ -82,8 +82,8 @@ std::optional<double> Wsm6Radius_m(Hydrometeor hydrometeor, const Exponential& g
   }
 }
 
-// Returns the radius of a gamma distribution of 1e8 droplets per m3. That number gives the shape,
-// 12.
+// Returns the radius of cloud droplets with a gamma distribution and a number of 1e8 per m3. In the
+// scheme, this number determines the shape parameter 12.
 double ThompsonDroplets_m(double content_kg_per_m3) {
   constexpr double kDroplets_per_m3 = 1e8;
   constexpr double kShape = 12.0;
@@ -93,19 +93,18 @@ double ThompsonDroplets_m(double content_kg_per_m3) {
   return std::clamp(0.5 * (kShape + 3.0) / slope_per_m, kMinDroplet_m, kLargestDroplet_m);
 }
 
-// Returns the radius of graupel. Particles grow with the content, because the intercept increases
-// only with its 2/7th power.
+// Returns the radius of graupel. The particles are larger for a larger content, because the
+// intercept increases only with the 2/7th power of the content.
 double ThompsonGraupel_m(double content_kg_per_m3) {
   const double exponent = 3.0 + 2.0 / 7.0 * (std::log10(std::max(content_kg_per_m3, 1e-9)) + 8.0);
-  // The slope that gives a median volume diameter of 50 um, its minimum.
+  // The slope for which the median volume diameter is 50 um, its minimum.
   constexpr double kLargestSlope_per_m = 3.672 / 50e-6;
   const Exponential graupel = {std::pow(10.0, std::clamp(exponent, 2.0, 6.0)), 400.0,
                                kLargestSlope_per_m};
   return RadiusOf(graupel, Hydrometeor::kGraupel, content_kg_per_m3);
 }
 
-// Returns nothing for Thompson's other fields, because their distributions depend on more than the
-// content.
+// Returns nothing for Thompson's other fields. Their distributions depend on more than the content.
 std::optional<double> ThompsonRadius_m(Hydrometeor hydrometeor, double content_kg_per_m3) {
   if (hydrometeor == Hydrometeor::kCloud) return ThompsonDroplets_m(content_kg_per_m3);
   if (hydrometeor == Hydrometeor::kGraupel) return ThompsonGraupel_m(content_kg_per_m3);

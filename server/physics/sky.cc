@@ -8,10 +8,12 @@ namespace thunderhead::physics {
 
 namespace {
 
-// Eyes above this height see the atmosphere as from this height.
+// Maximum eye height for the sky table. An eye above this height sees the atmosphere as from this
+// height.
 constexpr float kHighestEye_m = 0.98F * kAtmosphereTop_m;
 
-// Returns the sine of elevation in the middle of a row: the inverse of glsl::sky_cell.
+// Returns the sine of the elevation in the middle of a table row. It is the inverse of
+// glsl::sky_cell.
 float SineOfRow(int row, float horizon_sine) {
   constexpr int kMiddle = glsl::kSkyElevations / 2;
   if (row >= kMiddle) {
@@ -19,7 +21,8 @@ float SineOfRow(int row, float horizon_sine) {
     return horizon_sine + root * root * (1.0F - horizon_sine);
   }
   const float root = static_cast<float>(kMiddle - 1 - row) / (kMiddle - 1);
-  // The row is just below the horizon, because on the horizon the ray would miss the ground.
+  // The result is slightly below the horizon, because exactly on the horizon the ray would miss the
+  // ground.
   return horizon_sine - std::max(root * root, 1e-5F) * (1.0F + horizon_sine);
 }
 
@@ -70,7 +73,7 @@ ClearSky::Seen ClearSky::At(const glm::vec3& direction) const {
 }
 
 SkyLight ClearSky::Light() const {
-  // Cells of equal size in sine of elevation and in azimuth have equal solid angles.
+  // Cells of equal size in the sine of the elevation and in the azimuth have equal solid angles.
   constexpr int kElevations = 24;
   constexpr int kAzimuths = 48;
   SkyLight light;

@@ -1,7 +1,7 @@
-// The clear sky seen from a height above the ground, and its light. It is a table for one direction
-// of the sun. The GLSL of shaders/physics/sky.glsl, compiled for the CPU here, reads the table.
-// Radiance is in units of the sun's irradiance above the atmosphere. Air between eye and storm:
-// shaders/physics/air.glsl.
+// The clear sky seen from a height above the ground, and its light. The sky is a table for one
+// direction of the sun, which is read by shaders/physics/sky.glsl, compiled for the CPU here.
+// Radiance is in units of the sun's irradiance above the atmosphere. The air between eye and storm
+// is in shaders/physics/air.glsl.
 #pragma once
 
 #include <vector>
@@ -48,7 +48,8 @@ class ClearSky {
   };
   ClearSky(const Atmosphere& atmosphere, const glm::vec3& towards_sun, const Site& site);
 
-  // The sky in one direction. Below the horizon it is the air in front of the ground.
+  // The sky in one direction. Below the horizon, its radiance is that of the air in front of the
+  // ground.
   struct Seen {
     glm::vec3 radiance{0.0F};
     glm::vec2 air_mass{0.0F};  // air masses of air and haze, as in Atmosphere::Line
@@ -56,8 +57,7 @@ class ClearSky {
   // `direction` is a unit vector.
   Seen At(const glm::vec3& direction) const;
 
-  // Rotates the sky with the sun and keeps the sun's elevation. Only the azimuth of `towards_sun`
-  // matters.
+  // Rotates the sky to the azimuth of `towards_sun`. The sun's elevation stays unchanged.
   void TurnTo(const glm::vec3& towards_sun) {
     towards_sun_ = {towards_sun.x, towards_sun.y, towards_sun_.z};
   }

@@ -10,17 +10,18 @@ namespace {
 
 // Equatorial coordinates of the sun.
 struct Equatorial {
-  double right_ascension = 0.0;  // in radians
+  double right_ascension = 0.0;  // both angles are in radians
   double declination = 0.0;
 };
 
-// Return the sine and cosine of degrees. For large angles the loss of precision does not matter
-// here.
+// Return the sine and cosine of an angle in degrees. The loss of precision for large angles does
+// not matter here.
 double Sin(double degrees) { return std::sin(glm::radians(degrees)); }
 double Cos(double degrees) { return std::cos(glm::radians(degrees)); }
 
-// Returns the apparent sun. `t` is in Julian centuries since 2000 January 1, 12 h. UTC replaces
-// dynamical time: the difference of a minute moves the sun by 0.0007 degrees.
+// Returns the apparent position of the sun. `t` is in Julian centuries since 2000 January 1, 12 h.
+// UTC is used in place of dynamical time. The difference of about a minute moves the sun by 0.0007
+// degrees.
 Equatorial ApparentSun(double t) {
   const double mean_longitude = 280.46646 + t * (36000.76983 + t * 0.0003032);
   const double anomaly = 357.52911 + t * (35999.05029 - t * 0.0001537);
@@ -37,7 +38,7 @@ Equatorial ApparentSun(double t) {
 }  // namespace
 
 SunPosition SunPositionAt(double unix_s, double latitude_deg, double longitude_deg) {
-  const double days = unix_s / 86400.0 - 10957.5;  // since 2000 January 1, 12 h
+  const double days = unix_s / 86400.0 - 10957.5;  // days since 2000 January 1, 12 h
   const double t = days / 36525.0;
   const Equatorial sun = ApparentSun(t);
   const double sidereal_deg = 280.46061837 + 360.98564736629 * days + t * t * 0.000387933;

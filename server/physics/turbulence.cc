@@ -12,16 +12,16 @@
 namespace thunderhead::physics {
 namespace {
 
-// Limits of the tile's side. The finest of five octaves has only one texel a cell, because a larger
-// tile would cost more than it gains.
+// Limits of the tile's side. With five octaves, the finest octave has only one texel in each
+// lattice cell, because a larger tile would cost more than it gains.
 constexpr int kSmallestSide = 64;
 constexpr int kLargestSide = 128;
 static_assert(kLargestSide <= kMaxPerlinSide);
 
 constexpr std::size_t kOneInClear = 3;
 
-// Sets noise below a threshold to zero, which gives sheets of clear air between the billows. The
-// threshold leaves a share of 1 / kOneInClear of the tile empty.
+// Subtracts a threshold from the noise and sets smaller values to zero. This creates sheets of
+// clear air between the billows. The threshold leaves the share 1 / kOneInClear of the tile empty.
 void FillTexels(const std::vector<std::uint32_t>& sums, TurbulenceTile* tile) {
   std::vector<std::uint32_t> sorted = sums;
   const auto clear = sorted.begin() + static_cast<std::ptrdiff_t>(sums.size() / kOneInClear);
@@ -50,8 +50,8 @@ std::vector<std::uint32_t> Spread(const std::vector<std::uint32_t>& values, std:
   return spread;
 }
 
-// Returns the exact mean square of the linear interpolant between texels, with texels scaled to 0
-// to 1.
+// Returns the exact mean square of the linear interpolant between texels. Texels are scaled to the
+// range from 0 to 1.
 double MeanSquare(const TurbulenceTile& tile) {
   const auto side = static_cast<std::size_t>(tile.side);
   std::vector<std::uint32_t> spread(tile.texels.begin(), tile.texels.end());
@@ -69,7 +69,7 @@ double MeanSquare(const TurbulenceTile& tile) {
 TurbulenceTile MakeTurbulence(int octaves, std::uint32_t seed) {
   THUNDERHEAD_CHECK(octaves >= 1 && octaves <= kMaxTurbulenceOctaves, std::to_string(octaves));
   TurbulenceTile tile;
-  // The finest octave has two texels a cell.
+  // The finest octave should have two texels in each lattice cell.
   tile.side = std::clamp(TurbulenceTile::kWaves << octaves, kSmallestSide, kLargestSide);
   const auto side = static_cast<std::size_t>(tile.side);
   std::vector<PerlinOctave> parts;
@@ -88,8 +88,8 @@ TurbulenceTile MakeTurbulence(int octaves, std::uint32_t seed) {
                                      static_cast<unsigned>(i);
                      });
       }
-      // The sums are below 2^43: three fades of 12 bits, a place of 5, and a factor of 4. The shift
-      // makes them fit into 32 bits.
+      // The sums are below 2^43: three fades of 12 bits each, a place of 5 bits, and a factor of 4.
+      // The shift makes them fit into 32 bits.
       for (const std::uint64_t sum : row) sums.push_back(static_cast<std::uint32_t>(sum >> 12U));
     }
   }

@@ -27,16 +27,16 @@ namespace {
 
 constexpr std::array<const char*, 3> kRadiance = {"R", "G", "B"};
 constexpr std::array<const char*, 3> kError = {"stderr.R", "stderr.G", "stderr.B"};
-// The channel is not named A, because viewers would use that for compositing.
+// The channel is not named A, because viewers would treat a channel A as alpha for compositing.
 constexpr char kOpacity[] = "storm.opacity";
 constexpr char kOpticalDepth[] = "storm.optical_depth";
 constexpr char kDepthOneDistance[] = "storm.depth_one_distance";
 
-// One channel of a file and the first of its values in a picture.
+// A channel of a file, and the address of its first value in a picture.
 struct Channel {
   const char* name;
   float* first;
-  std::size_t stride;  // bytes from a pixel to the next
+  std::size_t stride;  // bytes from one pixel to the next
 };
 
 void AddColors(const std::array<const char*, 3>& names, std::vector<glm::vec3>& values,
@@ -52,7 +52,7 @@ void AddValues(const char* name, std::vector<float>& values, std::vector<Channel
   if (!values.empty()) channels.push_back({name, values.data(), sizeof(float)});
 }
 
-// Returns the channels of the values that the picture has.
+// Returns the channels for the values that the picture has.
 std::vector<Channel> ChannelsOf(LinearPicture& picture) {
   std::vector<Channel> channels;
   AddColors(kRadiance, picture.radiance, channels);
@@ -72,7 +72,7 @@ Imf::FrameBuffer FrameBufferOf(const std::vector<Channel>& channels, std::size_t
   return buffer;
 }
 
-// OpenEXR reports errors by exceptions, which do not leave this file.
+// Output to memory for OpenEXR. OpenEXR reports errors by exceptions, which do not leave this file.
 class BytesOut final : public Imf::OStream {
  public:
   BytesOut() : OStream("memory") {}
@@ -141,7 +141,7 @@ absl::StatusOr<std::string> EncodeExr(const LinearPicture& picture,
     for (const auto& [name, number] : attributes.numbers) {
       header.insert(name.c_str(), Imf::FloatAttribute(number));
     }
-    // OpenEXR takes non-const addresses even for writing a file.
+    // OpenEXR requires non-const addresses even for writing a file.
     LinearPicture copy = picture;
     const std::vector<Channel> channels = ChannelsOf(copy);
     for (const Channel& channel : channels) {
@@ -149,7 +149,7 @@ absl::StatusOr<std::string> EncodeExr(const LinearPicture& picture,
     }
     BytesOut bytes;
     {
-      // The file is complete when it is closed.
+      // The file is complete only after `file` is destroyed.
       Imf::OutputFile file(bytes, header);
       file.setFrameBuffer(FrameBufferOf(channels, static_cast<std::size_t>(picture.size_px.x)));
       file.writePixels(picture.size_px.y);

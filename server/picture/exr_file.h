@@ -2,11 +2,10 @@
 // channels exist if the picture has their values:
 //
 // - stderr.R, stderr.G, stderr.B: the standard error of the radiance.
-// - storm.opacity: the share of each pixel that the storm covers. It refers to the depth through
-//   which the renderer sees the background, which is less than the whole (decision 44).
-// - storm.optical_depth: the storm's optical depth.
-// - storm.depth_one_distance: the distance (m) at which the optical depth reaches 1, infinite if it
-//   does not.
+// - storm.opacity: the share of each pixel that the storm covers. It is less than 1 - exp(-depth)
+//   because the renderers count forward-scattered light as unscattered (decision 49).
+// - storm.optical_depth: the optical depth of the storm along each pixel's ray.
+// - storm.depth_one_distance: the distance (m) at which the optical depth reaches 1, or infinity.
 #pragma once
 
 #include <map>
@@ -17,7 +16,7 @@
 
 namespace thunderhead::picture {
 
-// Named texts and numbers about the picture in the file's header.
+// Named texts and numbers about the picture, stored in the file's header.
 struct ExrAttributes {
   std::map<std::string, std::string> texts;
   std::map<std::string, float> numbers;
@@ -27,10 +26,11 @@ struct ExrAttributes {
 absl::StatusOr<std::string> EncodeExr(const LinearPicture& picture,
                                       const ExrAttributes& attributes = {});
 
-// Sets a number in the header of a file that EncodeExr made with that number.
+// Replaces the number `name` in the header of a file that EncodeExr made with that number.
 void SetExrNumber(const std::string& name, float value, std::string* exr);
 
-// A picture and its attributes, decoded from a file's bytes. Errors name the file as `what`.
+// A picture and its attributes, decoded from a file's bytes. Error messages name the file as
+// `what`.
 struct ExrPicture {
   LinearPicture picture;
   ExrAttributes attributes;

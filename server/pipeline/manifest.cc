@@ -37,8 +37,8 @@ std::optional<Value> Optional(const Json& json, const char* name) {
   return value.get<Value>();
 }
 
-// Returns the entries of a manifest's text. A last line without a line break is left out because it
-// was not written completely; `whole_bytes` is its start.
+// Returns the entries in a manifest's text. A last line without a line break was not written
+// completely and is left out. `whole_bytes` receives the size of the text before it.
 absl::StatusOr<std::vector<ManifestEntry>> ParseLines(const std::string& path,
                                                       std::string_view text,
                                                       std::size_t& whole_bytes) {
@@ -64,7 +64,7 @@ absl::Status NotUsable(const std::string& path) {
       absl::StrCat(path, ": the manifest cannot be written (", std::strerror(code), ")"), code);
 }
 
-// Returns true if the open file still has that name. Another process may have replaced it.
+// Returns true if `file` is still the file at `path`. Another process may have replaced it.
 bool IsAt(int file, const std::string& path) {
   struct stat open_file {};
   struct stat named {};
@@ -103,7 +103,8 @@ absl::StatusOr<std::vector<ManifestEntry>> Read(const std::string& path) {
   return ParseLines(path, *text, whole_bytes);
 }
 
-// Sorts manifests from oldest to newest. The files of a folder are dated by the same clock.
+// Sorts manifests from oldest to newest. Their modification times come from the same clock, because
+// they are in one folder.
 std::vector<std::string> ByDate(const std::vector<std::string>& manifests) {
   std::vector<std::pair<fs::file_time_type, std::string>> dated;
   for (const std::string& path : manifests) {
@@ -117,8 +118,8 @@ std::vector<std::string> ByDate(const std::vector<std::string>& manifests) {
   return sorted;
 }
 
-// Locks another manifest, which another share may hold briefly to remove a line. Returns -1 if a
-// process holds it longer or it no longer exists.
+// Locks another manifest. The process of another share may hold the lock briefly, to remove a line.
+// Returns -1 if a process holds the lock for longer, or if the manifest no longer exists.
 int LockOther(const std::string& path) {
   constexpr int kTries = 50;
   std::error_code error;
@@ -174,7 +175,7 @@ absl::StatusOr<ManifestEntry> FromLine(std::string_view line) {
     json.at("device").get_to(entry.device);
     json.at("milliseconds").get_to(entry.milliseconds);
     entry.estimated_error = Optional<double>(json, "estimated_error");
-    if (json.contains("error_low")) {  // manifests before version 0.2 have none
+    if (json.contains("error_low")) {  // manifests written before version 0.2 have none
       entry.error_low = Optional<double>(json, "error_low");
       entry.error_high = Optional<double>(json, "error_high");
     }
@@ -222,8 +223,8 @@ absl::Status Manifest::ReadOther(const std::string& manifest) {
   return absl::OkStatus();
 }
 
-// The lines are durable here before they are deleted there. If the process is killed in between,
-// both places have them, and the next run moves them again.
+// Lines are made durable in this manifest before they are deleted from the other one. If the
+// process is killed in between, both manifests have them, and the next run moves them again.
 absl::Status Manifest::TakeOver(const std::vector<std::string>& manifests) {
   std::vector<std::pair<std::string, int>> taken;  // locked
   absl::Status read;
@@ -258,8 +259,8 @@ absl::Status Manifest::TakeOver(const std::vector<std::string>& manifests) {
   return moved;
 }
 
-// Runs before the new line is written. If the process is killed in between, a product has no line
-// and is made again, but no line is ever wrong.
+// Runs before the new line is written. If the process is killed in between, the product has no line
+// and is made again. A wrong line never exists.
 absl::Status Manifest::RemoveFromOthers(const std::string& name) {
   const auto others = others_.find(name);
   if (others == others_.end()) return absl::OkStatus();
@@ -343,7 +344,7 @@ absl::Status Manifest::Append(const ManifestEntry& entry) const {
   if (written == static_cast<ssize_t>(line.size()) && fsync(file_) == 0) return absl::OkStatus();
   if (written >= 0 && written < static_cast<ssize_t>(line.size())) errno = ENOSPC;
   absl::Status status = NotUsable(path_);
-  // The next run would also drop a partial line, so a failed truncation is harmless.
+  // If the truncation fails, the partial line remains, and the next run drops it.
   if (ftruncate(file_, before.st_size) != 0) return status;
   return status;
 }

@@ -1,5 +1,6 @@
-// The manifest has one line of JSON for each complete product, written after the product. It
-// records which file each picture was made from, and shows what need not be drawn again.
+// The manifest: a file with one line of JSON for each complete product, written after the product.
+// It records from which input file each product was made, and shows which products need not be made
+// again.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +16,11 @@
 
 namespace thunderhead::pipeline {
 
-// The input file of a product, in its state at that time.
+// The input file of a product, in its state when the product was made.
 struct InputFile {
   std::string path;
   std::uint64_t bytes = 0;
-  std::int64_t modified_ns = 0;  // since 1970
+  std::int64_t modified_ns = 0;  // nanoseconds since 1970
   std::string sha256;
 };
 
@@ -28,7 +29,7 @@ struct ManifestEntry {
   std::uint64_t bytes = 0;
   std::string sha256;
   std::string storm;
-  std::string valid;               // ISO 8601, UTC
+  std::string valid;               // valid time, ISO 8601, UTC
   std::optional<std::string> run;  // start of the run, in the same format
   std::optional<double> lead_s;
   std::string view;
@@ -37,7 +38,8 @@ struct ManifestEntry {
   std::string device;
   double milliseconds = 0.0;
   std::optional<double> estimated_error;
-  // The 95 % interval; absent if the error was taken from a table and not measured.
+  // The 95 % confidence interval of the error. Absent if the error was not measured but taken from
+  // a table.
   std::optional<double> error_low;
   std::optional<double> error_high;
   InputFile input;
@@ -45,40 +47,43 @@ struct ManifestEntry {
 
 // Returns one line without the line break.
 std::string ToLine(const ManifestEntry& entry);
-// INVALID_ARGUMENT if ToLine cannot have written the line.
+// Parses a line. INVALID_ARGUMENT if ToLine cannot have written it.
 absl::StatusOr<ManifestEntry> FromLine(std::string_view line);
 
-// The other manifests in a manifest's folder.
+// The other manifests in the folder of a manifest.
 struct OtherManifests {
-  std::vector<std::string> count;  // manifests whose products count as done, too
-  // Manifests of shares that have ended. Their lines are moved into this manifest, and they are
-  // deleted. A manifest that a process still holds is treated like those in `count`.
+  std::vector<std::string> count;  // manifests whose products count as finished too
+  // Manifests of shares that have ended. Their lines are moved into this manifest, and the files
+  // are deleted. A manifest whose lock another process still holds is treated like those in
+  // `count`.
   std::vector<std::string> take_over;
 };
 
-// The manifest of one process. The process holds its lock until it ends for any reason.
+// The manifest of one process. The process holds the file's lock until it ends, also if it is
+// killed.
 class Manifest {
  public:
-  // Creates the manifest if it does not exist. Drops an incomplete last line. DATA_LOSS if another
-  // line is not an entry; UNAVAILABLE if another process holds the manifest.
+  // Opens the manifest, and creates it if it does not exist. Drops an incomplete last line.
+  // DATA_LOSS if any other line is not an entry; UNAVAILABLE if another process holds the
+  // manifest's lock.
   static absl::StatusOr<Manifest> Open(const std::string& path, const OtherManifests& others);
   Manifest(Manifest&& other) noexcept;
   Manifest& operator=(Manifest&&) = delete;
   ~Manifest();
 
-  // Returns the entry of the product at `path`, or null. This manifest's entry comes first, then
-  // that of the other manifest that was written last.
+  // Returns the entry of the product at `path`, or null. An entry of this manifest takes
+  // precedence, then the newest entry of the other manifests.
   const ManifestEntry* Find(const std::string& path) const;
 
-  // Returns the same for all products.
+  // Returns the entries of all products, chosen as by Find.
   std::vector<ManifestEntry> Entries() const;
   // Returns the path of an entry's product.
   std::string PathOf(const ManifestEntry& entry) const;
-  // Returns the name in entries of the product at `path`.
+  // Returns the name under which entries refer to the product at `path`.
   std::string NameOf(const std::string& path) const;
 
-  // Adds the entry of the product at `path` and removes an older one from any manifest. Returns
-  // when the entry is durable. Sets `entry.file`.
+  // Adds the entry of the product at `path`, and removes an older entry of it from any manifest.
+  // Sets `entry.file`. Returns once the entry is durable.
   absl::Status Record(const std::string& path, ManifestEntry entry);
 
   const std::string& Path() const { return path_; }
@@ -99,10 +104,12 @@ class Manifest {
   absl::Status Rewrite();
 
   std::string path_;
-  int file_;                                          // locked; -1: none
+  // File descriptor of the locked file; -1 if none.
+  int file_;
   std::vector<ManifestEntry> entries_;                // of this manifest, in order
   std::map<std::string, std::vector<Other>> others_;  // by product, newest last
-  std::set<std::string> held_;                        // other manifests that a process holds
+  // Other manifests whose locks other processes hold.
+  std::set<std::string> held_;
 };
 
 }  // namespace thunderhead::pipeline

@@ -24,7 +24,8 @@ namespace {
 
 constexpr int kLongestGap = 1000;
 
-// libavcodec's own errors consist of four letters and are far above the system's error numbers.
+// The error numbers of libavcodec itself consist of four letters and are above this value. The
+// system's error numbers are below it.
 constexpr int kErrnos = 4096;
 
 // A kind of movie, identified by the file extension.
@@ -33,8 +34,8 @@ struct Kind {
   const char* container;
   AVCodecID codec;
   const char* codec_name;
-  // Settings of the encoder: a constant quality at which clouds show no loss. libvpx counts from 0
-  // to 63, libx264 to 51; lower is better.
+  // Settings of the encoder: a constant quality at which clouds show no loss. libvpx counts quality
+  // from 0 to 63 and libx264 from 0 to 51; lower is better.
   std::vector<std::pair<const char*, const char*>> encoder;
   std::vector<std::pair<const char*, const char*>> muxer;
 };
@@ -131,7 +132,8 @@ class MovieWriter {
     }
     format_.reset(format);
     codec_.reset(avcodec_alloc_context3(codec));
-    // Chroma has half the size, so an odd last row or column is left out.
+    // The chroma planes have half the size, so an odd last row or column of the picture is left
+    // out.
     codec_->width = width_px & ~1;
     codec_->height = height_px & ~1;
     codec_->time_base = {1, frames_per_second};
@@ -141,7 +143,7 @@ class MovieWriter {
     codec_->colorspace = AVCOL_SPC_BT709;
     codec_->color_primaries = AVCOL_PRI_BT709;
     codec_->color_trc = AVCOL_TRC_IEC61966_2_1;
-    codec_->bit_rate = 0;  // the quality setting decides
+    codec_->bit_rate = 0;  // 0, because the quality setting decides
     if ((format->oformat->flags & AVFMT_GLOBALHEADER) != 0) {
       codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     }

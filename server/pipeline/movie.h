@@ -1,5 +1,5 @@
-// Makes movies of pictures with libavcodec, in this process: VP9 in WebM, or H.264 in MP4 if
-// libavcodec has an encoder for it.
+// Makes movies from pictures with libavcodec, in this process: VP9 in WebM, or H.264 in MP4 if
+// libavcodec has an H.264 encoder.
 #pragma once
 
 #include <functional>
@@ -17,9 +17,10 @@ namespace thunderhead::pipeline {
 // Returns true for a name that ends in .webm or .mp4.
 bool IsMovieName(std::string_view path);
 
-// Returns the number of movie frames for each picture. Each frame covers the same time of the
-// storm: the shortest step between two pictures. `valid` are the pictures' times in order. The last
-// picture gets one frame. A gap of a thousand steps or more counts as one.
+// Returns for each picture the number of movie frames that show it. Each movie frame covers the
+// same time of the storm: the shortest step between two pictures. `valid` are the pictures' valid
+// times in order. The last picture gets one frame. So does a picture before a gap of a thousand
+// steps or more.
 std::vector<int> FramesOfPictures(const std::vector<absl::Time>& valid);
 
 // Text in the movie's metadata, which players and ffprobe show.
@@ -29,12 +30,13 @@ struct MovieText {
   std::string description = {};
 };
 
-// Reads the picture of that index. All pictures must have the same size.
+// A function that reads the picture with that index. All pictures must have the same size.
 using MoviePicture = std::function<absl::StatusOr<frame::RgbImage>(std::size_t)>;
 
-// Writes the movie at `path`, completely or not at all. `frames[i]` is the number of frames of
-// picture i. Errors: those of `picture`, those of base::WriteWholeFile, and FAILED_PRECONDITION if
-// there is no encoder. INVALID_ARGUMENT if pictures differ in size or cannot be encoded.
+// Writes the movie at `path`, completely or not at all. `frames[i]` is the number of movie frames
+// of picture i. Returns the errors of `picture` and of base::WriteWholeFile. Returns
+// FAILED_PRECONDITION if there is no encoder, and INVALID_ARGUMENT if pictures differ in size or
+// cannot be encoded.
 absl::Status WriteMovie(const std::string& path, const std::vector<int>& frames,
                         int frames_per_second, const MovieText& text, const MoviePicture& picture);
 

@@ -12,7 +12,7 @@
 namespace thunderhead::pipeline {
 namespace {
 
-// An upper limit far above any reasonable number of processes.
+// An upper limit for the number of shares, far above any reasonable number of processes.
 constexpr int kMaxShards = 1'000'000;
 
 absl::string_view PlanText(std::string_view text) { return {text.data(), text.size()}; }
@@ -77,7 +77,8 @@ absl::StatusOr<Shard> ShardOfEnvironment() {
     return ShardOf("the share of SLURM_ARRAY_TASK_ID", absl::StrCat(index - minimum), count);
   }
   if (const char* index = variable("JOB_COMPLETION_INDEX"); index != nullptr) {
-    // Kubernetes gives a pod only its index, so the job's manifest must pass the number of pods.
+    // Kubernetes tells a pod only its own index. The number of pods must be passed by the Job's
+    // manifest.
     const char* count = variable("JOB_COMPLETIONS");
     if (count == nullptr) {
       return absl::InvalidArgumentError(

@@ -49,7 +49,7 @@ std::optional<int> WidthOf(std::string_view format) {
 }
 
 std::string Formatted(std::string_view format, absl::Time time) {
-  // %E4Y gives years before 1000 four digits, too.
+  // Years before 1000 must have four digits too, so %Y is replaced by %E4Y.
   const std::string four =
       absl::StrReplaceAll(absl::string_view(format.data(), format.size()), {{"%Y", "%E4Y"}});
   return absl::FormatTime(four, time, absl::UTCTimeZone());

@@ -1,4 +1,4 @@
-// Names of products by a template, such as
+// Names of products from a template, such as
 // "out/{storm}_{run:%Y%m%d%H}_{valid:%Y%m%d_%H%M}_{lead:03d}_{view}.png".
 #pragma once
 
@@ -18,7 +18,7 @@ struct ProductKey {
   std::string storm;
   std::optional<absl::Time> run;  // start of the run; absent if unknown
   absl::Time valid;
-  int time_index = 0;  // among the run's times
+  int time_index = 0;  // index of the time in the run, counted from 0
   std::string view;
 };
 
@@ -34,22 +34,23 @@ class ProductName {
   //
   //   {time}                    the index of the time
   //
-  // A number may have a width, as in {lead:03d}. INVALID_ARGUMENT names the wrong part and `flag`.
+  // A number may have a width, as in {lead:03d}. INVALID_ARGUMENT names the wrong part and the
+  // command-line option `flag`.
   static absl::StatusOr<ProductName> Parse(std::string_view flag, std::string_view text);
 
-  // Returns the product's name. INVALID_ARGUMENT if the name needs the start of the run and that is
+  // Returns the product's name. INVALID_ARGUMENT if the name needs the start of the run, which is
   // unknown.
   absl::StatusOr<std::string> For(const ProductKey& key) const;
 
-  // Returns true if names depend on a field, such as "view".
+  // Returns true if the names contain a field, such as "view".
   bool Has(std::string_view field) const;
 
   const std::string& Text() const { return text_; }
-  // Returns the deepest folder that contains all products; "." if it is the current folder.
+  // Returns the deepest folder that contains all products; "." for the current folder.
   std::string Folder() const;
 
  private:
-  // A field with its format, or fixed text if `field` is empty.
+  // A field with its format; if `field` is empty, fixed text.
   struct Part {
     std::string field;
     std::string format;  // format of a time, or the fixed text
@@ -62,7 +63,8 @@ class ProductName {
   std::vector<Part> parts_;
 };
 
-// INVALID_ARGUMENT, naming both, if two products of `keys` would have the same name.
+// INVALID_ARGUMENT if two products of `keys` would have the same name. The error names both
+// products.
 absl::Status CheckDistinct(const ProductName& name, const std::vector<ProductKey>& keys);
 
 }  // namespace thunderhead::pipeline

@@ -11,7 +11,8 @@
 namespace thunderhead::pipeline {
 namespace {
 
-// Longest pause between two pieces of a slow copy.
+// The time without a change after which a file is complete: the longest pause between two pieces of
+// a slow copy.
 constexpr absl::Duration kSettled = absl::Seconds(2);
 
 absl::string_view AbslView(std::string_view text) { return {text.data(), text.size()}; }

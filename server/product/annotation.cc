@@ -20,7 +20,7 @@ namespace {
 constexpr char kFont[] = "DejaVu Sans, Liberation Sans, Sans";
 constexpr double kLinesInAPicture = 30.0;
 constexpr double kMinText_px = 10.0;
-// In units of the line height.
+// Sizes in units of the line height.
 constexpr double kMargin = 0.6;
 constexpr double kEdge = 0.16;
 constexpr double kSwatch = 0.7;
@@ -74,7 +74,7 @@ class Pen {
   double Width_px() const { return width_px_; }
   double Height_px() const { return height_px_; }
 
-  // Draws a line of text below `top_px`. Returns the top of the next line.
+  // Draws a line of text whose top is at `top_px`. Returns the top of the next line.
   double TextAt(double left_px, double top_px, double max_width_px, const std::string& text,
                 PangoWeight weight = PANGO_WEIGHT_NORMAL) {
     const Layout layout = LayoutOf(text, max_width_px, weight);
@@ -126,7 +126,7 @@ class Pen {
     return width_px_ - left_px;
   }
 
-  // Returns Cairo's first error, which Cairo keeps.
+  // Returns the first error of Cairo, which the context keeps.
   absl::Status Status() const {
     const cairo_status_t status = cairo_status(context_.get());
     if (status == CAIRO_STATUS_SUCCESS) return absl::OkStatus();
@@ -139,7 +139,7 @@ class Pen {
     cairo_set_source_rgba(context_.get(), grey, grey, grey, alpha);
   }
 
-  // Lays out one line, as wide as necessary if `max_width_px` is 0.
+  // Lays out one line. If `max_width_px` is 0, the line may be of any width.
   Layout LayoutOf(const std::string& text, double max_width_px, PangoWeight weight) const {
     Layout layout(pango_cairo_create_layout(context_.get()));
     const Font font(pango_font_description_from_string(kFont));
@@ -215,7 +215,7 @@ absl::Status Annotate(const Annotation& annotation, frame::RgbImage& image) {
   Pen pen(surface.get(), image.width_px, image.height_px);
   double room_px = pen.Width_px() - 2.0 * pen.Margin_px();
   if (annotation.logo != nullptr) room_px -= pen.Mark(*annotation.logo);
-  // A picture hardly wider than its logo keeps some letters of its title.
+  // If the picture is hardly wider than its logo, the title still keeps some letters.
   room_px = std::max(room_px, 3.0 * pen.Line_px());
   const double below_title_px =
       pen.TextAt(pen.Margin_px(), pen.Margin_px(), room_px, annotation.title, PANGO_WEIGHT_BOLD);

@@ -12,7 +12,7 @@
 
 namespace thunderhead::product {
 
-// A colour and its meaning.
+// A line of the legend: a colour and what it means.
 struct LegendEntry {
   std::string name;
   glm::vec3 color{1.0F};  // linear sRGB
@@ -24,10 +24,11 @@ struct Annotation {
   std::string run;                  // below the title; may be empty
   std::string valid_time;           // lower left
   std::vector<LegendEntry> legend;  // lower right, first entry on top
-  const Logo* logo = nullptr;  // upper right, at most a sixth of the picture's height; may be null
+  // In the upper right corner, at most a sixth of the picture's height; may be null.
+  const Logo* logo = nullptr;
 };
 
-// Returns the height of a line of text in a picture of that height.
+// Returns the height of a text line, in pixels, for a picture of that height.
 double TextHeight_px(int picture_height_px);
 
 // Draws the annotation. FAILED_PRECONDITION if this machine has no font.

@@ -10,16 +10,19 @@
 
 namespace thunderhead::product {
 
-// The attributes of the variable that `grid_mapping` names.
+// The attributes of the grid mapping variable, which a data variable's attribute `grid_mapping`
+// names.
 struct CfGridMapping {
-  // The conventions have no name for a grid in degrees whose cells are drawn as evenly spaced
-  // metres. Coordinates of such a grid are written in degrees.
+  // True for a grid in degrees of latitude and longitude whose cells are drawn as evenly spaced
+  // metres. The conventions have no name for this projection, so its coordinates are written in
+  // degrees.
   bool in_degrees = false;
   std::map<std::string, std::string> texts;
   std::map<std::string, std::vector<double>> numbers;
 };
 
-// Returns the grid mapping of a projection that storm files use. INVALID_ARGUMENT for others.
+// Returns the grid mapping of a projection. INVALID_ARGUMENT if storm files cannot have this
+// projection.
 absl::StatusOr<CfGridMapping> GridMappingOf(const MapProjection& projection);
 
 }  // namespace thunderhead::product

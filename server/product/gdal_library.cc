@@ -9,7 +9,8 @@
 namespace thunderhead::product {
 namespace {
 
-// The version in Debian 12, then the name that a development package installs.
+// File names of the library: the version in Debian 12, then the name that a development package
+// installs.
 constexpr std::array<const char*, 2> kNames = {"libgdal.so.32", "libgdal.so"};
 
 template <typename Function>

@@ -1,5 +1,6 @@
-// GDAL, loaded for the first GeoTIFF. Linking it would load a hundred libraries at every start of
-// the program. It uses GDAL's C interface, whose functions have not changed since version 1.
+// GDAL, which is loaded when the first GeoTIFF is made. If the program were linked with GDAL, each
+// start would load a hundred libraries. Only GDAL's C functions are used, which have not changed
+// since version 1.
 #pragma once
 
 #include <cpl_error.h>
@@ -11,9 +12,10 @@
 
 namespace thunderhead::product {
 
-// Members have GDAL's names, so that its manual applies.
+// GDAL's functions. The members have GDAL's names, so that its manual applies.
 struct GdalLibrary {
-  // Registers only this format. Others use netCDF-C and HDF5, which allow one thread at a time.
+  // Registers only the GeoTIFF format. Other formats use netCDF-C and HDF5, which allow one thread
+  // at a time.
   decltype(&::GDALRegister_GTiff) RegisterGTiff = nullptr;
   decltype(&::GDALGetDriverByName) GetDriverByName = nullptr;
   decltype(&::GDALCreate) Create = nullptr;
@@ -30,8 +32,8 @@ struct GdalLibrary {
   decltype(&::CPLQuietErrorHandler) QuietErrorHandler = nullptr;
   decltype(&::CPLGetLastErrorMsg) GetLastErrorMsg = nullptr;
 
-  // Loads the library once and keeps it. FAILED_PRECONDITION names the package if it is not
-  // installed. Safe from any thread.
+  // Returns the library, which is loaded once and kept. FAILED_PRECONDITION names the package if
+  // GDAL is not installed. Safe from any thread.
   static absl::StatusOr<const GdalLibrary*> Get();
 };
 

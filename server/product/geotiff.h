@@ -10,9 +10,9 @@
 
 namespace thunderhead::product {
 
-// Returns the file's bytes: red, green and blue of 8 bits each, with lossless compression. `texts`
-// become metadata under their names. `place` must have a projection. FAILED_PRECONDITION if GDAL is
-// not available. Safe from any thread.
+// Returns the file's bytes: red, green and blue with 8 bits each, with lossless compression.
+// `texts` become metadata; their keys are the names. `place` must have a projection.
+// FAILED_PRECONDITION if GDAL is not installed. Safe from any thread.
 absl::StatusOr<std::string> EncodeGeoTiff(const frame::RgbImage& image, const MapPlace& place,
                                           const std::map<std::string, std::string>& texts);
 

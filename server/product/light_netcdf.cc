@@ -30,7 +30,7 @@ std::string AttributeName(const std::string& name) {
   return absl::AsciiStrToLower(absl::StrReplaceAll(name, {{".", "_"}}));
 }
 
-// Writes the file. The values of variables are collected at their declaration and written after all
+// Writes the file. Values are collected when their variables are declared, and written after all
 // declarations.
 class LightFile {
  public:
@@ -137,7 +137,7 @@ class LightFile {
     const int variable = file_.Variable(name, NC_DOUBLE, {});
     file_.Text(variable, "standard_name", name);
     file_.Text(variable, "units", absl::StrCat("seconds since ", Iso(epoch)));
-    // Models use this calendar, and CF's default calendar changes in 1582.
+    // Models use the proleptic Gregorian calendar. CF's default calendar changes in 1582.
     file_.Text(variable, "calendar", "proleptic_gregorian");
     doubles_.emplace_back(variable, std::vector{absl::ToDoubleSeconds(time - epoch)});
     coordinates_.emplace_back(name);
@@ -213,7 +213,8 @@ class LightFile {
 
   const LightMap& map_;
   NetcdfWriter file_;
-  // Identifiers of netCDF-C. x is declared first and is the last dimension.
+  // Identifiers of netCDF-C. The dimension x is declared first, but is the last dimension of
+  // variables.
   std::vector<int> dimensions_;
   std::vector<std::string> coordinates_;
   bool mapped_ = false;

@@ -1,6 +1,6 @@
-// Encodes a top-down picture as radiance in a CF netCDF file, for programs that calculate with
-// maps. The file has the radiance, the storm's opacity and optical depth, and the height at which
-// the optical depth reaches 1.
+// Encodes a top-down picture as radiance in a CF netCDF file, for programs that compute with maps.
+// The file has the radiance, the storm's opacity and optical depth, and the height at which the
+// optical depth reaches 1.
 #pragma once
 
 #include <map>
@@ -17,17 +17,18 @@ namespace thunderhead::product {
 struct LightMap {
   picture::LinearPicture picture;  // with north up
   MapPlace place;
-  double eye_altitude_m = 0.0;  // altitude from which distances are measured
+  // Altitude of the eye, from which the picture's distances are measured.
+  double eye_altitude_m = 0.0;
   absl::Time valid;
   std::optional<absl::Time> run;             // start of the run
   std::optional<double> estimated_error;     // relative RMSE of the radiance
   std::map<std::string, std::string> texts;  // global attributes
 };
 
-// Returns the file's bytes; `what` names them in errors. The file follows CF-1.8 on the picture's
-// pixels. If the place has a projection, it has `grid_mapping` and each pixel's latitude and
-// longitude. Otherwise coordinates are metres from the middle of the domain. Holds the lock of
-// netCDF-C. Safe from any thread.
+// Returns the file's bytes; `what` names the file in errors. The file follows CF-1.8, with one grid
+// cell per pixel. If the place has a projection, the file has `grid_mapping` and the latitude and
+// longitude of each pixel. Otherwise the coordinates are metres from the middle of the domain.
+// Holds the lock of netCDF-C while it works. Safe from any thread.
 absl::StatusOr<std::string> EncodeLightNetcdf(const LightMap& map, const std::string& what);
 
 }  // namespace thunderhead::product

@@ -13,7 +13,7 @@ namespace thunderhead::product {
 absl::StatusOr<MapProjection> MapProjection::Open(const std::string& text) {
   MapProjection projection;
   projection.context_.reset(proj_context_create());
-  // PROJ's messages are returned in the status instead.
+  // PROJ must print nothing, because its errors are returned in the status.
   proj_log_level(projection.context_.get(), PJ_LOG_NONE);
   projection.transform_.reset(proj_create(projection.context_.get(), text.c_str()));
   projection.system_.reset(

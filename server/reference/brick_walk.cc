@@ -7,12 +7,12 @@ namespace thunderhead::reference {
 namespace {
 
 // A horizontal ray through gaps of a periodic medium would never end. It is therefore assumed to
-// leave after this many periods. The probability of a scattered ray that horizontal is about 1e-6
-// at most.
+// leave the medium after this many periods. The probability of such a nearly horizontal scattered
+// ray is at most about 1e-6.
 constexpr double kMaxPeriods = 1e5;
 
-// Clips the interval to the medium's extent along one axis. `inverse` is one over each component of
-// the ray's direction.
+// Clips the interval to the medium's extent along one axis. `inverse` holds the reciprocals of the
+// components of the ray's direction.
 void ClipAxis(const Ray& ray, const glm::dvec3& inverse, int axis, const Medium& medium,
               RayInterval* interval) {
   const double origin = ray.origin_m[axis];
@@ -58,7 +58,7 @@ BrickWalk::BrickWalk(const Medium& medium, const Ray& ray, double limit_m, Optic
   for (int axis = 0; axis < 3; ++axis) {
     const double direction = ray.direction[axis];
     step_[axis] = direction > 0.0 ? 1 : (direction < 0.0 ? -1 : 0);
-    // Infinite if the ray is perpendicular to the axis.
+    // delta_m_ is infinite if the ray is perpendicular to the axis.
     delta_m_[axis] = medium.BrickSize_m()[axis] * std::abs(inverse_[axis]);
     Enter(axis);
   }

@@ -1,5 +1,6 @@
-// Traverses the lattice of a medium's bricks along a ray (Amanatides and Woo 1987). It yields the
-// segments of constant majorant in order. This code does not use light.
+// Traverses the lattice of a medium's bricks along a ray (Amanatides and Woo 1987). It yields in
+// order the segments of the ray with a constant majorant (upper bound of the extinction). This code
+// does not use light.
 #pragma once
 
 #include <limits>
@@ -26,8 +27,8 @@ struct RayInterval {
   double end_m = 0.0;
 };
 
-// Returns the part of `ray` up to `limit_m` in the medium's box. For a periodic medium, it is the
-// part in the box's range of heights.
+// Returns the part of `ray` up to `limit_m` that lies in the medium's box. A periodic medium has no
+// sides, so only the box's range of heights limits the ray.
 RayInterval Clip(const Medium& medium, const Ray& ray, double limit_m);
 
 // A segment of a ray in a non-empty brick.

@@ -10,11 +10,11 @@ namespace thunderhead::reference {
 
 // A camera whose rays' origins and directions depend linearly on the place in the picture.
 struct Camera {
-  glm::dvec3 origin_m{0.0};        // of the ray in the picture's middle
-  glm::dvec3 origin_right_m{0.0};  // origin's change from x = 0 to x = 1
+  glm::dvec3 origin_m{0.0};        // origin of the ray through the picture's middle
+  glm::dvec3 origin_right_m{0.0};  // change of the ray's origin from x = 0 to x = 1
   glm::dvec3 origin_up_m{0.0};
   glm::dvec3 forward{0.0, 1.0, 0.0};
-  glm::dvec3 right{0.0};  // direction's change from x = 0 to x = 1
+  glm::dvec3 right{0.0};  // change of the ray's direction from x = 0 to x = 1
   glm::dvec3 up{0.0};
 
   // Converts a view, with or without perspective.

@@ -11,18 +11,19 @@
 namespace thunderhead::reference {
 namespace {
 
-// Share of paths from the eye that also trace light which the medium sends to the air.
+// Share of the paths for which light from the medium that the air scatters to the eye is also
+// traced.
 constexpr double kAirPathShare = 0.25;
 
-// Returns the part of `ray` up to `distance_m` from the first of the boxes to the last. It is empty
-// if end <= begin.
+// Returns the part of `ray` up to `distance_m` that begins where the ray enters the first of the
+// boxes and ends where it leaves the last. It is empty if end <= begin.
 RayInterval IntervalIn(const std::vector<Box>& boxes, const Ray& ray, double distance_m) {
   RayInterval all{kEndless_m, 0.0};
   for (const Box& box : boxes) {
     RayInterval in{0.0, distance_m};
     for (int axis = 0; axis < 3; ++axis) {
-      // A ray along a side divides by zero. The infinite results then put the whole ray inside or
-      // outside.
+      // If the ray is parallel to a side, this divides by zero. The infinite results then put the
+      // whole ray inside or outside.
       const double a = (box.low_m[axis] - ray.origin_m[axis]) / ray.direction[axis];
       const double b = (box.high_m[axis] - ray.origin_m[axis]) / ray.direction[axis];
       in.begin_m = std::max(in.begin_m, std::min(a, b));
@@ -40,9 +41,10 @@ class Segment {
   Segment(const Surroundings& surroundings, const Ray& ray, RandomStream* random)
       : surroundings_(surroundings), ray_(ray), random_(random) {}
 
-  // Subtracts the medium's shadow from the light of the air before `distance_m`, estimated at one
-  // random place. Light that air has scattered before arrives there from a random direction of the
-  // upper hemisphere. If that direction meets the medium, the medium's light replaces the sky's.
+  // Subtracts the medium's shadow from the light of the air that is nearer than `distance_m`. The
+  // shadow is estimated at one random place on the ray. The skylight there arrives from a random
+  // direction of the upper hemisphere. If that direction meets the medium, the medium's light
+  // replaces the skylight.
   void ShadeAir(double distance_m) {
     if (!surroundings_.shaded_air.has_value()) return;
     const ShadedAir& air = *surroundings_.shaded_air;
@@ -130,7 +132,8 @@ class Segment {
         physics::glsl::glint(glm::vec3(towards_eye), glm::vec3(surroundings_.towards_sun)));
     segment_.shaded.push_back({{point_m, surroundings_.towards_sun},
                                segment_.throughput * glint * surroundings_.SunAt(point_m.z)});
-    // The facet is sampled by the density of facets on level ground, exp(-tan^2 / kWaterSlopes).
+    // The facet of the rough water is sampled by the density of facets on level ground, exp(-tan^2
+    // / kWaterSlopes).
     const double slope =
         std::sqrt(-physics::glsl::kWaterSlopes * std::log(1.0 - random_->Uniform()));
     const double azimuth_rad = 2.0 * std::numbers::pi * random_->Uniform();
@@ -140,7 +143,7 @@ class Segment {
     const glm::dvec3 reflected = 2.0 * facing * facet - towards_eye;
     if (facing <= 0.0 || reflected.z <= 0.0) return;
     const auto cosine = [](const glm::dvec3& direction) { return static_cast<float>(direction.z); };
-    // Walter et al. 2007, eq. 41.
+    // Weight of the sampled facet: Walter et al. 2007, eq. 41.
     segment_.throughput *= physics::glsl::facet_reflectance(static_cast<float>(facing)) * facing *
                            physics::glsl::facets_unhidden(cosine(towards_eye)) *
                            physics::glsl::facets_unhidden(cosine(reflected)) /

@@ -40,8 +40,8 @@ enum Quantity {
   kQuantities
 };
 
-// Numbers of events, of one photon or in total. They are integers, so the order in which threads
-// add them does not matter.
+// Numbers of events, either of one photon or in total. They are integers, so the result does not
+// depend on the order in which threads add them.
 using Counts = std::array<std::int64_t, kQuantities>;
 
 struct Sums {
@@ -118,8 +118,8 @@ class Photon {
     const Scattering scattering = problem_.medium->ScatteringAt(ray_.origin_m, random_->Uniform());
     const double albedo = (scattering.weight.x + scattering.weight.y + scattering.weight.z) / 3.0;
     if (random_->Uniform() >= albedo) return End(kAbsorbed);
-    // A random colour selects the phase function, so the mean over photons is the mean of the three
-    // functions.
+    // A randomly chosen colour selects the phase function. The mean over many photons is therefore
+    // the mean of the three colours' functions.
     const auto color = static_cast<std::size_t>(3.0 * random_->Uniform());
     const double mu = scattering.phase->Sample(random_->Uniform(), color).mu;
     ray_.direction = Deflect(ray_.direction, mu, 2.0 * std::numbers::pi * random_->Uniform());
@@ -145,7 +145,7 @@ class Photon {
     return false;
   }
 
-  // Moves the photon back into the periodic domain, which keeps coordinates small and therefore
+  // Moves the photon back into the periodic domain. This keeps coordinates small and therefore
   // precise.
   void Wrap() {
     for (int axis = 0; axis < 2; ++axis) {

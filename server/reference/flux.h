@@ -1,6 +1,6 @@
 // Fluxes of sunlight through a domain, computed by tracing photons from the sun. The results are
-// domain means with standard errors. Every photon is counted at exactly one end point, so those
-// shares sum to exactly 1. Colours are averaged: albedo and phase function are the means over red,
+// domain means with standard errors. Every photon ends in exactly one way, so the shares of these
+// ends add up to exactly 1. Colours are averaged: albedo and phase function are the means over red,
 // green and blue.
 #pragma once
 
@@ -32,35 +32,39 @@ struct FluxProblem {
 
 struct FluxOptions {
   std::int64_t photons = 1'000'000;
-  double seconds = 0.0;  // time limit, which the first photons may exceed; 0: none
+  // Time limit in seconds, which the first photons may exceed. 0 means no limit.
+  double seconds = 0.0;
   std::uint64_t seed = 0;
-  int threads = 0;  // 0: as many as the machine has
+  int threads = 0;  // number of threads; 0 means as many as the machine has
 };
 
-// A share of the sunlight on the domain's top.
+// A share of the sunlight that falls on the domain's top.
 struct FluxShare {
   double value = 0.0;
   double standard_error = 0.0;
 };
 
 struct FluxResult {
-  FluxShare reflectance;    // leaves through the top
-  FluxShare transmittance;  // arrives at the bottom, counted at each arrival: direct + diffuse
-  FluxShare transmittance_direct;   // arrives without a scattering or reflection before
-  FluxShare transmittance_diffuse;  // arrives after one or more
-  FluxShare absorptance;            // absorbed in the medium
-  FluxShare sides;                  // leaves through the sides
-  FluxShare ground_absorptance;     // transmittance minus the share that the ground reflects
+  FluxShare reflectance;  // share that leaves through the top
+  // Share that arrives at the bottom, the sum of direct and diffuse. A photon counts at each
+  // arrival.
+  FluxShare transmittance;
+  FluxShare transmittance_direct;  // share that arrives without scattering or reflection before
+  // Share that arrives after at least one scattering or reflection.
+  FluxShare transmittance_diffuse;
+  FluxShare absorptance;         // share absorbed in the medium
+  FluxShare sides;               // share that leaves through the sides
+  FluxShare ground_absorptance;  // transmittance minus the share that the ground reflects
   std::int64_t photons = 0;
 };
 
-// A callback that receives the finished share between groups of photons.
+// A callback that receives the finished share of the work from time to time.
 using FluxObserver = std::function<void(double share)>;
 
 // Traces photons until `photons` are done, the time limit is reached or `stop` requests a stop.
-// When stopped, it returns the result so far. For a given number of photons the result is
-// bit-identical for any number of threads. Fails if the sun is not above the horizon, the ground's
-// albedo is not within 0 to 1, or no photon was traced.
+// When stopped, it returns the result of the photons traced so far. For a given number of photons
+// the result is bit-identical for any number of threads. Fails if the sun is not above the horizon,
+// the ground's albedo is not within 0 to 1, or no photon was traced.
 absl::StatusOr<FluxResult> ComputeFlux(const FluxProblem& problem, const FluxOptions& options,
                                        const FluxObserver& observer, const std::stop_token& stop);
 

@@ -15,8 +15,7 @@
 namespace thunderhead::reference {
 namespace {
 
-// Rounding could make an interpolated value exceed the exact maximum, so majorants include this
-// margin.
+// Factor of majorants. Because of rounding, an interpolated value could exceed the exact maximum.
 constexpr double kMajorantMargin = 1.0 + 1e-6;
 
 absl::Status CheckGroup(const ScatteringGroup& group, std::size_t cells) {
@@ -133,7 +132,7 @@ int Medium::CellIndex(int axis, int cell) const {
   return std::clamp(cell, 0, grid_.cells[axis] - 1);
 }
 
-// Returns all cells that points of the brick read.
+// Returns the range of cells from which extinction in the brick is interpolated.
 Medium::CellRange Medium::CellsOfBrick(int axis, int brick) const {
   const int first = first_cell_[axis] + brick;
   return {first, linear_ ? first + 1 : first};
@@ -153,9 +152,9 @@ double Medium::LargestIn(const Lattice& lattice, const CellRange& x, const CellR
   return largest;
 }
 
-// Lays out the bricks. A brick lies between the centres of neighbouring cells, where interpolation
-// is one trilinear function, or it is a constant cell. The outermost bricks may extend beyond the
-// box.
+// Sets the layout of the bricks. With linear interpolation, a brick lies between the centres of
+// neighbouring cells, so the extinction in it is one trilinear function. With constant cells, a
+// brick is a cell. The outermost bricks may extend beyond the box.
 void Medium::BuildBricks() {
   constexpr double kSlack = 1e-6;
   const double centre = linear_ ? 0.5 : 0.0;
@@ -260,7 +259,7 @@ double Medium::MeanExtinction_per_m(const glm::ivec3& brick, const glm::dvec3& f
     return static_cast<double>(values[along_x[x] + along_y[y] + along_z[z]]);
   };
   if (!linear_) return corner(0, 0, 0);
-  // Values at the four edges along x, and their slopes.
+  // Values at the four corners of the brick with low x, and their slopes along x.
   const glm::dvec4 low(corner(0, 0, 0), corner(0, 1, 0), corner(0, 0, 1), corner(0, 1, 1));
   const glm::dvec4 slope =
       glm::dvec4(corner(1, 0, 0), corner(1, 1, 0), corner(1, 0, 1), corner(1, 1, 1)) - low;
@@ -272,7 +271,7 @@ double Medium::MeanExtinction_per_m(const glm::ivec3& brick, const glm::dvec3& f
   };
   const glm::dvec3 from = (from_m - brick_low_m_) * cells_per_m_ - glm::dvec3(brick);
   const glm::dvec3 to = (to_m - brick_low_m_) * cells_per_m_ - glm::dvec3(brick);
-  // Simpson's rule is exact here, because a trilinear function is cubic along a line.
+  // A trilinear function is cubic along a line, for which Simpson's rule is exact.
   return std::max((at(from) + 4.0 * at(0.5 * (from + to)) + at(to)) / 6.0, 0.0);
 }
 

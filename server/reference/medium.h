@@ -1,6 +1,6 @@
-// The scattering medium: extinction on a grid for each group of fields with the same optics. A
-// lattice of bricks holds local maxima (majorants) for null-collision sampling. This code does not
-// use light or files.
+// The scattering medium of the path tracer: extinction on a grid for each group of fields with the
+// same optics. A lattice of bricks holds local upper bounds of the extinction (majorants) for
+// null-collision sampling. This code does not use light or files.
 #pragma once
 
 #include <array>
@@ -16,8 +16,9 @@
 
 namespace thunderhead::reference {
 
-// The extinction between cell centres. It is interpolated linearly, as the renderers draw it, or
-// constant in each cell. Beyond the outer centres, linear extinction is that of the nearest cell.
+// The extinction between cell centres. kLinear interpolates it linearly, as the renderers draw it.
+// Beyond the outer centres, this extinction is that of the nearest cell. kConstant makes the
+// extinction constant in each cell.
 enum class Interpolation { kLinear, kConstant };
 
 // The space beyond the sides of the box: empty, or periodic copies of the box.
@@ -33,13 +34,13 @@ enum class Optics { kExact, kSimilar };
 
 // The result of delta scaling, in which a share of the scattered light counts as not scattered.
 struct DeltaScaled {
-  double extinction = 1.0;  // a factor
+  double extinction = 1.0;  // factor of the extinction
   glm::dvec3 albedo{1.0};
 };
 
-// Returns the scaled optics. The colour with the largest albedo is absorbed as much as before.
-// Extinction is the same for all colours, so colours with a smaller albedo above 0 are absorbed
-// slightly less.
+// Returns the scaled optics for a group of the given albedo. The colour with the largest albedo is
+// absorbed as much as before. Extinction is the same for all colours. Colours with a smaller albedo
+// above 0 are therefore absorbed slightly less than before.
 DeltaScaled ScaleForward(const glm::dvec3& albedo, double forward_share);
 
 // Fields with the same optics.
@@ -51,17 +52,18 @@ struct ScatteringGroup {
 
 struct MediumDescription {
   volume::RegularGrid grid;
-  // The box outside of which extinction is zero. It lies within the grid's box, and equals it in x
-  // and y if sides are periodic.
+  // The box outside which extinction is zero. It lies within the grid's box. If sides are periodic,
+  // it equals the grid's box in x and y.
   glm::dvec3 low_m{0.0};
   glm::dvec3 high_m{0.0};
   Interpolation interpolation = Interpolation::kLinear;
   Sides sides = Sides::kOpen;
-  std::vector<ScatteringGroup> groups;  // none: empty space
-  bool similar = false;                 // true: Create also makes the optics of Optics::kSimilar
+  std::vector<ScatteringGroup> groups;  // without groups, the medium is empty space
+  bool similar = false;                 // if true, Create also computes the optics Optics::kSimilar
 };
 
-// A collision with a particle of a randomly chosen group. The weight makes the choice unbiased.
+// The result of a collision with a particle of a randomly chosen group. The weight makes the choice
+// of the group unbiased.
 struct Scattering {
   const SampledPhase* phase = nullptr;  // null if the light is absorbed
   glm::dvec3 weight{0.0};
@@ -69,9 +71,9 @@ struct Scattering {
 
 // A group's optics, either exact or similar.
 struct GroupOptics {
-  double share = 1.0;  // share of the group's extinction
+  double share = 1.0;  // factor of the group's exact extinction
   glm::dvec3 albedo;
-  double choice_albedo;  // mean over colours, for choosing a collision's group
+  double choice_albedo;  // albedo averaged over colours, used to choose a collision's group
   std::shared_ptr<const SampledPhase> phase;
 };
 
@@ -85,8 +87,8 @@ class Medium {
   const glm::dvec3& High_m() const { return high_m_; }
   bool Periodic() const { return periodic_; }
 
-  // Returns the total extinction at a point of the box. If the medium is periodic, the point may be
-  // anywhere in the box's range of heights.
+  // Returns the total extinction at a point of the box. If the medium is periodic, only the point's
+  // height must be in the box.
   double Extinction_per_m(const glm::dvec3& point_m, Optics optics = Optics::kExact) const;
 
   // Returns the mean extinction between two points of `brick`. Brick indices continue beyond the
@@ -94,8 +96,8 @@ class Medium {
   double MeanExtinction_per_m(const glm::ivec3& brick, const glm::dvec3& from_m,
                               const glm::dvec3& to_m, Optics optics = Optics::kExact) const;
 
-  // Returns the group of a collision at `point_m`. The group is chosen by `u` (uniform over (0, 1))
-  // with a probability proportional to its scattering.
+  // Samples the group with which light collides at `point_m`. `u` is a uniform random number in (0,
+  // 1). The probability of a group is proportional to its scattering.
   Scattering ScatteringAt(const glm::dvec3& point_m, double u,
                           Optics optics = Optics::kExact) const;
 
@@ -121,7 +123,7 @@ class Medium {
   const std::vector<float>& Majorants_per_m(Optics optics) const {
     return Of(optics).majorants_per_m;
   }
-  // Returns the groups, which may be none.
+  // Returns the groups. The vector can be empty.
   const std::vector<GroupOptics>& Groups(Optics optics) const { return Of(optics).groups; }
   // Returns the extinctions of each group in exact optics. The vector is empty if there is a single
   // group.
@@ -138,9 +140,10 @@ class Medium {
     std::array<double, 8> shares;
     int count = 0;
   };
-  // Parts of the offset of a value in its array, for two neighbouring cells along an axis.
+  // For two neighbouring cells along an axis, the axis' part of their offsets in an array of
+  // values.
   using OffsetPair = std::array<std::size_t, 2>;
-  // The two cells along an axis.
+  // The two neighbouring cells along an axis, with their interpolation weights.
   struct Between {
     OffsetPair offsets;
     std::array<double, 2> shares;
@@ -148,7 +151,7 @@ class Medium {
   struct Lattice {
     std::vector<GroupOptics> groups;
     std::vector<float> extinction_per_m;  // total extinction
-    std::vector<float> majorants_per_m;   // by brick
+    std::vector<float> majorants_per_m;   // upper bound of the extinction in each brick
   };
   struct CellRange {
     int first = 0;
@@ -181,7 +184,7 @@ class Medium {
   glm::dvec3 high_m_;
   bool linear_;
   bool periodic_;
-  // Strides between neighbours along each axis.
+  // Offsets in an array between neighbouring cells along each axis.
   glm::vec<3, std::size_t> strides_;
   std::vector<std::vector<float>> group_extinctions_per_m_;  // empty with a single group
   Lattice exact_;
@@ -193,7 +196,7 @@ class Medium {
   std::vector<char> empty_layers_;
 };
 
-// Creates a plane-parallel layer 1 km deep with the given `optical_depth` and without sides.
+// Creates a plane-parallel layer with a depth of 1 km, the given `optical_depth` and no sides.
 absl::StatusOr<std::shared_ptr<const Medium>> SlabMedium(double optical_depth,
                                                          const SampledPhase& phase, double albedo);
 

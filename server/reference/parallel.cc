@@ -12,13 +12,13 @@
 
 namespace thunderhead::reference {
 
-// It starts new threads, which inherit the caller's priority. oneTBB's threads are common to all
+// Starts new threads, which inherit the caller's priority. The threads of oneTBB are shared by all
 // callers and keep the priority of their first user. A low priority would then slow down the
 // encoding of pictures.
 void ParallelFor(int threads, int count, const std::function<void(int)>& work) {
   const int most = tbb::info::default_concurrency();
   const int used = std::min(threads > 0 ? std::min(threads, most) : most, count);
-  // Pieces differ much in cost, so threads take one at a time.
+  // Tasks differ much in cost, so each thread takes one task at a time.
   std::atomic<int> next{0};
   std::mutex mutex;
   std::exception_ptr thrown;

@@ -6,12 +6,12 @@
 
 namespace thunderhead::reference {
 
-// Runs work(0) to work(count - 1) in any order and returns when all are done. With `threads` 0 it
-// uses as many threads as the machine has, which is also the maximum.
+// Calls work(0) to work(count - 1) in any order and returns when all calls have returned. If
+// `threads` is 0, it uses as many threads as the machine has. It never uses more.
 void ParallelFor(int threads, int count, const std::function<void(int)>& work);
 
-// Runs many small tasks in the same way. A thread takes a block of them at a time: work(begin,
-// end).
+// Runs `count` small tasks in the same way. A thread takes a block of up to `block` tasks at a time
+// and calls work(begin, end).
 void ParallelForBlocks(int threads, std::size_t count, std::size_t block,
                        const std::function<void(std::size_t, std::size_t)>& work);
 

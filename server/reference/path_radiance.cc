@@ -19,7 +19,7 @@ glm::dvec3 Arriving(const Medium& medium, const ThroughMedium& light, RandomStre
   return light.radiance * EstimateTransmittance(medium, light.ray, kEndless_m, random, optics);
 }
 
-// One path after its first segment, with its radiance so far and its throughput.
+// A path after its first segment, with the radiance that it has gathered and its throughput.
 class Path {
  public:
   Path(const Medium& medium, const Surroundings& surroundings, RandomStream* random,
@@ -64,8 +64,8 @@ class Path {
     if (options_.max_scatterings > 0 && collisions_ >= options_.max_scatterings) return false;
     throughput_ *= scattering.weight;
     if (!Survive() || !GoOnAtLength()) return false;
-    // From here on, all light counts as light of the similar medium, including the sunlight of this
-    // collision.
+    // From here on, all light counts as light of the similar medium. This includes the sunlight
+    // that arrives at this collision.
     if (options_.similar_after > 0 && collisions_ >= options_.similar_after) {
       optics_ = Optics::kSimilar;
     }
@@ -91,11 +91,11 @@ class Path {
     }
   }
 
-  // Samples the new direction. Colours with different phase functions share one path, which is
-  // sampled from the hero colour's function. The path's weight for a colour is its density by that
-  // colour's functions divided by the mean density of all three. The source is Wilkie et al. 2014,
-  // Hero Wavelength Spectral Sampling, eq. 8. The weight is at most 3, whereas the product of each
-  // scattering's ratio would have no bound.
+  // Samples the new direction. Colours with different phase functions share one path. The direction
+  // is sampled from the function of one randomly chosen colour, the hero colour. The path's weight
+  // for a colour is the path's density by that colour's functions, divided by the mean density over
+  // the three colours. The source is Wilkie et al. 2014, Hero Wavelength Spectral Sampling, eq. 8.
+  // This weight is at most 3. The product of the ratios at each scattering would have no bound.
   double TurnBy(const PhaseSample& sample) {
     spectral_ *= sample.weight;
     spectral_ *= 3.0 / (spectral_.x + spectral_.y + spectral_.z);
@@ -143,7 +143,7 @@ class Path {
   Optics optics_ = Optics::kExact;
   int collisions_ = 0;
   int next_roulette_ = kLongPath;
-  std::size_t hero_;  // the colour whose phase functions are sampled
+  std::size_t hero_;  // index of the colour whose phase functions are sampled
   glm::dvec3 spectral_{
       1.0};  // the path's weight by colour, because the hero's phase functions are sampled
   glm::dvec3 radiance_{0.0};

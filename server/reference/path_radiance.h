@@ -1,7 +1,8 @@
-// Estimates the radiance along a ray with one random path. It uses null-collision free flights,
-// sunlight at every collision, sky and ground where the path meets them, and Russian roulette. The
-// estimate is unbiased unless the path continues in a similar medium. Its mean is the solution of
-// the radiative transfer equation, and nothing is clamped.
+// Estimates the radiance along a ray with one random path. The path uses null-collision free
+// flights and Russian roulette. It gathers sunlight at every collision, and the light of sky and
+// ground where it meets them. The estimate is unbiased unless the path continues in a similar
+// medium (Optics::kSimilar). Its mean is the solution of the radiative transfer equation, and
+// nothing is clamped.
 #pragma once
 
 #include "glm/vec3.hpp"
@@ -13,14 +14,15 @@ namespace thunderhead::reference {
 
 struct PathEstimate {
   glm::dvec3 radiance{0.0};
-  bool met_medium = false;  // true: the path met the medium before anything else
+  bool met_medium = false;  // true if the path met the medium before anything else
 };
 
 struct PathOptions {
-  // Light that the medium scatters more often is omitted. 0: no limit.
+  // Largest number of scatterings by the medium. Light scattered more often is omitted. 0 means no
+  // limit.
   int max_scatterings = 0;
-  // After this many scatterings a path continues in Optics::kSimilar, which the medium must have.
-  // The light found there is biased. 0: never.
+  // Number of scatterings after which a path continues in Optics::kSimilar, which the medium must
+  // have. The light gathered there is biased. 0 means never.
   int similar_after = 0;
 };
 

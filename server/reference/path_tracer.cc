@@ -15,7 +15,7 @@ namespace thunderhead::reference {
 namespace {
 
 constexpr int kTile_px = 16;
-// With fewer samples the error estimate is too uncertain as a stopping criterion.
+// Number of samples below which the error estimate is too uncertain to stop on it.
 constexpr int kFewestForError = 16;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -117,8 +117,9 @@ double PathTracer::RelativeError() const {
   return std::sqrt(squares / values) / (radiance / values);
 }
 
-// Returns the sample count at which the next pass ends. Passes grow with the number of samples,
-// which keeps checking the result cheap. They stay short enough for a viewer to see progress.
+// Returns the sample count at which the next pass ends. Passes grow with the number of samples, so
+// that checking the result after each pass takes little time. They stay short enough for a viewer
+// to see progress.
 int PathTracer::PassTarget(const RefineLimits& limits) const {
   constexpr int kMaxInPass = 16;
   const int have = FewestSamples();

@@ -1,4 +1,4 @@
-// A picture of a medium, refined progressively: each pixel's mean radiance and standard error. The
+// Traces a picture of a medium progressively: each pixel's mean radiance and standard error. The
 // result after a number of samples is bit-identical for any number of threads and any division of
 // the samples among calls. This code does not use GL, files or messages.
 #pragma once
@@ -22,18 +22,22 @@ namespace thunderhead::reference {
 
 struct PathTracerOptions {
   std::uint64_t seed = 0;
-  int threads = 0;  // 0: as many as the machine has
-  // Light that the medium scatters more often is omitted. 0: no limit.
+  int threads = 0;  // number of threads; 0 means as many as the machine has
+  // Largest number of scatterings by the medium. Light scattered more often is omitted. 0 means no
+  // limit.
   int max_scatterings = 0;
 };
 
-// Limits of a refinement, which ends at the first limit reached. Without limits it continues until
-// stopped.
+// Limits of a call of Refine, which ends at the first limit reached. A limit of 0 does not apply.
+// If no limit applies, the call continues until it is stopped.
 struct RefineLimits {
-  int samples_per_pixel = 0;    // in total over all calls; 0: no limit
-  double seconds = 0.0;         // of this call; 0: no limit; one sample a pixel is always finished
-  double relative_error = 0.0;  // see ImageProgress; 0: no limit; needs at least 16 samples
-  double pause_s = 0.0;         // of this call; 0: no limit; may leave pixels without a sample
+  int samples_per_pixel = 0;  // samples for each pixel, in total over all calls
+  // Duration of this call. At least one sample for each pixel is always finished.
+  double seconds = 0.0;
+  // ImageProgress::relative_error; it needs at least 16 samples for each pixel.
+  double relative_error = 0.0;
+  // Duration after which this call pauses, even if some pixels have no sample.
+  double pause_s = 0.0;
   // The clock of `seconds` and `pause_s`. It must outlive the call.
   const base::TimeSource* time = &base::SteadyTime();
 };
@@ -41,13 +45,13 @@ struct RefineLimits {
 struct ImageProgress {
   int samples_per_pixel = 0;  // the smallest number over all pixels
   double seconds = 0.0;       // duration of this call
-  // The root mean square of the standard error over pixels and colours, divided by their mean
-  // radiance. It is infinite below two samples a pixel.
+  // The root mean square of the standard error over pixels and colours, divided by the picture's
+  // mean radiance. It is infinite below two samples for each pixel.
   double relative_error = 0.0;
   double samples_per_second = 0.0;  // paths per second, in this call
 };
 
-// A callback between passes, on the thread that called Refine.
+// A callback that Refine calls between passes, on its caller's thread.
 using ImageObserver = std::function<void(const ImageProgress&)>;
 
 enum class RefineEnd { kSamples, kSeconds, kRelativeError, kStopped, kPaused };
@@ -63,8 +67,8 @@ class PathTracer {
              const glm::ivec2& size_px, const PathTracerOptions& options);
 
   // Adds samples until a limit is reached or `stop` requests a stop. A stop can leave some pixels
-  // with more samples than others. Their means are still unbiased, and the next call continues from
-  // there. `observer` may be empty. Calls must not overlap.
+  // with more samples than others. The pixels' means are still unbiased, and the next call
+  // continues from there. `observer` may be empty. Calls must not overlap.
   RefineResult Refine(const RefineLimits& limits, const ImageObserver& observer,
                       const std::stop_token& stop);
 
@@ -73,7 +77,7 @@ class PathTracer {
   picture::LinearPicture Snapshot() const;
 
  private:
-  // The mean and the sum of squared differences from it (Welford 1962).
+  // The mean of a pixel's samples, and the sum of squared differences from it (Welford 1962).
   struct Pixel {
     glm::dvec3 mean{0.0};
     glm::dvec3 squares{0.0};

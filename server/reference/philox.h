@@ -27,8 +27,8 @@ inline PhiloxBlock Philox4x32(PhiloxBlock counter, PhiloxKey key) {
   return counter;
 }
 
-// The random numbers of one path: path `sample` of pixel or photon `item`. Successive calls return
-// successive dimensions.
+// The random numbers of one path. `item` is the index of its pixel or photon, `sample` its index
+// among the paths of that item. Successive calls return successive numbers of the path.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint64_t item, std::uint32_t sample)
@@ -37,8 +37,8 @@ class RandomStream {
   // Returns a number uniform over (0, 1), in steps of 2^-32. It is never 0 or 1.
   double Uniform() { return (Word() + 0.5) * 0x1p-32; }
 
-  // Returns an exponential number with mean 1. It uses 53 bits, because optically thin media need
-  // very small values.
+  // Returns an exponentially distributed number with mean 1. It uses 53 random bits, because
+  // optically thin media need very small values.
   double Exponential() {
     const std::uint64_t high = Word();
     const std::uint64_t bits = ((high << 32U) | Word()) >> 11U;

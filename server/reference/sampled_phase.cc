@@ -11,10 +11,11 @@
 namespace thunderhead::reference {
 namespace {
 
-// Diffraction peaks of millimetre drops are 0.02 degrees wide, so nodes are denser towards angle 0.
+// Number of intervals. Diffraction peaks of millimetre drops are only 0.02 degrees wide, so nodes
+// are denser towards the angle 0.
 constexpr std::size_t kIntervals = 8192;
 
-// Returns 1 - mu at node `i` without the cancellation of 1 - cos.
+// Returns 1 - mu at node `i`. The formula avoids the cancellation in 1 - cos.
 double NodeX(std::size_t i) {
   const double s = static_cast<double>(i) / kIntervals;
   const double sine = std::sin(0.5 * std::numbers::pi * s * s);
@@ -38,7 +39,8 @@ double HenyeyGreensteinValue(double g, double mu) {
 
 // Returns the inverse of Henyey and Greenstein's cumulative distribution.
 double HenyeyGreensteinSample(double g, double u) {
-  // The closed form becomes 0 / 0 at g = 0. Below 1e-4, the first order in g is exact to 1e-8.
+  // The closed form is 0 / 0 at g = 0. For |g| below 1e-4, the first-order expansion in g is exact
+  // to 1e-8.
   if (std::abs(g) < 1e-4) {
     const double isotropic = 1.0 - 2.0 * u;
     return isotropic + 1.5 * g * (1.0 - isotropic * isotropic);
@@ -80,7 +82,7 @@ SampledPhase SampledPhase::Of(const physics::PhaseFunction& phase) {
   const auto color = [phase](int c) {
     return [phase, c](double mu) { return physics::PhaseColors(phase, mu)[c]; };
   };
-  // A formula has one value for all colours.
+  // A formula has the same values for all colours.
   if (physics::FormulaOf(phase.kind) != nullptr) return Tabulated(color(0));
   return Tabulated({color(0), color(1), color(2)});
 }
@@ -152,7 +154,8 @@ PhaseSample SampledPhase::Sample(double u, std::size_t color) const {
   const double high = values_[table][interval + 1];
   const double width = x_[interval + 1] - x_[interval];
   const double rest = u - cumulative_[table][interval];
-  // The root of low y + (high - low) y^2 / (2 width) = 2 rest, in a form without cancellation.
+  // y is the root of low y + (high - low) y^2 / (2 width) = 2 rest. This form of the root avoids
+  // cancellation.
   const double discriminant = low * low + 4.0 * (high - low) * rest / width;
   const double divisor = low + std::sqrt(std::max(discriminant, 0.0));
   const double y = divisor > 0.0 ? std::clamp(4.0 * rest / divisor, 0.0, width) : 0.0;

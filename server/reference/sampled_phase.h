@@ -14,8 +14,9 @@
 
 namespace thunderhead::reference {
 
-// A cosine of the scattering angle, sampled from one colour's phase function. `weight` is the ratio
-// of each colour's function to that one. It is 1 if the colours have the same function.
+// A cosine of the scattering angle, sampled from one colour's phase function. `weight` holds, for
+// each colour, the ratio of its phase function to the sampled function. It is 1 if the colours have
+// the same function.
 struct PhaseSample {
   double mu = 1.0;
   glm::dvec3 weight{1.0};
@@ -23,14 +24,14 @@ struct PhaseSample {
 
 class SampledPhase {
  public:
-  // A phase function of the cosine of the scattering angle. It is finite, at least 0, and somewhere
-  // above 0 over [-1, 1].
+  // A phase function of the cosine of the scattering angle. Over [-1, 1] it is finite and at least
+  // 0, and not 0 everywhere.
   using Function = std::function<double(double mu)>;
 
   // `asymmetry` must lie inside (-1, 1).
   static SampledPhase HenyeyGreenstein(double asymmetry);
-  // Normalises `function` to mean 1 over the sphere and tabulates it. Steps of the angle are 0.0005
-  // degrees at 0.01 degrees and 0.04 degrees at 180.
+  // Normalises `function` to mean 1 over the sphere and tabulates it. The step between angles is
+  // 0.0005 degrees at an angle of 0.01 degrees, and 0.04 degrees at 180 degrees.
   static SampledPhase Tabulated(const Function& function);
   // Tabulates one function for each colour: red, green, blue.
   static SampledPhase Tabulated(const std::array<Function, 3>& by_color);
@@ -42,9 +43,9 @@ class SampledPhase {
   // Returns the mean cosine of the scattering angle, averaged over colours if they differ.
   double Asymmetry() const;
 
-  // The table for one colour. It holds values and cumulative distribution at the ends of intervals
-  // of x = 1 - mu. For equal steps of the cumulative distribution, `guide` holds the interval at
-  // which a search starts.
+  // The table for one colour. It holds the function's values and its cumulative distribution at the
+  // ends of intervals of x = 1 - mu. `guide` speeds up the search. For equal steps of the
+  // cumulative distribution, it holds the interval at which a search starts.
   struct Table {
     const std::vector<double>& x;
     const std::vector<double>& values;
@@ -67,15 +68,15 @@ class SampledPhase {
   void Accumulate(std::size_t color);
   std::size_t IntervalOf(double u, std::size_t color) const;
 
-  // Henyey and Greenstein's parameter, not used if there is a table.
+  // Henyey and Greenstein's asymmetry parameter, used only if there is no table.
   double asymmetry_ = 0.0;
   bool colored_ = false;
-  // The table, which is piecewise linear in x = 1 - mu between nodes. The nodes lie at angles pi (i
+  // The nodes of the table, which is piecewise linear in x = 1 - mu. Node i lies at the angle pi (i
   // / last)^2.
   std::vector<double> x_;
-  // By colour. Only the first is used unless colored_.
+  // One entry for each colour. Only the first entry is used unless colored_ is true.
   std::array<std::vector<double>, 3> values_;
-  std::array<std::vector<double>, 3> cumulative_;    // from 0 to 1
+  std::array<std::vector<double>, 3> cumulative_;    // cumulative distribution, from 0 to 1
   std::array<std::vector<std::uint32_t>, 3> guide_;  // interval at which the search for u starts
 };
 

@@ -26,7 +26,7 @@
 #include "volume/terrain.h"
 
 namespace thunderhead::reference {
-// The light of the scene's sun and sky. The sun has the scene's irradiance.
+// The light of the scene's sun and sky, for the scene's solar irradiance.
 struct SceneLight {
   SceneLight(const scene::Scene& scene, const glm::vec3& towards_sun, float ground_m)
       : atmosphere(static_cast<float>(scene.sky.turbidity),
@@ -43,7 +43,7 @@ struct SceneLight {
   }
 
   physics::Atmosphere atmosphere;
-  physics::ClearSky sky;                  // seen from the ground, as the sky lights the storm
+  physics::ClearSky sky;                  // seen from the ground, because this sky lights the storm
   std::vector<glm::dvec3> sun_by_height;  // Surroundings::sun_by_height
 };
 
@@ -56,8 +56,8 @@ struct GridBox {
   glm::dvec3 high_m{0.0};
 };
 
-// Returns the cells to use and their box. In a border of empty cells, linear extinction falls to
-// zero at the cell centres.
+// Returns the cells to use and their box. With linear interpolation, the box includes a border of
+// empty cells, at whose centres the extinction reaches zero.
 GridBox BoxOf(const volume::HydrometeorFields& fields, const MediumOptions& options) {
   const volume::RegularGrid& domain = fields.grid;
   volume::CellBox occupied = fields.condensate;
@@ -97,7 +97,8 @@ void AddField(const volume::RegularGrid& domain, const GridBox& box,
 
 using Values = std::vector<float>;
 
-// Returns the extinction in 1/m, with detail, of each drawn field at the cell centres of a grid.
+// Returns for each drawn field the extinction in 1/m, including detail, at the cell centres of
+// `grid`.
 std::vector<Values> DetailedExtinctions(const scene::Scene& scene,
                                         const volume::HydrometeorFields& fields,
                                         const volume::RegularGrid& grid) {
@@ -126,7 +127,7 @@ void AddScaled(Values values, float factor, Values* sum) {
   }
 }
 
-// The optics that are common to all fields of a group.
+// The optics that all fields of a group have in common.
 struct GroupLook {
   physics::PhaseFunction phase;
   glm::dvec3 albedo{1.0};
@@ -138,7 +139,7 @@ GroupLook LookOf(const scene::DrawnField& field) {
   return {field.phase, static_cast<double>(field.albedo) * glm::dvec3(field.color)};
 }
 
-// A group's optics after delta scaling. `extinction` is a factor.
+// A group's optics after delta scaling. `extinction` is a factor of the group's extinction.
 struct CutOptics {
   std::shared_ptr<const SampledPhase> phase;
   glm::dvec3 albedo{1.0};
@@ -190,13 +191,13 @@ struct Around {
   float turbidity;
 };
 
-// Returns the air between the eye and an object. It attenuates the object's light and adds the
-// airlight of the sky's radiance.
+// Returns the effect of the air between the eye and an object. The air attenuates the object's
+// light and adds a part of the sky's radiance as airlight.
 Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind behind) {
   namespace air = physics::glsl;
   const physics::ClearSky::Seen sky = around.Seen(ray.direction);
   const glm::vec3 sky_depth = air::depth_of_air_mass(around.turbidity, sky.air_mass);
-  // The sky's ray already ends at the ground.
+  // The sky's ray already ends at the ground, so all of its air is in front of the ground.
   if (behind == Behind::kGround) return {glm::exp(-sky_depth), sky.radiance};
   const scene::View& view = around.view;
   const double sine = (view.local_from_world * ray.direction).z;
@@ -210,8 +211,7 @@ Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind be
           glm::dvec3(air::airlight_before(transmittance, sky.radiance, sky_depth))};
 }
 
-// Upper limit of a ratio of gathered light, because hardly any light may be left in the Earth's
-// shadow.
+// Upper limit of the ratio in LightOfAir. In the Earth's shadow the divisor is nearly zero.
 constexpr float kMostGathered = 2.0F;
 
 // Returns the light that a metre of lit air at `distance_m` on a ray sends to the eye. It is that
@@ -243,14 +243,15 @@ AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
   const glm::vec3 of_sky = scale * scattered * around.light->atmosphere.DiffuseMeanRadiance(place);
   const glm::vec3 seen = glm::min(gathered / glm::max(of_sun + of_sky, glm::vec3(1e-20F)),
                                   kMostGathered * transmittance);
-  // The medium's light already includes the sun's irradiance.
+  // `brightness` is applied without the irradiance, because the medium's radiance already includes
+  // it.
   return {glm::dvec3(seen * of_sun), glm::dvec3(seen * of_sky),
           glm::dvec3(seen * static_cast<float>(around.brightness) * scattered)};
 }
 
-// Returns the ground where rays from the eye meet it, or null if it is the same everywhere. A ray
-// shows a point of the ground without a footprint. Only borders and rings are as wide as pixels
-// require.
+// Returns the reflectance of the ground where rays from the eye meet it, or null if it is the same
+// everywhere. It is evaluated at a point, not averaged over a pixel. Only borders and rings have a
+// width that depends on the pixel.
 std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& scene,
                                                           const volume::HydrometeorFields& fields,
                                                           const scene::View& view) {
@@ -303,7 +304,8 @@ std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& sc
 
 std::size_t MediumBytes(const volume::HydrometeorFields& fields, bool similar) {
   constexpr std::size_t kOfField = sizeof(float);
-  constexpr std::size_t kOfAll = 2 * sizeof(float);  // bytes of the sum and its bound
+  // Bytes of the sum of extinctions and of its upper bound.
+  constexpr std::size_t kOfAll = 2 * sizeof(float);
   return fields.grid.CellCount() * (kOfField * fields.fields.size() + (similar ? 2 : 1) * kOfAll);
 }
 
@@ -338,7 +340,7 @@ absl::StatusOr<std::shared_ptr<const Medium>> MediumOf(const scene::Scene& scene
     detailed = DetailedExtinctions(scene, fields, description.grid);
   }
   std::vector<GroupLook> looks;
-  std::vector<CutOptics> cuts;  // optics after the cut of each look
+  std::vector<CutOptics> cuts;  // the optics after delta scaling, for each group
   std::size_t drawn = 0;
   for (const scene::DrawnField& field : scene::DrawnFieldsOf(scene, fields)) {
     GroupLook look = LookOf(field);

@@ -1,5 +1,5 @@
-// Traces pictures of a changing scene at different sizes. It keeps parts that a change does not
-// affect, above all the medium. This code does not use sessions.
+// Path-traces pictures of a changing scene at different sizes. The class keeps the parts that a
+// change of the scene does not affect, above all the medium. This code does not use sessions.
 #pragma once
 
 #include <memory>

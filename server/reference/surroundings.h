@@ -16,21 +16,23 @@
 
 namespace thunderhead::reference {
 
-// A place of the ground as an eye sees it.
+// The reflectance of a place on the ground as an eye sees it.
 struct SeenGround {
   glm::dvec3 albedo{0.0};  // Lambertian albedo
-  double water = 0.0;      // the share of rough water, which replaces the albedo (physics/water.h)
+  // Share of the place that is rough water, which does not have this albedo (physics/water.h).
+  double water = 0.0;
 };
 
-// Infinite Lambertian ground, seen only from above. It is a horizontal plane, or it falls by d^2
-// curvature / 2 at a distance d from `touch_m`.
+// Infinite Lambertian ground, seen only from above. It is a horizontal plane, or it lies d^2
+// curvature_per_m / 2 below that plane at a distance d from `touch_m`.
 struct Ground {
-  double height_m = 0.0;     // at `touch_m`
-  glm::dvec3 albedo{0.0};    // for light that arrives through the medium
-  glm::dvec3 radiance{0.0};  // radiance emitted upwards in addition
-  glm::dvec2 touch_m{0.0};   // where the ground is horizontal
+  double height_m = 0.0;   // height of the ground at `touch_m`
+  glm::dvec3 albedo{0.0};  // albedo for light that arrives through the medium
+  // Radiance that the ground emits upwards in addition to reflected light.
+  glm::dvec3 radiance{0.0};
+  glm::dvec2 touch_m{0.0};  // where the ground is horizontal
   double curvature_per_m = 0.0;
-  // Ground for rays from the eye. If it is not set, they see `albedo`.
+  // Reflectance of the ground for rays from the eye. If it is not set, these rays see `albedo`.
   std::function<SeenGround(const glm::dvec2& place_m)> seen;
 };
 
@@ -39,7 +41,7 @@ struct Box {
   glm::dvec3 high_m{0.0};
 };
 
-// The kinds of background behind the air.
+// The object that the eye sees behind the air.
 enum class Behind { kMedium, kGround };
 
 // The effect of air on light from behind it.
@@ -48,26 +50,27 @@ struct Air {
   glm::dvec3 airlight{0.0};
 };
 
-// Radiance that a metre of lit air on a ray adds to what its eye sees.
+// Radiance that one metre of lit air on a ray adds to what the eye sees.
 struct AirLight {
   glm::dvec3 of_sun{0.0};
-  glm::dvec3 of_sky{0.0};        // light that air has scattered before
-  glm::dvec3 per_radiance{0.0};  // for uniform light of radiance 1 from all directions
+  glm::dvec3 of_sky{0.0};        // part of the light that was skylight before
+  glm::dvec3 per_radiance{0.0};  // part for uniform light of radiance 1 from all directions
 };
 
-// The air that the medium shades.
+// The air in which the medium casts its shadow.
 struct ShadedAir {
-  std::vector<Box> boxes;  // air outside all of them counts as lit
+  std::vector<Box> boxes;  // air outside all boxes counts as lit
   std::function<AirLight(const Ray& ray, double distance_m)> light;
 };
 
 // A light in addition to the sun. It lights only the medium, and only the medium shades it.
 struct DirectionalLight {
   glm::dvec3 towards{0.0, 0.0, 1.0};
-  glm::dvec3 irradiance{0.0};  // on a plane facing the light
+  glm::dvec3 irradiance{0.0};  // irradiance on a plane that faces the light
 };
 
-// The sun as an eye sees it directly. For everything else, its light comes from one direction.
+// The sun's disc as an eye sees it directly. For all other purposes, sunlight comes from one
+// direction.
 struct SunDisc {
   double cosine = 1.0;       // cosine of its angular radius
   glm::dvec3 radiance{0.0};  // uniform over the disc
@@ -75,9 +78,10 @@ struct SunDisc {
 
 struct Surroundings {
   glm::dvec3 towards_sun{0.0, 0.0, 1.0};
-  glm::dvec3 sun_irradiance{0.0};  // on a plane facing the sun; from a single direction
-  // The sun's irradiance at heights of 0, kSunStep_m ... above sea level, linear in between. If it
-  // is empty, the irradiance is the same everywhere.
+  // Irradiance of the sun on a plane facing it, from a single direction.
+  glm::dvec3 sun_irradiance{0.0};
+  // The sun's irradiance at heights above sea level that begin at 0 and are kSunStep_m apart,
+  // linear in between. If it is empty, the irradiance is the same at all heights.
   std::vector<glm::dvec3> sun_by_height{};
   static constexpr double kSunStep_m = 100.0;
   glm::dvec3 SunAt(double height_m) const {
@@ -89,18 +93,18 @@ struct Surroundings {
                     step - static_cast<double>(below));
   }
   std::vector<DirectionalLight> lights;
-  // Returns the radiance that arrives from a direction. Not set: black.
+  // Returns the radiance that arrives from a direction. If it is not set, the sky is black.
   std::function<glm::dvec3(const glm::dvec3& direction)> sky;
-  // Returns the sky as seen from the eye. Not set: `sky`.
+  // Returns the sky's radiance as seen from the eye. If it is not set, `sky` is used.
   std::function<glm::dvec3(const glm::dvec3& direction)> seen_sky;
-  // Not set: black.
+  // The sun's disc. If it is not set, the eye does not see a disc.
   std::optional<SunDisc> disc;
   std::optional<Ground> ground;
-  // Returns the air between the eye and the ground or the medium. Not set: clear. The sky needs no
-  // air, because its light is the air's light.
+  // Returns the air between the eye and the ground or the medium. If it is not set, that air is
+  // perfectly clear. The sky needs no air in front, because its light is the air's own light.
   std::function<Air(const Ray& ray, double distance_m, Behind behind)> air;
-  // Subtracts the medium's shadow from the light of that air and of the seen sky. Not set: all air
-  // is lit.
+  // The air from whose light, and from that of the seen sky, the medium's shadow is subtracted. If
+  // it is not set, all air is lit.
   std::optional<ShadedAir> shaded_air;
 };
 

@@ -12,7 +12,7 @@
 namespace thunderhead::reference {
 namespace {
 
-// A piece takes some milliseconds.
+// Number of rays in a piece of work, which takes some milliseconds.
 constexpr std::size_t kRaysInPiece = 64;
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace thunderhead::reference {
 
-// The default of MediumOptions::peak_cut_deg for pictures.
+// The default of MediumOptions::peak_cut_deg for pictures of scenes.
 inline constexpr double kPeakCut_deg = 3.0;
 
 struct TracedScene {
@@ -22,15 +22,16 @@ struct TracedScene {
 struct TraceOptions {
   double peak_cut_deg = kPeakCut_deg;  // MediumOptions::peak_cut_deg
   int max_scatterings = 0;             // PathTracerOptions::max_scatterings
-  bool sun = true;                     // false: only the sky gives light
-  // False removes the air. The sky is black, and the sun shines with its irradiance above the
+  bool sun = true;                     // if false, only the sky gives light
+  // If false, there is no air. The sky is then black, and the sun has its irradiance above the
   // atmosphere. The ground stays.
   bool air = true;
   int detail_voxels_per_cell = 0;  // MediumOptions::detail_voxels_per_cell
 };
 
-// Traces the picture that renderers approximate. It has their ground and, depending on the scene's
-// mode, each field's own phase function or one for all.
+// Path-traces the picture of a scene that renderers approximate. It has the same ground as the
+// renderers draw. Depending on the scene, each field has its own phase function or all have the
+// same.
 absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
                                        const volume::HydrometeorFields& fields,
                                        const TraceOptions& options, const RefineLimits& limits,

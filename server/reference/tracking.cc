@@ -12,7 +12,8 @@ namespace thunderhead::reference {
 std::optional<double> SampleCollision(const Medium& medium, const Ray& ray, double limit_m,
                                       RandomStream* random, Optics optics) {
   BrickWalk walk(medium, ray, limit_m, optics);
-  double depth = random->Exponential();  // remaining optical depth of the majorant
+  // Remaining optical depth, by the majorant, to the next possible collision.
+  double depth = random->Exponential();
   Stretch stretch;
   while (walk.Next(&stretch)) {
     double at_m = stretch.begin_m;
@@ -49,8 +50,8 @@ double EstimateTransmittance(const Medium& medium, const Ray& ray, double limit_
 }
 
 glm::dvec3 Deflect(const glm::dvec3& direction, double mu, double azimuth_rad) {
-  // Two vectors perpendicular to `direction`. Adding the sign of its z to z keeps the divisor away
-  // from 0.
+  // Two vectors perpendicular to `direction` are computed. Adding the sign of direction.z to
+  // direction.z keeps the divisor away from 0.
   const double sign = std::copysign(1.0, direction.z);
   const double a = -1.0 / (sign + direction.z);
   const double b = direction.x * direction.y * a;

@@ -12,14 +12,13 @@
 
 namespace thunderhead::reference {
 
-// Returns the distance to the first real collision along `ray`, or nothing if there is none within
-// `limit_m` (which may be infinite).
+// Returns the distance to the first real collision along `ray`. Returns nothing if there is no
+// collision within `limit_m`, which may be infinite.
 std::optional<double> SampleCollision(const Medium& medium, const Ray& ray, double limit_m,
                                       RandomStream* random, Optics optics = Optics::kExact);
 
-// Returns an unbiased estimate, at least 0, of the transmittance along `ray` up to `limit_m`. It is
-// exact unless it is small, because beyond an optical depth of 1 the ray continues by Russian
-// roulette.
+// Returns an unbiased estimate, at least 0, of the transmittance along `ray` up to `limit_m`. The
+// estimate is exact up to an optical depth of 1. Beyond it, the ray continues by Russian roulette.
 double EstimateTransmittance(const Medium& medium, const Ray& ray, double limit_m,
                              RandomStream* random, Optics optics = Optics::kExact);
 
@@ -30,7 +29,8 @@ glm::dvec3 Deflect(const glm::dvec3& direction, double mu, double azimuth_rad);
 // Returns a unit vector distributed uniformly over the upper hemisphere.
 glm::dvec3 SampleUpward(RandomStream* random);
 
-// Returns a unit vector about `normal`, with a density proportional to the cosine between the two.
+// Returns a random unit vector about `normal`, with a density proportional to the cosine of its
+// angle to `normal`.
 glm::dvec3 SampleCosine(const glm::dvec3& normal, RandomStream* random);
 
 }  // namespace thunderhead::reference

@@ -17,22 +17,22 @@ namespace thunderhead::renderers {
 namespace {
 
 constexpr int kHeights = 64;
-constexpr double kHighest_m = 3e4;  // air above counts as equally bright
+constexpr double kHighest_m = 3e4;  // air above this height counts as equally bright
 
 constexpr int kPixelsPerRay = 6;        // pixels per ray along each side
-constexpr glm::ivec2 kMinRays(48, 36);  // used unless the picture has fewer pixels
+constexpr glm::ivec2 kMinRays(48, 36);  // minimum, except for pictures with fewer pixels
 constexpr glm::ivec2 kMaxRays(160, 120);
 // Number of distances, each with a layer. One more layer holds the share of the whole sky.
 constexpr int kDistances = 25;
 
-// Spacing of the points for the sky's hidden share, which varies slowly.
+// Spacing of the points at which the hidden share of the sky is computed. The share varies slowly.
 constexpr double kHiddenSpacing_m = 5000.0;
 constexpr glm::ivec3 kMaxHidden(28, 28, 8);
 constexpr double kHiddenStepInCells = 2.0;
 
 glm::ivec3 HiddenPoints(const volume::WorldBox& box) {
   const glm::dvec3 size_m = box.high_m - box.low_m;
-  // The minimum of 4 leaves room for a border of zeros at each side.
+  // With at least 4 texels along each side, there is room for a border of zeros.
   return glm::clamp(glm::ivec3(glm::ceil(size_m / glm::dvec3(kHiddenSpacing_m, kHiddenSpacing_m,
                                                              0.5 * kHiddenSpacing_m))),
                     glm::ivec3(4), kMaxHidden);
@@ -114,7 +114,7 @@ void AirShade::SetDistances(const scene::View& view, const scene::ShadedAir& air
   near_m_ = glm::length(glm::max(glm::max(low_m, -high_m), glm::dvec3(0.0)));
   far_m_ = glm::length(glm::max(glm::abs(low_m), glm::abs(high_m)));
   if (!view.Orthographic()) return;
-  // Rays are parallel, so depths are distances.
+  // Rays are parallel, so depths along the view direction are distances.
   const glm::dvec3 middle_m = 0.5 * (low_m + high_m);
   const double half_m = glm::dot(glm::abs(view.forward), 0.5 * (high_m - low_m));
   near_m_ = std::max(glm::dot(middle_m, view.forward) - half_m, 0.0);

@@ -1,11 +1,12 @@
-// The air that the storm shades. It computes the light missing from the air's radiance, on each ray
-// of a coarse picture up to each of several distances. The sun is shaded as the ground is
-// (common/storm_shadow.glsl).
+// The air that the storm shades. For each ray of a coarse picture, the class computes how much
+// light the storm removes from the air's radiance up to each of several distances. The storm's
+// shadow in the air is the same as on the ground (common/storm_shadow.glsl).
 //
-// Light that the air has scattered before reaches a place from the part of the sky that the storm
-// leaves open. From the hidden part, a place in the storm's shadow gets the light of a layer of the
-// storm's depth. Other places get the light that the storm's faces reflect, which is more on the
-// sun's side. The hidden part of the sky is computed once for a medium.
+// The air also scatters light that the air has already scattered (skylight). A place gets skylight
+// from the part of the sky that the storm leaves open. From the hidden part, a place in the storm's
+// shadow gets the light that passes through a layer of the storm's depth. A place outside the
+// shadow gets the light that the storm's faces reflect, which is brighter on the sun's side. The
+// hidden part of the sky is computed once for a medium.
 //
 // The class owns GL objects, so use it on the context's thread.
 #pragma once
@@ -32,15 +33,17 @@ class AirShade {
  public:
   explicit AirShade(std::shared_ptr<gl::ProgramCache> programs) : programs_(std::move(programs)) {}
 
-  // Sets the light of the air by height. `sun_sine` is the sine of the sun's elevation. The clear
-  // sky's irradiance on the ground is `sky_irradiance`, for a sun of irradiance 1.
+  // Sets the light that the air receives at each height. `sun_sine` is the sine of the sun's
+  // elevation. `sky_irradiance` is the irradiance of the clear sky on the ground. It refers to a
+  // sun of irradiance 1.
   void SetLight(const physics::Atmosphere& atmosphere, double sun_sine,
                 const glm::vec3& sky_irradiance);
 
-  // Computes how much of the sky `medium` hides, unless it is known. An empty medium hides nothing.
+  // Computes how much of the sky `medium` hides, unless the result for this medium is kept. An
+  // empty medium hides nothing.
   absl::Status HideSky(const ResidentMedium& medium, const scene::Scene& scene, double ground_m);
 
-  // Computes the missing light for a view, under the shadow that `ground` has. The object that
+  // Computes the missing light for a view, using the storm shadow of `ground`. The object that
   // casts the shadow is inside `box`. The resolution suits a picture of the size `picture_px`. Call
   // SetLight and HideSky first.
   absl::Status Cast(const scene::Scene& scene, const scene::View& view, const Ground& ground,
@@ -53,7 +56,8 @@ class AirShade {
   // coordinates relative to the eye.
   void Bind(const gl::Program& program, const scene::View& view) const;
 
-  // Sets those of common/sky_hidden.glsl only, except faces_sunlight. Call HideSky first.
+  // Sets only the uniforms and textures of common/sky_hidden.glsl, without faces_sunlight. Call
+  // HideSky first.
   void BindSkyHidden(const gl::Program& program, const scene::View& view) const;
 
   std::size_t Bytes() const {
@@ -67,15 +71,16 @@ class AirShade {
   std::shared_ptr<gl::ProgramCache> programs_;
   bool present_ = false;
   gl::Texture2D light_;
-  // Irradiance on level ground, for sunlight of irradiance 1. The first value is that of sun and
-  // sky, the second that of the sky alone.
+  // Irradiance on level ground, for sunlight of irradiance 1. level_irradiance_ is that of sun and
+  // sky, level_skylight_ that of the sky alone.
   glm::vec3 level_irradiance_{0.0F};
   glm::vec3 level_skylight_{0.0F};
-  std::vector<glm::vec3> sunlight_;  // by height
-  glm::vec3 faces_sunlight_{0.0F};   // of the scene's sun, at half the storm's height
+  std::vector<glm::vec3> sunlight_;  // irradiance of sunlight by height
+  glm::vec3 faces_sunlight_{0.0F};   // irradiance of the scene's sun at half the storm's height
   gl::Texture3D sky_hidden_;
   gl::Texture3D storm_faces_;
-  std::uint64_t hidden_by_ = 0;  // ResidentMedium::Id
+  // ResidentMedium::Id of the medium for which sky_hidden_ was computed
+  std::uint64_t hidden_by_ = 0;
   scene::MediumSettings hidden_settings_;
   volume::WorldBox hidden_box_;
   gl::Texture3D shade_;

@@ -1,4 +1,4 @@
-// The list of the program's own techniques, in the order in which clients offer them.
+// The list of the built-in techniques, in the order in which clients show them.
 #include "base/status.h"
 #include "renderers/cumulus/cumulus_technique.h"
 #include "renderers/half_angle/half_angle_technique.h"

@@ -29,7 +29,7 @@ void ChosenRays::Choose(const std::vector<glm::vec2>& places) {
   rect_ = {glm::ivec2(0), glm::ivec2(width, rows)};
   const int wanted = std::max((rows + kRowsAtATime - 1) / kRowsAtATime, 1) * kRowsAtATime;
   if (places_.Size().y < wanted) places_ = gl::Texture2D(GL_RG32F, {width, wanted});
-  // The last place fills the unused rays of the last row of blocks.
+  // The last place is repeated in the unused pixels of the last row of blocks.
   texels_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(rows),
                  places.empty() ? glm::vec2(0.0F) : places.back());
   for (std::size_t i = 0; i < places.size(); ++i) {

@@ -1,6 +1,6 @@
-// Rays of chosen places in a picture, packed as the pixels of a small target. Blocks of four by two
-// pixels, which software GL draws together, hold neighbours of the list. The class owns GL objects,
-// so use it on the context's thread.
+// Rays through chosen places of a picture, packed as the pixels of a small render target.
+// Consecutive places lie in blocks of four by two pixels, because software GL draws such a block
+// together. The class owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -16,14 +16,16 @@ class ChosenRays {
  public:
   // Sets the rays' places, in the coordinates of common/ray_place.glsl.
   void Choose(const std::vector<glm::vec2>& places);
-  // Chooses the rays of all pixels of a picture, in blocks of neighbours (post/unpacked.frag). A
-  // small picture would lie in only a few of the tiles of 64 x 64 that software GL distributes to
-  // its threads.
+  // Chooses the rays of all pixels of a picture, in blocks of neighbouring pixels
+  // (post/unpacked.frag). Packing spreads the rays over the target. Software GL distributes tiles
+  // of 64 x 64 pixels to its threads, and a small picture would occupy only a few of them.
   void ChooseAll(const glm::ivec2& size_px);
 
-  // Returns the pixel for the ray of the place with that index, in a target of Size().
+  // Returns the target pixel of the ray through place number `index`. The target has the size
+  // Size().
   static glm::ivec2 PixelOf(std::size_t index);
-  // Returns the size of targets. It only grows, so that targets are not recreated for each picture.
+  // Returns the size of render targets for these rays. It never shrinks, so that targets are not
+  // recreated for each picture.
   glm::ivec2 Size() const { return places_.Size(); }
   // Returns the part of the target that holds rays.
   gl::PixelRect Rect() const { return rect_; }

@@ -1,4 +1,4 @@
-// A frame's content as a technique reports it. This code does not use GL.
+// What a frame shows, as reported by its technique. This code does not use GL.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace thunderhead::renderers {
 
 struct Content {
   std::vector<physics::Hydrometeor> fields;  // the drawn fields
-  double occupied_share = 0.0;               // share of the domain's volume
+  double occupied_share = 0.0;               // share of the domain's volume that the storm occupies
   int balls = 0;                             // number of metaballs
   // Root mean square error of the metaballs, relative to the root mean square of the extinction.
   double fit_error = 0.0;
@@ -21,8 +21,8 @@ struct Content {
   std::vector<scene::NotShown> not_shown;
 };
 
-// Adds the parts of `scene` that its technique, with the capabilities `shows`, does not show.
-// `content` must have its fields and ground.
+// Adds to `content` the parts of `scene` that its technique does not show. `shows` are the
+// technique's capabilities. `content->fields` and `content->ground` must be set.
 void AddNotShown(const scene::Scene& scene, const scene::Capabilities& shows, Content* content);
 
 }  // namespace thunderhead::renderers

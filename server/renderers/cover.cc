@@ -12,15 +12,16 @@ namespace thunderhead::renderers {
 namespace {
 
 constexpr int kMinCoverTile_px = 8;
-constexpr int kMaxTiles = 256;  // along each side
+constexpr int kMaxTiles = 256;  // maximum number of tiles along each side
 constexpr float kNowhere = 0.0F;
-constexpr double kBetween = 0.5;  // depth of everything that a cover limits
+// Depth of everything that a cover limits; it lies between the depths in and outside the cover.
+constexpr double kBetween = 0.5;
 
 int Pixel(double place_px, int size_px) {
   return static_cast<int>(std::clamp(place_px, 0.0, static_cast<double>(size_px)));
 }
 
-// A picture's tiles, each marked or not.
+// The tiles of a picture, each of which can be marked.
 struct Tiles {
   int side_px;
   glm::ivec2 count;
@@ -43,7 +44,7 @@ struct Tiles {
     for (int y = low.y; y <= high.y; ++y) std::fill(Row(y) + low.x, Row(y) + high.x + 1, 1);
   }
 
-  // Returns the runs of marked tiles of each row.
+  // Returns the runs of consecutive marked tiles in each row, as rectangles of pixels.
   std::vector<PixelRect> Runs(const glm::ivec2& size_px) {
     std::vector<PixelRect> runs;
     for (int y = 0; y < count.y; ++y) {
@@ -93,8 +94,8 @@ BoxProjection::Interval BoxProjection::Across(double middle_m, double half_m, do
   const double far_m = half_width_m + tan_half_width * (forward_m + half_m_.z);
   const double low_m = middle_m - half_m;
   const double high_m = middle_m + half_m;
-  // The projection magnifies near points more, so the side away from the axis uses the near
-  // distance.
+  // The projection magnifies near points more. A side that points away from the view axis is
+  // therefore farthest from the axis at the near distance.
   const double low = low_m / (low_m < 0.0 ? near_m : far_m);
   const double high = high_m / (high_m < 0.0 ? far_m : near_m);
   return {(0.5 * low + 0.5) * size_px - margin_px_, (0.5 * high + 0.5) * size_px + margin_px_};

@@ -1,6 +1,7 @@
-// The pixels of a picture that a storm may cover: the tiles onto which its occupied bricks project.
-// Passes that look for the storm draw only there, and cheaper passes without it draw elsewhere. On
-// the device the tiles are a depth buffer, so that the test runs before any shader.
+// The pixels of a picture that a storm may cover: the tiles onto which its occupied bricks
+// (non-empty blocks of cells) project. Passes that draw the storm run only in these pixels. Cheaper
+// passes without the storm draw the other pixels. On the device the tiles are a depth buffer, so
+// that the depth test discards pixels before a shader runs.
 #pragma once
 
 #include <memory>
@@ -17,7 +18,7 @@
 
 namespace thunderhead::renderers {
 
-// Boxes of one size.
+// Boxes that all have the same size.
 struct Boxes {
   std::vector<glm::dvec3> middles_m;
   glm::dvec3 half_extent_m{0.0};
@@ -33,8 +34,8 @@ class BoxProjection {
   BoxProjection(const glm::dvec3& half_extent_m, const scene::View& view, const glm::ivec2& size_px,
                 double margin_px);
 
-  // Returns nothing for a box behind the eye. Returns the whole picture for a box that extends to
-  // both sides of the eye's plane.
+  // Returns the pixels that the box around `middle_m` may cover. Returns nothing for a box behind
+  // the eye. Returns the whole picture for a box on both sides of the plane through the eye.
   std::optional<PixelRect> Of(const glm::dvec3& middle_m) const;
 
  private:
@@ -52,8 +53,8 @@ class BoxProjection {
   glm::dvec3 half_m_;  // half extent along the view's axes
 };
 
-// Returns rectangles that do not overlap and contain every pixel that meets one of `boxes`, with a
-// margin of `margin_px`.
+// Returns rectangles that do not overlap and that contain every pixel covered by one of `boxes`,
+// with a margin of `margin_px`.
 std::vector<PixelRect> CoveredRects(const Boxes& boxes, const scene::View& view,
                                     const glm::ivec2& size_px, double margin_px);
 
@@ -64,8 +65,8 @@ class Cover {
   absl::Status Draw(const Boxes& boxes, const scene::View& view, const glm::ivec2& size_px,
                     double margin_px);
 
-  // Returns the depth attachment for targets that the cover limits. It is a new texture after the
-  // size changed.
+  // Returns the depth attachment for targets that are limited to the cover. After a change of size
+  // it is a new texture.
   const gl::Texture2D& Depth() const { return depth_; }
   std::size_t Bytes() const { return depth_.Bytes(); }
 
@@ -75,11 +76,11 @@ class Cover {
   gl::Framebuffer target_;
 };
 
-// A picture that a cover may limit.
+// A render target whose drawing can be limited by a cover.
 class CoveredTarget {
  public:
-  // Resizes the picture. `cover`, if any, must have this size. With distances, a second colour
-  // attachment holds one float a pixel.
+  // Resizes the picture. `cover` may be null, otherwise it must have the size `size_px`. If
+  // `with_distances` is true, a second colour attachment holds one float a pixel.
   void Resize(GLenum format, const glm::ivec2& size_px, const Cover* cover,
               bool with_distances = false);
   const gl::Texture2D& Texture() const { return texture_; }
@@ -96,8 +97,8 @@ class CoveredTarget {
 
 enum class Where { kCovered, kElsewhere };
 
-// While an object of this class lives, drawing is limited to this part of covered targets. Without
-// a cover, drawing is not limited.
+// Limits drawing on covered targets to the pixels inside or outside the cover, for the lifetime of
+// the object. If `cover` is null, drawing is not limited.
 class LimitedTo {
  public:
   LimitedTo(Where where, const Cover* cover);

@@ -8,7 +8,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Limits the noises kept after use, so that trying out seeds does not use up memory.
+// Maximum number of noises kept after use, so that a user who tries many seeds does not exhaust
+// memory.
 constexpr std::size_t kMaxKept = 8;
 
 gl::Texture3D Repeating(GLenum internal_format, int side, GLenum format,

@@ -1,5 +1,6 @@
-// Noises on the device. Each is computed once for its octaves and seed, and kept while in use or
-// recently used. The class owns GL objects, so use it on the context's thread.
+// Noise textures on the device. Each noise is computed once for its octaves and seed, and kept
+// while it is in use or was recently used. The class owns GL objects, so use it on the context's
+// thread.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +14,9 @@
 namespace thunderhead::renderers {
 
 struct DetailNoise {
-  physics::DetailTile tile;           // for a medium: the first level
-  std::vector<gl::Texture3D> levels;  // repeating; each level is half as fine as the one before
+  physics::DetailTile tile;  // the noise of the first level; set only for the noise of a medium
+  // Repeating textures. Each level has half the resolution of the level before.
+  std::vector<gl::Texture3D> levels;
 
   std::size_t Bytes() const;  // bytes on the device
 };

@@ -14,15 +14,15 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMaxShadowTexels = 192;        // along the longer side
+constexpr int kMaxShadowTexels = 192;  // number of texels along the longer side of the shadow map
 constexpr double kShadowTexelInCells = 1.0;  // size of a texel
 constexpr double kShadowStepInCells = 1.0;   // distance between samples along the sun's rays
-constexpr double kLevel_m = 1.0;             // terrain with less relief counts as level
+constexpr double kLevel_m = 1.0;  // terrain with smaller height differences counts as level
 
 constexpr gl::PieceCost kShadowTexel{"ground shadow", 2000.0};
 constexpr gl::PieceCost kDistancePixel{"ground distance", 100.0};
 
-// Returns the steepest slope between neighbouring columns.
+// Returns the steepest slope between neighbouring grid columns.
 double SteepestSlope(const volume::RegularGrid& grid, const std::vector<float>& height_m) {
   double steepest_x = 0.0;
   double steepest_y = 0.0;
@@ -173,7 +173,7 @@ void Ground::BindCorrection(const gl::Program& program, const scene::View& view)
 
 void Ground::BindShadow(const gl::Program& program, const scene::View& view) const {
   if (!has_shadow_) {
-    // This offset lies far outside the texture, where nothing is shaded.
+    // This offset lies far outside the shadow texture, where nothing is shaded.
     program.Set(uniform::shadow_right, glm::vec3(0.0F));
     program.Set(uniform::shadow_up, glm::vec3(0.0F));
     program.Set(uniform::shadow_down, glm::vec3(0.0F));

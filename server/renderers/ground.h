@@ -1,6 +1,6 @@
 // The ground under a storm: its intersection with view rays, and the storm's shadow on it. Level
-// ground is a plane (or the round Earth's surface) and costs almost nothing. Terrain is a height
-// map through which rays are marched. The class owns GL objects, so use it on the context's thread.
+// ground is a plane (or the round Earth's surface), which costs almost no time. Terrain is a height
+// map in which rays are marched. The class owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace thunderhead::renderers {
 
-// The variant of common/ground.glsl.
+// Shader variant of common/ground.glsl.
 struct GroundVariant {
   gl::DefineValue relief;  // the terrain is not level
 
@@ -33,17 +33,20 @@ class Ground {
   // Sets the terrain of these fields.
   void SetTerrain(const volume::HydrometeorFields& fields);
 
-  // Computes the shadow of `medium` under the settings' sun, if the medium is not empty.
+  // Computes the shadow of `medium` in the light of the sun of `settings`, if the medium is not
+  // empty.
   absl::Status CastShadow(const ResidentMedium& medium, const RenderSettings& settings);
-  // Takes the shadow of another object, in the format of common/storm_shadow.glsl, over `frame`
-  // around `middle_m`.
+  // Sets the shadow of an object that is not a medium, as a texture in the format of
+  // common/storm_shadow.glsl. The texture covers `frame` around `middle_m`.
   void TakeShadow(gl::Texture2D shadow, const LightFrame& frame, const glm::dvec3& middle_m);
-  // Uses a shadow texture of the caller, who must keep it while it is drawn.
+  // Uses a shadow texture that the caller owns. The caller must keep the texture as long as the
+  // ground is drawn.
   void ShareShadow(const gl::Texture2D* shadow, const LightFrame& frame,
                    const glm::dvec3& middle_m);
   void ClearShadow() { has_shadow_ = false; }
   bool HasShadow() const { return has_shadow_; }
-  // Uploads a correction's ground unless it is already on the device. Null removes the correction.
+  // Uploads the ground part of `correction` unless it is already on the device. Null removes the
+  // correction.
   void SetCorrection(const std::shared_ptr<const LightCorrection>& correction);
   // Returns true if there is a correction.
   bool Corrected() const { return correction_ != nullptr; }
@@ -51,23 +54,24 @@ class Ground {
   // Returns the height of the ground's lowest point above sea level.
   double Lowest_m() const { return lowest_m_; }
   GroundVariant Variant() const { return {.relief = relief_}; }
-  // Returns true if ground may stand between the eye and a storm. Level ground falls away from
-  // below the storm, so it hides nothing from an eye above the world's plane.
+  // Returns true if ground may stand between the eye and a storm. Level ground curves downwards
+  // from below the storm, so it hides nothing from an eye above the plane of world coordinates.
   bool MayHide(const scene::View& view) const {
     return relief_ || (view.ground_curvature_per_m > 0.0 && view.eye_m.z < lowest_m_);
   }
 
-  // Draws the distance of the ground along each pixel's ray, where rays through media end. With
-  // `chosen`, it draws the distances along these rays, and `size` must be their size.
+  // Draws the distance of the ground along each pixel's ray. Rays through media end at this
+  // distance. If `chosen` is not null, it draws the distances along the chosen rays instead, and
+  // `size` must be ChosenRays::Size().
   absl::Status DrawDistance(const scene::View& view, const glm::ivec2& size,
                             const ChosenRays* chosen = nullptr);
   const gl::Texture2D& Distance() const { return distances_[drawn_distance_].distance_m; }
 
   // Sets the uniforms and textures of common/ground.glsl for coordinates relative to the eye.
   void Bind(const gl::Program& program, const scene::View& view) const;
-  // Sets those of common/storm_shadow.glsl.
+  // Sets the uniforms and textures of common/storm_shadow.glsl.
   void BindShadow(const gl::Program& program, const scene::View& view) const;
-  // Sets those of a correction, if there is one.
+  // Sets the uniforms and textures of the correction, if there is one.
   void BindCorrection(const gl::Program& program, const scene::View& view) const;
 
   std::size_t Bytes() const {
@@ -88,13 +92,15 @@ class Ground {
   gl::Texture2D terrain_;
 
   bool has_shadow_ = false;
-  const gl::Texture2D* shared_shadow_ = nullptr;  // replaces shadow_
+  const gl::Texture2D* shared_shadow_ = nullptr;  // if not null, used in place of shadow_
   gl::Texture2D shadow_;
   gl::Framebuffer shadow_target_;
   glm::dvec3 shadow_middle_m_{0.0};
-  glm::dvec3 shadow_right_{0.0};  // reaches 1 at the shadow's half width
+  // Its dot product with an offset from shadow_middle_m_ is 1 at the shadow's half width.
+  glm::dvec3 shadow_right_{0.0};
   glm::dvec3 shadow_up_{0.0};
-  glm::dvec3 shadow_down_{0.0};  // reaches 1 at its half depth, away from the sun
+  // Its dot product with an offset is 1 at the shadow's half depth, away from the sun.
+  glm::dvec3 shadow_down_{0.0};
 
   std::shared_ptr<const LightCorrection> correction_;
   gl::Texture2D skylight_factor_;
@@ -103,8 +109,8 @@ class Ground {
     gl::Texture2D distance_m;
     gl::Framebuffer target;
   };
-  std::array<Distances, 2> distances_;  // the second is for chosen rays
-  std::size_t drawn_distance_ = 0;      // index of the last one drawn
+  std::array<Distances, 2> distances_;  // the second entry is for chosen rays
+  std::size_t drawn_distance_ = 0;      // index in distances_ of the entry that was drawn last
 };
 
 }  // namespace thunderhead::renderers

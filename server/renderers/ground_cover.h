@@ -1,5 +1,6 @@
-// The ground's cover on the device: a map of the storm's land use or the pattern of fields, coasts
-// and borders, and the rings. The class owns GL objects, so use it on the context's thread.
+// The ground's cover on the device: a map of the storm's land use or the synthetic pattern of crop
+// fields, coasts and borders, and the distance rings. The class owns GL objects, so use it on the
+// context's thread.
 #pragma once
 
 #include <memory>
@@ -14,7 +15,7 @@
 
 namespace thunderhead::renderers {
 
-// The variant of common/ground_cover.glsl.
+// Shader variant of common/ground_cover.glsl.
 struct GroundCoverVariant {
   gl::DefineValue cover;  // the value of scene::GroundCover
   gl::DefineValue borders;
@@ -25,16 +26,17 @@ struct GroundCoverVariant {
 
 class GroundCover {
  public:
-  // Sets the land of these fields, which is uploaded when it is first drawn.
+  // Sets the storm whose land use and borders are drawn. They are uploaded when they are first
+  // drawn.
   void SetLand(const volume::HydrometeorFields& fields);
 
-  // Uploads the cover that `scene` shows of these fields, which must be those of SetLand.
+  // Uploads the cover that `scene` shows. `fields` must be the same as in the last SetLand.
   void Prepare(const scene::Scene& scene, const volume::HydrometeorFields& fields);
 
   GroundCoverVariant Variant() const;
 
-  // Sets the uniforms and textures of common/ground_cover.glsl for coordinates relative to the eye,
-  // except that of the sky. `height_px` is the picture's height.
+  // Sets the uniforms and textures of common/ground_cover.glsl for coordinates relative to the eye.
+  // The texture of the reflected sky is not set. `height_px` is the picture's height.
   void Bind(const gl::Program& program, const scene::Scene& scene, const scene::View& view,
             int height_px) const;
 
@@ -46,12 +48,12 @@ class GroundCover {
 
   scene::Ground drawn_;
   glm::dvec2 ring_middle_m_{0.0};
-  gl::Texture2D fields_;  // physics::FieldPattern
+  gl::Texture2D fields_;  // the pattern of crop fields (physics::FieldPattern)
   bool land_is_new_ = false;
   gl::Texture2D land_;
   volume::RegularGrid grid_;
   glm::vec3 land_mean_{0.0F};
-  std::shared_ptr<const volume::BorderMap> border_map_;  // null: no borders are drawn
+  std::shared_ptr<const volume::BorderMap> border_map_;  // null if no borders are drawn
   gl::Texture2D borders_;
 };
 

@@ -12,10 +12,10 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr double kTexel_m = 250.0;  // minimum size
-constexpr int kMaxTexels = 192;     // along each side
-// Largest size of a texel. A cloud base receives little light from ground farther away. Coarser
-// texels could not separate the ground below it from its surroundings.
+constexpr double kTexel_m = 250.0;  // minimum size of a texel
+constexpr int kMaxTexels = 192;     // maximum number of texels along each side
+// Maximum size of a texel. A cloud base receives little light from ground farther away than this.
+// Larger texels could not separate the ground below a base from its surroundings.
 constexpr double kCoarsest_m = 2000.0;
 
 }  // namespace
@@ -23,7 +23,7 @@ constexpr double kCoarsest_m = 2000.0;
 absl::StatusOr<LitGround> GroundLight::Find(const Ground& ground, const SkyAndGround& surroundings,
                                             const volume::WorldBox& storm,
                                             const Illumination& light) {
-  // Ground farther than this from the storm's box counts as open.
+  // Ground farther than this margin from the storm's box counts as open.
   const glm::dvec2 margin_m(storm.high_m.z - ground.Lowest_m());
   const glm::dvec2 low_m = glm::dvec2(storm.low_m) - margin_m;
   const glm::dvec2 size_m = glm::dvec2(storm.high_m) + margin_m - low_m;

@@ -1,7 +1,7 @@
 // The light that reaches the ground under a storm, which lights the storm from below. It consists
 // of sunlight through the storm's shadow, skylight past the storm, and light that the storm's faces
-// reflect. The picture of the ground has the same light (post/composite.frag). The class owns GL
-// objects, so use it on the context's thread.
+// reflect. The ground in the picture receives the same light (post/composite.frag). The class owns
+// GL objects, so use it on the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -24,9 +24,9 @@ class GroundLight {
   explicit GroundLight(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // Computes the light around `storm`. `ground` must have its shadow, and `surroundings` the share
-  // of the sky that it hides. For storms wider than about 380 km, it returns the light of open
-  // ground.
+  // Computes the light around `storm`. The storm's shadow must have been set in `ground`, and
+  // `surroundings` must know the share of the sky that the storm hides. For storms wider than about
+  // 380 km, the function returns the light of open ground.
   absl::StatusOr<LitGround> Find(const Ground& ground, const SkyAndGround& surroundings,
                                  const volume::WorldBox& storm, const Illumination& light);
 

@@ -12,8 +12,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Returns the paper's display normalisation: the logarithm of the cut phase function over its
-// dynamic range over all colours, 0 to 1.
+// Returns offset and slope of the paper's display normalisation. It maps the logarithm of the cut
+// phase function to 0 to 1 over its dynamic range over all colours.
 glm::vec2 DisplayNormalisation(const physics::PhaseFunction& phase, double cut_cosine) {
   glm::dvec3 lowest = physics::PhaseColors(phase, cut_cosine);
   glm::dvec3 highest = lowest;

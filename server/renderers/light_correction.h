@@ -1,6 +1,7 @@
-// Factors for the storm's radiance in a light volume's picture, by place and direction. They are
-// fitted to the reference (accuracy/correction_fit.h). Each ray looks up its factor once, at the
-// mean place of what it shows. The type is a plain value and does not use GL.
+// Factors that correct the storm's radiance in a light volume's picture, by place and direction.
+// They are fitted to path-traced radiance (accuracy/correction_fit.h). Each ray looks up its factor
+// once, at the mean place of the parts of the storm that it shows. The type is a plain value and
+// does not use GL.
 #pragma once
 
 #include <array>
@@ -15,12 +16,12 @@ namespace thunderhead::renderers {
 struct LightCorrection {
   // Number of texels over the medium's box, with x varying fastest.
   glm::ivec3 size{0};
-  // Coefficients for red, green and blue. The factor for a ray of direction d is dot(texel, (1,
-  // d)).
+  // Coefficients for red, green and blue. The factor for a ray of direction d is the dot product of
+  // the texel and (1, d).
   std::array<std::vector<glm::vec4>, 3> texels;
 
-  // Factors for skylight on level ground, which the storm partly hides and to which it adds its own
-  // light. They are red, green and blue of texels over a rectangle of the world, with x varying
+  // Factors for skylight on level ground. The storm hides a part of the sky and adds its own light.
+  // The texels hold red, green and blue factors over a rectangle of the world, with x varying
   // fastest.
   glm::ivec2 ground_size{0};
   std::vector<glm::vec4> ground;

@@ -1,5 +1,6 @@
-// The plane perpendicular to a light's direction that covers the shadow of a box. Light buffers,
-// shadow maps and light volumes are laid out in it. It is pure geometry without GL.
+// The plane perpendicular to a light's direction, with the rectangle in it that contains the shadow
+// of a box. Light buffers, shadow maps and light volumes are laid out in this plane. This code is
+// pure geometry without GL.
 #pragma once
 
 #include <array>
@@ -9,7 +10,7 @@
 
 namespace thunderhead::renderers {
 
-// A box around the origin of local coordinates (metres).
+// A box centred at the origin of local coordinates, in metres.
 struct LocalBox {
   glm::dvec3 half_m{0.0};
 };
@@ -21,8 +22,8 @@ struct LightFrame {
   glm::dvec3 towards_sun{0.0, 0.0, 1.0};
   glm::dvec3 right{1.0, 0.0, 0.0};
   glm::dvec3 up{0.0, 1.0, 0.0};
-  glm::dvec2 half_extent_m{1.0};  // covers the box's shadow
-  double half_depth_m = 1.0;      // of the box along the light
+  glm::dvec2 half_extent_m{1.0};  // half the size of the rectangle that contains the box's shadow
+  double half_depth_m = 1.0;      // half the extent of the box along the light
 };
 
 LightFrame LightFrameOf(const LocalBox& box, const glm::dvec3& towards_sun);

@@ -22,8 +22,9 @@ std::array<double, 9> Harmonics(const glm::dvec3& n) {
           n.x * n.x - n.y * n.y};
 }
 
-// Weight of each function: the inverse of the mean of its square over the sphere, times a factor of
-// its order. That factor, from the convolution with the cosine, is 1, 2/3 and 1/4.
+// Weight of each spherical harmonic. It is the inverse of the mean of its square over the sphere,
+// times a factor of its order. This factor comes from the convolution with the cosine and is 1, 2/3
+// and 1/4 for the orders 0, 1 and 2.
 constexpr std::array<double, 9> kWeights = {
     1.0, 2.0, 2.0, 2.0, 15.0 / 4.0, 15.0 / 4.0, 5.0 / 16.0, 15.0 / 4.0, 15.0 / 16.0};
 
@@ -32,7 +33,8 @@ constexpr std::array<double, 9> kWeights = {
 std::vector<glm::vec3> LightMapOf(
     const std::function<glm::vec3(const glm::vec3& direction)>& radiance_from) {
   std::array<glm::dvec3, 9> sums{};
-  // Midpoints in sine of elevation and azimuth divide the sphere into equal solid angles.
+  // Midpoints in the sine of the elevation and in the azimuth divide the sphere into equal solid
+  // angles.
   for (int i = 0; i < kSines; ++i) {
     const double sine = 2.0 * (i + 0.5) / kSines - 1.0;
     const double cosine = std::sqrt(1.0 - sine * sine);

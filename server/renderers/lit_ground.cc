@@ -13,15 +13,16 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Radii of the three discs, relative to the height h. A share of R^4 / (R^2 + h^2)^2 of all discs
-// has a radius below R. For these radii that share is 1/6, 1/2 and 5/6.
+// Radii of the three discs, relative to the height h. Of all discs of the sum, the share R^4 / (R^2
+// + h^2)^2 has a radius below R. For the three radii this share is 1/6, 1/2 and 5/6.
 constexpr std::array<float, 3> kDiscRadii = {0.830F, 1.554F, 3.238F};
 
-// The level of the map for each disc at a height of one texel of the map.
+// For each disc, the level of the map at which the disc is looked up from a height of one texel.
 const std::array<float, 3> kDiscLevels = {std::log2(kDiscRadii[0]), std::log2(kDiscRadii[1]),
                                           std::log2(kDiscRadii[2])};
 
-// A wall receives half of its light from the ground from within this distance, in heights.
+// A vertical wall receives half of its ground light from within this distance, in units of its
+// height.
 constexpr double kWallSees = 1.732;
 
 }  // namespace
@@ -56,10 +57,10 @@ LitGround::Level LitGround::HalfOf(const Level& fine) {
   return half;
 }
 
-// Interpolates between texel centres at a place in the map's texels.
+// Interpolates the darkness between texel centres. `texel` is a place in units of the map's texels.
 float LitGround::Dark(const Level& level, const glm::vec2& texel) {
-  // Coordinates are relative to the centre of the border's first texel. This order of min and max
-  // turns NaN into 0.
+  // Coordinates are relative to the centre of the border's first texel. With this order of min and
+  // max, a NaN becomes 0.
   const glm::vec2 place =
       glm::min(glm::max(glm::vec2(0.0F), texel * level.scale + 0.5F), glm::vec2(level.size) + 1.0F);
   const glm::ivec2 first(place);
@@ -72,7 +73,8 @@ float LitGround::Dark(const Level& level, const glm::vec2& texel) {
 float LitGround::DarkWithin(const glm::vec2& texel, float level) const {
   const auto last = static_cast<float>(levels_.size() - 1);
   if (level >= last) {
-    // A disc wider than the map contains the darkness of the whole map, in proportion to the areas.
+    // A disc wider than the map contains the darkness of the whole map. Its mean darkness is that
+    // of the map times the ratio of the areas.
     const float shrunk = std::exp2(last - level);
     return Dark(levels_.back(), texel) * shrunk * shrunk;
   }

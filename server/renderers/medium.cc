@@ -23,10 +23,11 @@ namespace thunderhead::renderers {
 namespace {
 
 constexpr std::size_t kMaxBoxes = 8192;
-// Number of levels in which octaves are distinguishable; the coarsest is almost uniform.
+// Number of noise levels in which octaves are distinguishable. The coarsest of them is almost
+// uniform.
 constexpr double kLevelsOfBillows = 4.0;
-// Light is stored at cells, so detail that cells cannot resolve must not flicker from one to the
-// next.
+// Width in cells that a sample represents for light. Light is stored by cell, so detail that cells
+// cannot resolve must not flicker from cell to cell.
 constexpr double kLightFootprintInCells = 1.0;
 
 std::vector<DetailLayer> LayersOf(const Medium& medium, const volume::AirMotion& motion,
@@ -40,7 +41,7 @@ std::vector<DetailLayer> LayersOf(const Medium& medium, const volume::AirMotion&
   return layers;
 }
 
-// Packs one value a group for shaders, four to a vector.
+// Packs one value for each group into vectors for shaders, four values to a vector.
 std::vector<glm::vec4> Packed(const std::vector<double>& by_group, double factor) {
   std::vector<glm::vec4> packed((by_group.size() + 3) / 4, glm::vec4(0.0F));
   for (std::size_t i = 0; i < by_group.size(); ++i) {
@@ -56,12 +57,12 @@ std::uint64_t NextId() {
 
 struct Computed {
   volume::ExtinctionVolume extinction;
-  volume::DetailControl detail_control;  // empty without detail
+  volume::DetailControl detail_control;  // empty if the medium has no detail
   volume::WaterPathEffort effort = volume::WaterPathEffort::kFull;
 };
 
-// Returns the memo of all media of the process, because several sessions and contexts may draw the
-// same storm.
+// Returns the cache of water paths for all media of the process. Several sessions and contexts may
+// draw the same storm.
 volume::WaterPathMemo& RememberedWaterPaths() {
   constexpr std::size_t kMostBytes = 32U << 20U;
   static volume::WaterPathMemo memo(kMostBytes);
@@ -85,7 +86,7 @@ Computed ComputedOf(const volume::HydrometeorFields& fields, const Medium& mediu
   return computed;
 }
 
-// Computes the medium on fewer cells if a texture cannot hold all.
+// Computes the medium. If a texture cannot hold all cells, it uses fewer and larger cells.
 Computed ComputedThatFits(const volume::HydrometeorFields& fields, const Medium& medium,
                           DetailNoises* noises, volume::WaterPathEffort effort) {
   GLint max_texels = 0;
@@ -118,7 +119,7 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
   base::Stopwatch stopwatch;
   details_ = LayersOf(content_, fields.motion, noises);
-  // Memory for half floats of each group and the detail's control during the upload.
+  // Counts the memory that the upload needs: half floats of each group, and the detail's control.
   const base::MemoryReservation on_the_way = gl::DeviceMemory::ReserveBeside(
       fields.grid.CellCount() * (2 * content_.groups.size() + sizeof(volume::DetailTexel)));
   Computed computed = ComputedThatFits(fields, content_, noises, effort);
@@ -200,8 +201,8 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
   for (std::size_t i = 0; i < details_.size(); ++i) {
     const DetailLayer& layer = details_[i];
     sizes.emplace_back(layer.Tile_m() / extent_m);
-    // The corner's own part is not reduced modulo the tile, because the tile of fibres has another
-    // size.
+    // The term with the low corner is not reduced modulo the tile size, because the tile of fibres
+    // has a different size.
     corners.emplace_back((glm::dvec3(layer.drift_m, 0.0) - bounds_.grid.low_corner_m) / extent_m);
     const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
     shares.insert(shares.end(), packed.begin(), packed.end());
@@ -226,7 +227,7 @@ void ResidentMedium::BindPixel(const gl::Program& program, const scene::View& vi
              glm::length(nearest_m));
 }
 
-// Selects the level that suits the nearest part of the medium.
+// Selects for each noise the level that suits the nearest part of the medium.
 void ResidentMedium::BindNoises(const gl::Program& program, const Footprint& footprint,
                                 double nearest_m) const {
   std::vector<float> left_out;
@@ -243,8 +244,8 @@ void ResidentMedium::BindNoises(const gl::Program& program, const Footprint& foo
     levels[static_cast<std::size_t>(level)].Bind(shaders::kDetailNoiseUnit +
                                                  static_cast<GLuint>(i));
     left_out.push_back(static_cast<float>(std::min(level / kLevelsOfBillows, 1.0)));
-    // The fade begins at a footprint of one texel of that level. It ends where the footprint equals
-    // its last octave.
+    // The fade begins where the footprint (the width that a sample represents) is one texel of that
+    // level. It ends where the footprint is as large as the wavelength of the level's last octave.
     const double level_texel_m = texel_m * std::ldexp(1.0, level);
     const double reach = std::ldexp(1.0, static_cast<int>(kLevelsOfBillows)) - 1.0;
     fades_at_start.push_back(
@@ -258,7 +259,7 @@ void ResidentMedium::BindNoises(const gl::Program& program, const Footprint& foo
 
 double ResidentMedium::OccupiedShare() const {
   if (Empty()) return 0.0;
-  // Bricks extend beyond the box.
+  // Bricks extend beyond the box, so the sum could exceed 1.
   const glm::dvec3 sides = brick_m_ / (2.0 * HalfExtent_m());
   return std::min(occupied_count_ * sides.x * sides.y * sides.z, 1.0);
 }

@@ -9,10 +9,12 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Steps are 0.03 degrees at the 22 degree halo and 0.07 at the rainbow. The first step is 1e-5.
+// Number of texels of a curve. The step between them is 0.03 degrees at the 22 degree halo, 0.07
+// degrees at the rainbow and 1e-5 degrees at the first texel.
 constexpr int kTexels = 4096;
 
-// Returns the inverse of glsl::phase_curve_place.
+// Returns the cosine of the scattering angle at a place on the curve. It is the inverse of
+// glsl::phase_curve_place.
 double CosineAt(double place) {
   const double share = place * place;
   const double half_angle = std::atan2(share, 1.0 - share);

@@ -1,5 +1,5 @@
-// The phase functions of a medium's groups for shaders/common/phase.glsl. Formulas and tables are
-// both stored as curves, one row a group. This code does not use a renderer.
+// The phase functions of a medium's groups for shaders/common/phase.glsl. Both formulas and tables
+// are stored as sampled curves, one texture row for each group. This code does not use a renderer.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace thunderhead::renderers {
 class PhaseCurves {
  public:
   PhaseCurves() = default;
-  // Creates one row for each of `phases`, at least one.
+  // Creates one row for each of `phases`, which must not be empty.
   explicit PhaseCurves(const std::vector<physics::PhaseFunction>& phases);
 
   // Binds the texture to the unit that common/phase.glsl names.

@@ -1,6 +1,6 @@
-// Work on the CPU that some scenes need once before drawing and that takes seconds, such as fitting
-// metaballs. It runs outside the drawing thread, because it would otherwise block every session. It
-// is safe to use from any thread and does not use GL.
+// Work on the CPU that some scenes need once before they are drawn, such as fitting metaballs. It
+// takes seconds and would block every session in the drawing thread, so it runs in other threads.
+// The class is safe to use from any thread and does not use GL.
 #pragma once
 
 #include <memory>
@@ -20,7 +20,8 @@ class Preparation {
   // Returns false if the scene never needs preparation, whatever its fields.
   virtual bool IsNeeded(const scene::Scene& scene) const = 0;
 
-  // Returns true if drawing `scene` from `fields` (of its storm and time) has nothing to wait for.
+  // Returns true if `scene` can be drawn at once from `fields`, which are those of its storm and
+  // time.
   virtual bool IsDone(const scene::Scene& scene, const Fields& fields) = 0;
   // Blocks until the preparation is done.
   virtual absl::Status Prepare(const scene::Scene& scene, const Fields& fields) = 0;

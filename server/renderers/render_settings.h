@@ -1,4 +1,4 @@
-// Inputs of every renderer of a medium, except the medium.
+// The inputs of every renderer that draws a medium, except the medium itself.
 #pragma once
 
 #include <memory>
@@ -27,50 +27,58 @@ struct Illumination {
   glm::dvec3 towards_sun{0.0, 0.0, 1.0};
   glm::vec3 sunlight{1.0F};  // irradiance on a plane facing the sun, at the ground
   glm::vec3 ambient{0.0F};   // mean radiance from sky and ground
-  glm::vec3 from_sky{0.0F};  // mean radiance of the upper hemisphere; from_ground: of the lower
+  // Mean radiance of the upper hemisphere. from_ground is that of the lower hemisphere.
+  glm::vec3 from_sky{0.0F};
   glm::vec3 from_ground{0.0F};
-  std::vector<Beam> beams{};  // renderers that cannot show them report so
-  // The sky as a sum of two parts, for diffusion transport. Its bright surroundings of the sun are
-  // an irradiance from the sun's direction. The rest counts as linear in the sine of the elevation.
-  // It is given by its mean radiance and its irradiance from above over pi.
+  // The scene's own lights; a renderer that cannot show them reports them as not shown.
+  std::vector<Beam> beams{};
+  // The sky as a sum of two parts, for diffusion transport. `around_sun` is the bright region
+  // around the sun, as an irradiance from the sun's direction. The rest of the sky is approximated
+  // as linear in the sine of the elevation. `rest_of_sky` is its mean radiance, and
+  // `rest_of_sky_level` its irradiance from above over pi.
   glm::vec3 around_sun{0.0F};
   glm::vec3 rest_of_sky{0.0F};
   glm::vec3 rest_of_sky_level{0.0F};
-  // The share of sunlight, by luminance, in the light that open ground receives.
+  // The share of direct sunlight, by luminance, in the light that open ground receives.
   float ground_sunlit = 1.0F;
   float ground_albedo = 0.0F;  // albedo by luminance
-  // Sunlight at 0, shaders::kSunlightStep_m ... above sea level, shaders::kSunlightLevels values.
-  // Empty if it is the same everywhere.
+  // Sunlight at shaders::kSunlightLevels heights above sea level, which begin at 0 and are
+  // shaders::kSunlightStep_m apart. The vector is empty if sunlight is the same at every height.
   std::vector<glm::vec3> sunlight_levels{};
 };
 
-// The quality with which a scene is drawn.
-inline constexpr double kLightTolerance = 2e-4;  // relative tolerance
+inline constexpr double kLightTolerance = 2e-4;  // default of DrawQuality::light_tolerance
 
+// The quality with which a scene is drawn.
 struct DrawQuality {
-  // Scale of the eye buffer's width and height, (0, 2]; 2 is 4 rays a pixel.
+  // Scale of the eye buffer's width and height, (0, 2]. A scale of 2 gives 4 rays a pixel.
   double image_scale = 1.0;
-  double slice_share = 1.0;  // share of the scene's slices, (0, 1]
-  // Only sweeps vary the next two. Sessions draw with these values.
-  // texels of the light volume along a side, relative to the usual number
+  double slice_share = 1.0;  // share of the scene's slices that are drawn, (0, 1]
+  // Only measurements of quality change `light_detail` and `single_precision`. Sessions draw with
+  // the defaults. `light_detail` is the number of texels along a side of the light volume, relative
+  // to the usual number.
   double light_detail = 1.0;
-  bool single_precision = false;  // in buffers of light and the frame; the usual precision is half
-  // Correction of the light volume for the scene's light.
+  // Buffers of the light and the frame have single instead of half precision.
+  bool single_precision = false;
+  // Correction of the light volume by path tracing, for the scene's light. Null if there is none.
   std::shared_ptr<const LightCorrection> correction{};
   // Draws the sun's disc and its aureole where they are in view.
   bool sun_seen = true;
   // The size of the linear frame, if it differs from the scene's size. SceneRenderer::DrawChosen
-  // then adds the missing rays. Detail suits the pixels of the scene's size. Techniques and devices
-  // that do not support this (SceneRenderer::DrawsChosen) draw the whole picture.
+  // then adds the missing rays. The turbulent detail still suits pixels of the scene's size.
+  // Techniques and devices that cannot do this (SceneRenderer::DrawsChosen) draw the whole picture.
   std::optional<glm::ivec2> coarse_px{};
-  // Tolerance of the light from the diffusion equation. More accurate light is kept.
+  // Relative tolerance of the light from the diffusion equation. Existing light that is more
+  // accurate is kept.
   double light_tolerance = kLightTolerance;
-  // Length of the light volume's layers relative to the usual one, at least 1. Finer light is kept.
+  // Length of the light volume's layers relative to the usual length, at least 1. Existing light
+  // with shorter layers is kept.
   double light_layer = 1.0;
-  // Updates light that changes little with the sun for only a part of the cells, and keeps it for
-  // the others.
+  // If true, light that changes little with the sun is updated for only a part of the cells in each
+  // frame. The other cells keep their light.
   bool light_in_turns = false;
-  // Preserves the water paths of columns less exactly where detail is drawn. Better ones are kept.
+  // If true, turbulent detail preserves the water paths of columns (volume/water_paths.h) less
+  // exactly. An existing medium with exact water paths is kept.
   bool quick_water_paths = false;
 
   bool operator==(const DrawQuality&) const = default;
@@ -81,16 +89,17 @@ struct RenderSettings {
   scene::View view;
   Illumination illumination;
   glm::ivec2 eye_size{1};                    // size of the eye buffer in pixels
-  int slices = scene::LightVolume{}.slices;  // also the number of samples along a ray
-  DrawQuality quality{};                     // its scales are already applied to the sizes above
-  // Distance of the ground along each pixel's ray. Null if no ground hides a part of the medium.
+  int slices = scene::LightVolume{}.slices;  // number of slices, or of samples along a ray
+  DrawQuality quality{};  // the quality; its scales are already applied to `eye_size` and `slices`
+  // Distance of the ground along each pixel's ray. Null if the ground hides no part of the medium.
   const gl::Texture2D* ground_distance = nullptr;
-  // The part of the eye buffer that may show the medium. Null: all of it.
+  // The part of the eye buffer that may show the medium. Null if the medium may be anywhere.
   const Cover* cover = nullptr;
-  // The size of the picture whose pixels determine the detail, if that is not the eye buffer.
+  // The size of the picture whose pixels determine how fine the detail is, if it differs from the
+  // size of the eye buffer.
   std::optional<glm::ivec2> detail_size{};
-  // The rays to draw from a picture of detail_size, instead of those of the eye buffer's pixels.
-  // The eye buffer then has the size of these rays.
+  // The rays to draw instead of those of the eye buffer's pixels. They belong to a picture of the
+  // size `detail_size`. The eye buffer then has the size ChosenRays::Size().
   const ChosenRays* chosen = nullptr;
 
   // Returns the settings of a technique that draws a medium.

@@ -29,7 +29,7 @@ SceneRenderer& RendererPool::Choose(
   auto best = std::max_element(
       renderers_.begin(), renderers_.end(),
       [&](const auto& a, const auto& b) { return first_stage(a) < first_stage(b); });
-  // If a scene needs another extinction, no renderer has results that it can reuse.
+  // If the scene needs a new extinction, no renderer has results that can be reused.
   if (best == renderers_.end() || first_stage(*best) <= scene::Stage::kExtinction) {
     if (renderers_.size() < max_renderers_) {
       renderers_.emplace_back().renderer = std::make_unique<SceneRenderer>(programs_, registry_);

@@ -1,6 +1,6 @@
-// Scene renderers for viewers of different scenes. Each keeps the stages of what it drew last, so
-// alternating viewers do not discard each other's results. The class owns GL objects, so use it on
-// the context's thread.
+// A pool of scene renderers for viewers of different scenes. Each renderer keeps the stages of the
+// scene that it drew last, so alternating viewers do not discard each other's results. The class
+// owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <cstddef>
@@ -15,18 +15,20 @@ namespace thunderhead::renderers {
 
 class RendererPool {
  public:
-  // Keeps at most `max_renderers`. Drops the least recently used ones while all together take more
-  // than `max_bytes` on the device.
+  // Keeps at most `max_renderers` renderers. Drops the least recently used renderers while all
+  // together use more than `max_bytes` of device memory.
   explicit RendererPool(std::size_t max_renderers = 4,
                         std::size_t max_bytes = std::size_t{1} << 30U)
       : RendererPool(std::make_shared<TechniqueRegistry>(TechniqueRegistry::BuiltIn()),
                      std::make_shared<gl::ProgramCache>(), max_renderers, max_bytes) {}
-  // The renderers draw with the techniques of `registry`. `programs` links the programs.
+  // The renderers draw with the techniques of `registry` and get their linked shader programs from
+  // `programs`.
   RendererPool(std::shared_ptr<const TechniqueRegistry> registry,
                std::shared_ptr<gl::ProgramCache> programs, std::size_t max_renderers = 4,
                std::size_t max_bytes = std::size_t{1} << 30U);
 
-  // Draws with the renderer that can reuse most for the scene. The frame lives until the next Draw.
+  // Draws with the renderer that can reuse the most results for the scene. The frame is valid until
+  // the next Draw.
   absl::StatusOr<LinearFrame> Draw(const scene::Scene& scene,
                                    const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                    const DrawQuality& quality);
@@ -36,10 +38,10 @@ class RendererPool {
     return renderers_.front().renderer->DrawChosen(places);
   }
 
-  // Drops the least recently used renderer, but never the one that drew last or is drawing. Returns
-  // false if there is none.
+  // Drops the least recently used renderer, but never the renderer that drew last or is drawing.
+  // Returns false if there is no renderer to drop.
   bool DropOldest();
-  // Drops renderers that have not drawn for this time. That may invalidate the frame.
+  // Drops renderers that have not drawn for `seconds`. This may invalidate the last frame.
   void DropUnusedFor(double seconds);
 
  private:

@@ -18,7 +18,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-// The air of coarse frames is computed for a picture larger by this factor along each side.
+// Coarse frames use air shade of a higher resolution: that for a picture larger by this factor
+// along each side.
 constexpr float kCoarseAirScale = 1.4F;
 
 constexpr gl::PieceCost kUnpackedPixel{"unpacked", 10.0};
@@ -29,8 +30,8 @@ glm::ivec2 EyeSize(const scene::Scene& scene, const DrawQuality& quality) {
   return glm::max(glm::ivec2(glm::ceil(size * scale)), glm::ivec2(1));
 }
 
-// Returns true if too few tiles keep software GL's threads busy. One thread then takes longer for a
-// tile than all threads would take for evenly shared pixels.
+// Returns true if a picture of this size has too few tiles to keep all threads of software GL busy.
+// One thread then takes longer for a tile than all threads would take for evenly shared pixels.
 bool LeavesThreadsIdle(const glm::ivec2& size_px) {
   constexpr int kTileSide = 64;
   constexpr unsigned kMaxThreads = 16;
@@ -40,7 +41,7 @@ bool LeavesThreadsIdle(const glm::ivec2& size_px) {
          static_cast<std::int64_t>(size_px.x) * size_px.y;
 }
 
-// Returns the number of slices of techniques that have one, or 0 for others.
+// Returns the number of slices at this quality, or 0 if the technique has no slices.
 int SlicesAt(const scene::Scene& scene, const DrawQuality& quality) {
   const std::optional<int> slices = scene::SlicesOf(scene.rendering.technique);
   if (!slices.has_value()) return 0;
@@ -130,7 +131,8 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
   THUNDERHEAD_ASSIGN_OR_RETURN(technique_, Choose(scene));
   StageTimes times;
   if (first <= scene::Stage::kExtinction) {
-    // New fields get full water paths immediately, because a frame at rest would need them anyway.
+    // After a change of fields, water paths are computed in full immediately. A frame at rest would
+    // need them anyway.
     const bool quick = quality.quick_water_paths && first > scene::Stage::kStorm;
     THUNDERHEAD_RETURN_IF_ERROR(MakeContent(scene, fields, quick, &times));
   }
@@ -162,8 +164,8 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
         THUNDERHEAD_RETURN_IF_ERROR(technique_->CarryLight(scene, fields, settings, &times));
       }
       THUNDERHEAD_RETURN_IF_ERROR(DrawGround(&settings, packed, &times));
-      // The results are recorded now. If drawing is cancelled from here on, the next picture need
-      // not propagate the light again.
+      // The inputs are recorded now. If drawing is cancelled after this point, the next picture
+      // need not propagate the light again.
       Keep(asked, fields, quality);
       if (!packed) {
         THUNDERHEAD_ASSIGN_OR_RETURN(settings.cover, DrawContent(scene, settings, &times));
@@ -218,15 +220,15 @@ void SceneRenderer::Keep(const scene::Scene& scene, const Fields& fields,
 
 absl::Status SceneRenderer::MakeContent(const scene::Scene& scene, const Fields& fields,
                                         bool quick_water_paths, StageTimes* times) {
-  // Techniques that draw the medium share it. Results of other techniques belong to another scene
-  // and are freed.
+  // Techniques that draw the medium share it, and keep their other results. The results of all
+  // other techniques belong to another scene and are freed.
   std::erase_if(techniques_, [this](const auto& entry) {
     return entry.second.get() != technique_ && !entry.second->DrawsMedium();
   });
   workspace_.medium = ResidentMedium();
   if (technique_->DrawsMedium()) {
     ResidentMedium::Cost cost;
-    // The work of this thread, except for copies to the device, runs without the device turn.
+    // This computation uses mostly the CPU, so it runs without the device turn (gl/pieces.h).
     THUNDERHEAD_RETURN_IF_ERROR(workspace_.Pieces().OffTurn([&] {
       workspace_.medium = ResidentMedium(
           scene, *fields, &workspace_.noises, &cost,
@@ -307,7 +309,7 @@ absl::Status SceneRenderer::Composite(const scene::Scene& scene, const RenderSet
   const Cover* cover = settings.cover;
   const bool chosen = settings.chosen != nullptr;
   if (!chosen && (cover == nullptr || Eye().Size() != size_px)) {
-    // A pixel reads the eye buffer's pixels around it.
+    // A pixel of the picture reads the eye buffer's pixels around it.
     const double margin_px = 1.0 + std::ceil(static_cast<double>(size_px.x) / Eye().Size().x);
     THUNDERHEAD_ASSIGN_OR_RETURN(cover,
                                  CoverOf(settings.view, size_px, margin_px, &picture_cover_));
@@ -328,8 +330,8 @@ absl::Status SceneRenderer::AddSun(const scene::Scene& scene, const scene::View&
                                    const SunGlow::Picture& picture) {
   const SunGlow::Sun sun = workspace_.surroundings.SunFrom(scene, view);
   const scene::MediumSettings* settings = scene::MediumSettingsOf(scene.rendering.technique);
-  // The aureole belongs to the medium, so other content has none. With the paper's transport,
-  // radiance is on the paper's display scale, to which the aureole cannot be added.
+  // Only techniques that draw the medium show an aureole. With the paper's transport, radiance is
+  // on the paper's display scale, to which the aureole cannot be added.
   if (technique_->KeepsToCover() && !technique_->Empty() && settings != nullptr &&
       !scene::IsPaper(settings->transport)) {
     return sun_glow_.AddThrough(workspace_.medium, *settings, drawn_slices_, sun, view,
@@ -339,7 +341,8 @@ absl::Status SceneRenderer::AddSun(const scene::Scene& scene, const scene::View&
 }
 
 bool SceneRenderer::DrawsChosen() const {
-  // Devices that compute whole targets draw all rays in less time than choosing takes.
+  // Devices that compute whole targets (gl/whole_target.h) draw all rays in less time than choosing
+  // rays would take.
   return technique_->DrawsChosen() && !technique_->Empty() && !gl::ComputesWholeTargets();
 }
 

@@ -16,23 +16,24 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Heights for which the sky is computed, so that a moving camera rarely needs a new table. They are
-// about 150 m apart near the ground and 6 % far above it. Tables are interpolated in between.
+// Steps of the eye heights for which sky tables are computed, so that a moving camera rarely needs
+// a new table. The heights are about 150 m apart near the ground and 6 % apart far above it. Tables
+// are interpolated between two heights.
 constexpr double kSkyStep_m = 2500.0;
 constexpr double kSkySteps = 16.0;
 constexpr std::size_t kMaxTables = 32;
 
 constexpr gl::PieceCost kCompositePixel{"composite", 500.0};
 
-// Variant of post/composite.frag.
+// Preprocessor variant of post/composite.frag.
 struct CompositeVariant {
   GroundVariant ground;
   GroundCoverVariant ground_cover;
-  gl::DefineValue corrected;  // corrects the ground's skylight by renderers::LightCorrection
-  gl::DefineValue shaded;     // shades air and skylight by AirShade
-  gl::DefineValue front;      // the eye buffer may contain something
-  gl::DefineValue distances;  // its distance is known
-  gl::DefineValue chosen;     // draws the rays of ChosenRays
+  gl::DefineValue corrected;  // 1 if renderers::LightCorrection corrects the ground's skylight
+  gl::DefineValue shaded;     // 1 if AirShade shades air and skylight
+  gl::DefineValue front;      // 1 if the eye buffer may contain something
+  gl::DefineValue distances;  // 1 if the distances of the eye buffer's content are known
+  gl::DefineValue chosen;     // 1 to draw the rays of ChosenRays
 
   gl::Defines Defines() const {
     return gl::Joined(gl::Joined(ground.Defines(), ground_cover.Defines()),
@@ -44,7 +45,7 @@ struct CompositeVariant {
   }
 };
 
-// Returns the mean radiance per irradiance of level ground.
+// Returns the ground's mean radiance divided by the irradiance of level ground.
 glm::vec3 GroundReflectance(const scene::Scene& scene) {
   return scene::PlainReflectance(scene) * std::numbers::inv_pi_v<float>;
 }
@@ -56,7 +57,8 @@ double HeightOfStep(int step) { return kSkyStep_m * std::expm1(step / kSkySteps)
 void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
                           const Ground& ground) {
   towards_sun_ = scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg);
-  // Sums over directions start at this azimuth, so that they do not depend on earlier scenes.
+  // Sums over directions always assume a sun in the east. They therefore do not depend on the
+  // azimuth of earlier scenes.
   const auto sine = static_cast<float>(towards_sun_.z);
   const glm::vec3 eastern_sun(std::sqrt(std::max(1.0F - sine * sine, 0.0F)), 0.0F, sine);
   const Key key{towards_sun_.z, scene.sky.turbidity, scene.sky.ground_albedo, ground.Lowest_m()};
@@ -75,7 +77,7 @@ void SkyAndGround::Update(const scene::Scene& scene, const scene::View& view,
     ground_sky_is_new_ = true;
     tables_.clear();
   }
-  // Only diffusion transport uses it.
+  // around_sun_ is needed only for diffusion transport.
   const scene::MediumSettings* medium = scene::MediumSettingsOf(scene.rendering.technique);
   const bool diffuses = medium != nullptr && medium->transport == scene::Transport::kDiffusion;
   if (diffuses && !around_sun_.has_value()) {
@@ -127,10 +129,11 @@ const std::vector<glm::vec4>& SkyAndGround::TableOfStep(int step) {
   return tables_.emplace(step, seen.Table()).first->second;
 }
 
-// Splits skylight into a beam from the sun and the rest of the sky. The beam has the irradiance x,
-// and the rest the radiance a + b (1 - sine of the elevation). A surface that faces the sun
-// receives as much from the two as from the sky. If I is the rest's irradiance from above over pi
-// and M its mean, then a = 3 I - 2 M and b = 6 (M - I). Returns x.
+// Splits skylight into a beam from the sun's direction and the rest of the sky. The beam has the
+// irradiance x, and the rest the radiance a + b (1 - sine of the elevation). A surface that faces
+// the sun receives as much light from both parts as from the sky. Let I be the irradiance of the
+// rest from above over pi, and M its mean radiance. Then a = 3 I - 2 M and b = 6 (M - I). Returns
+// x.
 glm::vec3 SkyAndGround::AroundSun(const glm::vec3& sun) const {
   constexpr int kElevations = 24;
   constexpr int kAzimuths = 48;
@@ -158,7 +161,7 @@ glm::vec3 SkyAndGround::AroundSun(const glm::vec3& sun) const {
   const glm::vec3 mean = sky_light_.mean_radiance;
   const glm::vec3 without = (3.0F * level - 2.0F * mean) * even + 6.0F * (mean - level) * falling;
   const float per_x = 1.0F + ((1.0F - 3.0F * sun.z) * even + (6.0F * sun.z - 3.0F) * falling) / kPi;
-  // The limit keeps the rest of the sky bright everywhere.
+  // The upper limit keeps the radiance of the rest of the sky above 0 everywhere.
   const glm::vec3 most = glm::min(kPi * mean, 0.5F * kPi * level / sun.z);
   return glm::clamp((facing - without) / std::max(per_x, 0.1F), glm::vec3(0.0F), most);
 }
@@ -181,8 +184,8 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
         irradiance * atmosphere_->SunTransmittance({height_m, static_cast<float>(towards_sun_.z)}));
   }
   light.from_sky = sky_light_.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
-  // The ground's light is that without the storm's shadow. LitGround adds the shadow for renderers
-  // that support it.
+  // from_ground is the ground's light without the storm's shadow. Renderers that support it apply
+  // the shadow with LitGround.
   const float sine = std::max(static_cast<float>(towards_sun_.z), 0.0F);
   const glm::vec3 diffuse =
       sky_light_.irradiance * irradiance * static_cast<float>(scene.sky.brightness);
@@ -228,7 +231,8 @@ void SkyAndGround::BindAir(const gl::Program& program, const scene::Scene& scene
   program.Set(uniform::local_from_world, glm::mat3(view.local_from_world));
   program.Set(uniform::towards_sun, glm::vec3(towards_sun_));
   program.Set(uniform::towards_sun_local, glm::vec3(view.local_from_world * towards_sun_));
-  // The horizon is that of the eye, not of the height for which the table was computed.
+  // The horizon is that of the actual eye height, not of the height for which the table was
+  // computed.
   program.Set(uniform::horizon_sine,
               physics::HorizonSine(altitude_m, static_cast<float>(drawn_.ground_m)));
   program.Set(uniform::sky_scale, sky_scale);

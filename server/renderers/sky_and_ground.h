@@ -1,6 +1,6 @@
-// The surroundings of a storm: sky and ground, which light it and form its background, and the air
-// in front of it. Results that depend on the sun and the air are kept until these change. The class
-// owns GL objects, so use it on the context's thread.
+// The surroundings of a storm: the sky and the ground, which light it and form its background, and
+// the air in front of it. Results that depend on the sun and the air are kept until these change.
+// The class owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <map>
@@ -31,7 +31,7 @@ class SkyAndGround {
       : programs_(std::move(programs)), air_shade_(programs_) {}
 
   // Updates the sky for the scene's sun and air, and for the heights of the ground and the eye.
-  // Call it before the others.
+  // Call it before the other functions.
   void Update(const scene::Scene& scene, const scene::View& view, const Ground& ground);
 
   // Returns the sun as the eye of `view` sees it through the air.
@@ -42,7 +42,7 @@ class SkyAndGround {
   // Returns the light of sky and ground on a white surface, from LightMapOf.
   std::vector<glm::vec3> LightMap(const scene::Scene& scene) const;
 
-  // Computes the share of the sky that `medium` hides, unless it is known.
+  // Computes the share of the sky that `medium` hides, unless it is already known.
   absl::Status HideSky(const scene::Scene& scene, const Ground& ground,
                        const ResidentMedium& medium) {
     return air_shade_.HideSky(medium, scene, ground.Lowest_m());
@@ -52,10 +52,10 @@ class SkyAndGround {
     air_shade_.BindSkyHidden(program, view);
   }
 
-  // Removes the storm's shadow from air and skylight.
+  // Removes the effect of the storm's shadow on air and skylight.
   void LightAllAir() { air_shade_.Clear(); }
-  // Shades air and skylight by the object in `box`, whose shadow the ground must have. The
-  // resolution suits a picture of `size_px`. `medium` may be empty.
+  // Computes the shade of the object in `box` on air and skylight. The object's shadow must be set
+  // in `ground`. The resolution suits a picture of `size_px`. `medium` may be empty.
   absl::Status ShadeAir(const scene::Scene& scene, const scene::View& view, const Ground& ground,
                         const volume::WorldBox& box, const ResidentMedium& medium,
                         const glm::ivec2& size_px);
@@ -64,11 +64,11 @@ class SkyAndGround {
   struct Front {
     const gl::Texture2D& eye;                    // from Technique::Eye
     const gl::Texture2D* distances_m = nullptr;  // from Technique::Distances_m
-    volume::WorldBox box;                        // around what was drawn; may be empty
+    volume::WorldBox box;                        // bounding box of what was drawn; may be empty
   };
-  // Draws `front` in front of sky and covered ground to `target`, all seen through the air.
-  // `cover`, if any, is that of the target: nothing was drawn beyond it. With `chosen`, it draws
-  // these rays.
+  // Draws `front` in front of the sky and the ground with its cover to `target`, all seen through
+  // the air. `cover` may be null. Otherwise it is the cover of `target`, and the storm was not
+  // drawn outside it. If `chosen` is not null, only these rays are drawn.
   absl::Status Composite(const scene::Scene& scene, const scene::View& view, const Ground& ground,
                          const GroundCover& ground_cover, const Front& front,
                          const CoveredTarget& target, const Cover* cover, const ChosenRays* chosen);
@@ -79,17 +79,19 @@ class SkyAndGround {
 
  private:
   void SetEyeSky(double altitude_m);
-  // Binds the sky that water reflects.
+  // Binds the table of the sky that water on the ground reflects.
   void BindGroundSky();
-  // Returns the sky's table for one of the heights for which it is computed.
+  // Returns the sky's table for height number `step` of the eye heights with tables.
   const std::vector<glm::vec4>& TableOfStep(int step);
-  glm::vec3 AroundSun(const glm::vec3& sun) const;  // `sky_` must be turned to `sun`
+  // Returns the light of the bright region around the sun. `sky_` must be turned to `sun`.
+  glm::vec3 AroundSun(const glm::vec3& sun) const;
   void BindAir(const gl::Program& program, const scene::Scene& scene, const scene::View& view,
                const Ground& ground, const volume::WorldBox& box) const;
 
-  // Inputs of the sky's light. The sun's azimuth is not one, because it only rotates the light.
+  // The inputs of the sky's light. The sun's azimuth is not an input, because it only rotates the
+  // light.
   struct Key {
-    double sun_sine = 0.0;  // of the sun's elevation
+    double sun_sine = 0.0;  // sine of the sun's elevation
     double turbidity = 0.0;
     double ground_albedo = 0.0;
     double ground_m = 0.0;
@@ -104,9 +106,9 @@ class SkyAndGround {
   physics::SkyLight sky_light_;
   Key drawn_;
   glm::dvec3 towards_sun_{0.0, 0.0, 1.0};
-  std::optional<glm::vec3> around_sun_;           // for Illumination, for a sun of irradiance 1
+  std::optional<glm::vec3> around_sun_;  // Illumination::around_sun for a sun of irradiance 1
   std::map<int, std::vector<glm::vec4>> tables_;  // tables by step
-  double eye_height_m_ = -1.0;                    // of the table on the device
+  double eye_height_m_ = -1.0;                    // eye height of the table on the device
   gl::Texture2D sky_table_;
   bool ground_sky_is_new_ = false;
   gl::Texture2D ground_sky_table_;

@@ -18,13 +18,14 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Guessed costs of a sample of the medium and of a pixel of the disc.
+// Guessed costs of a sample of the medium and of a pixel of the sun's disc.
 constexpr double kSample_ns = 15.0;
 constexpr double kDiscPixel_ns = 200.0;
 
 using physics::Aureole;
 
-constexpr double kDiscReach_rad = 2.0 * physics::kSunRadius_rad;  // including its spread edge
+// Includes the blurred edge of the disc.
+constexpr double kDiscReach_rad = 2.0 * physics::kSunRadius_rad;
 
 bool IsDark(const SunGlow::Sun& sun) {
   return std::max({sun.irradiance.r, sun.irradiance.g, sun.irradiance.b}) <= 0.0F;
@@ -48,7 +49,8 @@ PixelRect RectAround(const glm::dvec3& direction, double angle_rad, const scene:
     return glm::dot(view.forward, direction) >= std::cos(angle_rad) ? whole : PixelRect{};
   }
   constexpr int kRim = 64;
-  // Smallest forward component for the projection, which has no bound at the view's plane.
+  // Smallest forward component of a direction that is projected. The projection is unbounded at the
+  // plane through the eye.
   constexpr double kGrazing = 0.02;
   const glm::dvec3 helper =
       std::abs(direction.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(1.0, 0.0, 0.0);
@@ -60,7 +62,7 @@ PixelRect RectAround(const glm::dvec3& direction, double angle_rad, const scene:
   double least_forward = 1.0;
   for (int i = 0; i < kRim; ++i) {
     const double turn = 2.0 * std::numbers::pi * i / kRim;
-    // The corners are so far out that the polygon contains the cone.
+    // The polygon is circumscribed, so that it contains the whole cone.
     const double reach = std::tan(angle_rad) / std::cos(std::numbers::pi / kRim);
     const glm::dvec3 rim =
         glm::normalize(direction + reach * (std::cos(turn) * right + std::sin(turn) * up));
@@ -121,7 +123,7 @@ absl::Status SunGlow::AddThrough(const ResidentMedium& medium,
                                  const scene::View& view, Ground* ground, const Picture& picture) {
   if (IsDark(sun)) return absl::OkStatus();
   const GroupWeights weights(medium.Content(), settings);
-  // Without a cut, all scattered light is already drawn.
+  // If phase functions are not cut, all scattered light is already drawn.
   const bool cuts = weights.phase_cut > 0.0F;
   const double cut_rad = cuts ? glm::radians(settings.theta_f_deg) / 2.0 : 0.0;
   const double reach_rad = std::max(2.0 * cut_rad, kDiscReach_rad);

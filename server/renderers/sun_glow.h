@@ -1,7 +1,8 @@
-// The sun as a viewer sees it: its disc and, in a medium, the aureole. The aureole is light
-// scattered within the cut forward peaks, which the medium's techniques count as unscattered
-// (physics/aureole.h). It is added to the linear frame around the sun. A view away from the sun
-// costs nothing. The class owns GL objects, so use it on the context's thread.
+// The sun as a viewer sees it: its disc and, through a medium, the aureole. The aureole is light
+// scattered within the forward peaks of the phase functions. The techniques cut these peaks off and
+// count their light as unscattered (physics/aureole.h). Disc and aureole are added to the linear
+// frame around the sun. If the sun is out of view, they cost no time. The class owns GL objects, so
+// use it on the context's thread.
 #pragma once
 
 #include <memory>
@@ -23,8 +24,8 @@
 
 namespace thunderhead::renderers {
 
-// Returns the pixels of a picture of `size_px` that may show a place within `angle_rad` of a
-// direction. The rectangle is empty if none does.
+// Returns the pixels of a picture of `size_px` that may show a place within `angle_rad` of
+// `direction`. The rectangle is empty if there are no such pixels.
 PixelRect RectAround(const glm::dvec3& direction, double angle_rad, const scene::View& view,
                      const glm::ivec2& size_px);
 
@@ -39,11 +40,13 @@ class SunGlow {
   struct Picture {
     const gl::Framebuffer& target;  // the linear frame
     glm::ivec2 size_px{1};
-    const ChosenRays* chosen = nullptr;  // the rays of the frame, in place of the picture's pixels
+    // If not null, the frame consists of these rays instead of the picture's pixels.
+    const ChosenRays* chosen = nullptr;
   };
 
   // Adds the disc and the aureole seen through `medium`, which may be empty. The medium is drawn
-  // with `settings` and `slices` samples along a ray. `ground`'s distances are redrawn.
+  // with `settings` and `slices` samples along a ray. The function redraws the distances in
+  // `ground`.
   absl::Status AddThrough(const ResidentMedium& medium, const scene::MediumSettings& settings,
                           int slices, const Sun& sun, const scene::View& view, Ground* ground,
                           const Picture& picture);
@@ -55,7 +58,7 @@ class SunGlow {
   std::size_t Bytes() const { return table_.Bytes(); }
 
  private:
-  // Computes the aureoles of the medium's groups, unless they are known.
+  // Computes the aureoles of the medium's groups, unless they are already known.
   void Tabulate(const Medium& medium, double cut_rad);
   absl::Status Add(const gl::Program& program, const gl::PieceCost& pixel, const PixelRect& rect,
                    const Picture& picture);
@@ -64,10 +67,11 @@ class SunGlow {
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::WholeTarget whole_target_;
-  std::vector<physics::PhaseFunction> tabulated_;  // phase functions by group
+  // Phase functions of the tabulated aureoles, by group.
+  std::vector<physics::PhaseFunction> tabulated_;
   double tabulated_cut_rad_ = -1.0;
   gl::Texture3D table_;
-  std::vector<float> shares_;  // shares by group
+  std::vector<float> shares_;  // for each group, the scattered share that lies in the cut peak
 };
 
 }  // namespace thunderhead::renderers

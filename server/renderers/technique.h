@@ -33,7 +33,8 @@ namespace thunderhead::renderers {
 
 using StageTimes = std::vector<scene::StageTime>;
 
-// Parts that the techniques of one scene renderer share. The techniques must not outlive it.
+// Objects that the techniques of one scene renderer share. The techniques must not outlive the
+// workspace.
 struct Workspace {
   explicit Workspace(std::shared_ptr<gl::ProgramCache> cache)
       : programs(std::move(cache)), ground(programs), surroundings(programs) {}
@@ -48,16 +49,16 @@ struct Workspace {
   SkyAndGround surroundings;
 };
 
-// A technique. Its stages are called in order, beginning with the first dirty one. Those after
-// MakeContent are called only if there is something to draw.
+// A technique. The scene renderer calls its stages in order, beginning with the first dirty stage.
+// It calls the stages after MakeContent only if Empty returns false.
 class Technique {
  public:
   using Fields = std::shared_ptr<const volume::HydrometeorFields>;
 
   virtual ~Technique() = default;
 
-  // Returns true if the technique draws the workspace's medium, which is then created and kept for
-  // it.
+  // Returns true if the technique draws the workspace's medium. The scene renderer then creates and
+  // keeps the medium.
   virtual bool DrawsMedium() const { return false; }
   // Creates everything else that the technique draws. Returns INVALID_ARGUMENT for unsupported
   // settings.
@@ -65,46 +66,47 @@ class Technique {
                                    StageTimes* times);
   // Returns true if there is nothing to draw.
   virtual bool Empty() const = 0;
-  // Returns the box around what is drawn.
+  // Returns the bounding box of what is drawn.
   virtual volume::WorldBox Box() const = 0;
 
-  // Lights what is drawn. If CastsShadow is true, the technique must set the ground's shadow
-  // (Ground::TakeShadow). Otherwise the shadow is that of the workspace's medium.
+  // Computes the light of what is drawn. If CastsShadow is true, the technique must set the
+  // ground's shadow (Ground::TakeShadow). Otherwise the shadow is computed from the workspace's
+  // medium.
   virtual absl::Status CarryLight(const scene::Scene& scene, const Fields& fields,
                                   const RenderSettings& settings, StageTimes* times) = 0;
   virtual bool CastsShadow() const { return false; }
 
-  // Draws the eye's view before sky and ground: rgb is radiance, a the transmittance to the
-  // background.
+  // Draws the storm as the eye sees it, before sky and ground are added. The result's rgb is
+  // radiance, a is the transmittance to the background.
   virtual absl::Status DrawView(const scene::Scene& scene, const RenderSettings& settings,
                                 StageTimes* times) = 0;
-  // Returns true if the technique draws only the workspace's medium, so that nothing is outside its
-  // occupied bricks.
+  // Returns true if the technique draws only the workspace's medium, so that the picture is empty
+  // outside the medium's occupied bricks.
   virtual bool KeepsToCover() const { return false; }
   // Returns true if DrawView supports RenderSettings::chosen.
   virtual bool DrawsChosen() const { return false; }
   // Returns the result of the last DrawView.
   virtual const gl::Texture2D& Eye() const = 0;
-  // Returns its mean distance from the eye, weighted by each part's contribution to the ray, times
-  // its opacity. The texture has one channel and Eye's size. Null means unknown, and the middle of
-  // Box is used instead.
+  // Returns the mean distance of Eye's content from the eye, weighted by each part's contribution
+  // to the ray, times the opacity. The texture has one channel and Eye's size. If the result is
+  // null, the distance of the middle of Box is used.
   virtual const gl::Texture2D* Distances_m() const { return nullptr; }
 
   virtual Content Describe(const scene::Scene& scene,
                            const volume::HydrometeorFields& fields) const = 0;
-  // Returns the bytes on the device, without the workspace.
+  // Returns the bytes on the device, without those of the workspace.
   virtual std::size_t Bytes() const = 0;
 };
 
-// Returns the content of a technique that draws the workspace's medium. `leaps` means that it skips
-// empty bricks.
+// Returns the content of a technique that draws the workspace's medium. `leaps` is true if the
+// technique skips empty bricks.
 Content DescribeMedium(const ResidentMedium& medium, const volume::HydrometeorFields& fields,
                        bool leaps);
 // Returns the box around the workspace's medium.
 volume::WorldBox BoxOf(const ResidentMedium& medium);
 
-// Runs `work` and appends its wall time, including GL. Time that its pieces waited for their turns
-// is not counted.
+// Runs `work` and appends its wall time, including the time of its GL commands. The time for which
+// its pieces (gl/pieces.h) waited for other work is not counted.
 template <typename Work>
 absl::Status Timed(gl::Pieces& pieces, scene::FrameStage stage, StageTimes* times,
                    const Work& work) {
@@ -122,9 +124,10 @@ class TechniqueFactory {
 
   virtual std::string_view Name() const = 0;
   virtual scene::Capabilities Capabilities() const = 0;
-  // Returns null for a technique that is traced instead of drawn (Capabilities::images is false).
+  // Returns null for a technique without a renderer, which is path-traced (Capabilities::images is
+  // false).
   virtual std::unique_ptr<Technique> Make(Workspace& workspace) const = 0;
-  // Returns null if the technique's scenes never need preparation.
+  // Returns null if no scene of the technique needs preparation.
   virtual std::shared_ptr<Preparation> PreparationOfScenes() const { return nullptr; }
 };
 

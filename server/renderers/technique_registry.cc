@@ -9,7 +9,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Calls the preparation of the scene's own technique.
+// A preparation that calls the preparation of the scene's technique.
 class ByTechnique final : public Preparation {
  public:
   using Preparations = std::map<std::string, std::shared_ptr<Preparation>, std::less<>>;

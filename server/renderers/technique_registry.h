@@ -1,4 +1,4 @@
-// The techniques that can draw, by name: the program's own, and those added as extensions.
+// The available techniques by name: those built into the program, and those added as extensions.
 #pragma once
 
 #include <memory>
@@ -13,22 +13,24 @@ namespace thunderhead::renderers {
 
 class TechniqueRegistry {
  public:
-  // Creates a registry with the program's own techniques. It keeps their preparations on the CPU.
+  // Creates a registry with the built-in techniques. The registry owns their preparations on the
+  // CPU.
   static TechniqueRegistry BuiltIn();
 
-  // Adds a technique. Returns ALREADY_EXISTS if there is one with its name.
+  // Adds a technique. Returns ALREADY_EXISTS if the registry has a technique of the same name.
   absl::Status Add(std::shared_ptr<const TechniqueFactory> technique);
 
   // Returns null if there is no technique with that name.
   const TechniqueFactory* Find(std::string_view name) const;
 
-  // Returns the techniques in the order in which to offer them.
+  // Returns the techniques in the order in which clients list them.
   const std::vector<std::shared_ptr<const TechniqueFactory>>& All() const { return techniques_; }
 
-  // Returns the names and capabilities of all techniques, in that order.
+  // Returns the names and capabilities of all techniques, in the order of All.
   std::vector<scene::TechniqueInfo> Infos() const;
 
-  // Returns the preparation for the scenes of every technique, or null if none needs one.
+  // Returns one preparation for the scenes of all techniques, or null if no technique needs
+  // preparation.
   std::shared_ptr<Preparation> PreparationOfScenes() const;
 
  private:

@@ -16,7 +16,7 @@ void BindRays(const gl::Program& program, const scene::View& view, const glm::dv
 }
 
 glm::mat4 ClipFromLocal(const scene::View& view, const glm::dvec3& middle_m) {
-  // The range includes everything that is drawn.
+  // These distances include everything that is drawn.
   const double near_m = 1.0;
   const double far_m = 1e8;
   const glm::dmat4 clip_from_view =

@@ -1,5 +1,5 @@
-// A view in the form that shaders need: the rays of common/view.glsl, and the matrix and eye for
-// rasterised geometry.
+// A view in the form that shaders need: the uniforms for the rays of common/view.glsl, and the
+// matrix and eye position for rasterised geometry.
 #pragma once
 
 #include "gl/program.h"
@@ -15,8 +15,8 @@ void BindRays(const gl::Program& program, const scene::View& view, const glm::dv
 // Returns the transformation from metres around `middle_m` to clip space.
 glm::mat4 ClipFromLocal(const scene::View& view, const glm::dvec3& middle_m);
 
-// Returns an eye e such that the ray through local p has the direction p e.w - e.xyz. That also
-// works for an eye at infinity.
+// Returns an eye e in homogeneous coordinates. The ray through local point p has the direction p
+// e.w - e.xyz. This form also represents an eye at infinity.
 glm::vec4 EyeOf(const scene::View& view, const glm::dvec3& middle_m);
 
 }  // namespace thunderhead::renderers

@@ -1,7 +1,7 @@
-// Sends plain values over a pipe in the layout of this machine, because both ends are of the same
-// build. Large arrays go through memory that both ends share, one after another, and only their
-// sizes go through the pipe. The receiver does not trust the sender: no array may exceed its
-// allowance, and no wait its timeout.
+// Sends plain values over a pipe to a process of the same build. Values are sent as their bytes in
+// memory. Large arrays are placed one after another in memory that both processes share, and only
+// their sizes go through the pipe. The receiver does not trust the sender, so it limits the size of
+// all arrays and the time that it waits.
 #pragma once
 
 #include <chrono>
@@ -24,13 +24,15 @@ namespace thunderhead::sandbox {
 template <typename Value>
 concept Plain = std::is_trivially_copyable_v<Value> && !std::is_pointer_v<Value>;
 
-// The place of each large array in the shared memory. Both ends compute the places independently.
+// Computes the place of each large array in the shared memory. Sender and receiver each compute the
+// places, so places are not sent.
 class SharedPlaces {
  public:
   explicit SharedPlaces(std::size_t size) : size_(size) {}
 
   // Returns the offset of the next array, of `bytes` bytes. Returns nothing if the array goes
-  // through the pipe, because it is small or the remaining memory is too small for it.
+  // through the pipe, because the array is small or the remaining shared memory is too small for
+  // it.
   std::optional<std::size_t> Next(std::size_t bytes);
 
  private:
@@ -38,8 +40,8 @@ class SharedPlaces {
   std::size_t used_ = 0;
 };
 
-// Makes the kernel provide the pages of that memory at once, which is faster than one by one at
-// their first use. If the kernel cannot do that, the pages come one by one.
+// Makes the kernel provide all pages of `memory` at once. This is faster than providing each page
+// at its first use, which happens if the kernel does not support it.
 enum class Use { kReading, kWriting };
 void Populate(std::span<const std::byte> memory, Use use);
 
@@ -47,7 +49,7 @@ void Populate(std::span<const std::byte> memory, Use use);
 // MB if possible.
 void PrepareForArray(std::span<std::byte> memory);
 
-// The end that writes. It drops what cannot be written because the reader has gone.
+// The sending end of the pipe. If the receiving process has ended, values are dropped silently.
 class Sender {
  public:
   explicit Sender(int pipe, std::span<std::byte> shared = {})
@@ -85,12 +87,13 @@ class Sender {
   SharedPlaces places_;
 };
 
-// The end that reads. After a failure every value is its type's zero.
+// The receiving end of the pipe. After a failure every received value is the zero of its type.
 class Receiver {
  public:
   enum class Failure { kNone, kEnded, kTooLarge, kTooLate, kSilent };
 
-  // Waits for `patience` in total, by `time`, and accepts arrays of `allowance` bytes in total.
+  // Creates a receiver that waits for at most `patience` in total, measured by `time`, and accepts
+  // arrays of at most `allowance` bytes in total.
   Receiver(int pipe, std::chrono::milliseconds patience, std::uint64_t allowance,
            const base::TimeSource& time = base::SteadyTime(),
            std::span<const std::byte> shared = {})
@@ -101,9 +104,9 @@ class Receiver {
         shared_(shared),
         places_(shared.size()) {}
 
-  // Limits the silence of the other end. If nothing has come for `longest`, the receiver fails with
-  // kSilent, unless `is_excused` says that the other end is itself waiting for something. Then
-  // another period of `longest` begins.
+  // Limits how long the sender may send nothing. After `longest` without data, the receiver calls
+  // `is_excused`, which returns whether the sender has a valid reason. If it does, another period
+  // of `longest` begins. Otherwise the receiver fails with kSilent.
   void LimitSilence(std::chrono::nanoseconds longest, std::function<bool()> is_excused) {
     longest_silence_ = longest;
     is_excused_ = std::move(is_excused);
@@ -113,7 +116,7 @@ class Receiver {
   void operator()(Value& value) {
     if (!Read(&value, sizeof(value))) value = Value{};
   }
-  // Texts are for people, so they are short.
+  // Texts are names and messages, so their length is limited to kLongestText.
   void operator()(std::string& text) { Array(text, kLongestText); }
   template <Plain Value>
   void operator()(std::vector<Value>& values) {

@@ -9,10 +9,11 @@
 namespace thunderhead::sandbox {
 namespace {
 
-// Timeout of a description. It reads no fields, and the catalogue waits for it.
+// The timeout for describing a file. It is short, because a description reads no fields and the
+// catalogue waits for it.
 constexpr std::chrono::milliseconds kDescriptionTime{60'000};
 
-// How long an unchanged file is not read again after it made its reader fail.
+// The time for which an unchanged file is not read again after it made its reader fail.
 constexpr std::chrono::minutes kPause{10};
 
 class ConfinedRecordReader final : public storm_files::RecordReader {

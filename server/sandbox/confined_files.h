@@ -1,5 +1,6 @@
-// Storm files, each described and read by a separate confined process. A file that takes over,
-// crashes or exhausts its reader causes only one error.
+// Describes and reads storm files, each in a separate confined process (reader). If a hostile file
+// takes over its reader, crashes it or exhausts its memory, the only consequence is an error for
+// this file.
 #pragma once
 
 #include <chrono>
@@ -22,7 +23,8 @@ namespace thunderhead::sandbox {
 struct ConfinedOptions {
   ReaderLimits limits = {};
   CheckOpened check_opened = {};
-  std::string program = {};                            // the reader; empty: ReaderProgram()
+  std::string program = {};                            // path of the reader program; if empty,
+                                                       // ReaderProgram()
   const base::TimeSource* time = &base::SteadyTime();  // must outlive the files
 };
 
@@ -34,7 +36,7 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
   absl::Status Probe();
 
   absl::StatusOr<storm_files::StormFile> Describe(const std::string& path);
-  // Reads a record. `of` is the file's description.
+  // Reads record `record` of the file that `of` describes.
   absl::StatusOr<volume::HydrometeorFields> Read(
       const storm_files::StormFile& of, std::size_t record,
       const std::optional<storm_files::VerticalGrid>& grid,
@@ -43,14 +45,14 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
                                                              std::size_t record);
 
  private:
-  // A file that made its reader fail, and would probably do so again.
+  // A file that made its reader fail. It would probably make another reader fail, too.
   struct Offender {
     base::FileStamp stamp;
     base::TimeSource::Clock::time_point when;
     absl::Status failure;
   };
 
-  // Asks a reader, unless the unchanged file has made one fail recently.
+  // Sends the request to a reader, unless the same unchanged file has made a reader fail recently.
   absl::Status Run(Request request, Reply wanted, std::chrono::milliseconds patience,
                    const storm_files::ReadCheckpoint& checkpoint, const Readers::Take& take);
 

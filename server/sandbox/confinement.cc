@@ -44,8 +44,9 @@ absl::Status Limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
   return absl::OkStatus();
 }
 
-// Allows allocation, threads, waiting, open pipes, the clock and exit. Conditions apply to memory
-// (never executable), clone (only threads), signals (only to itself) and limits (only read).
+// Allows the system calls for memory, threads, waiting, open pipes, the clock and exit. Some calls
+// are allowed only with certain arguments. Memory must not be executable, clone may only start
+// threads, signals may only go to the process itself, and limits may only be read.
 int AllowReading(scmp_filter_ctx filter) {
   // A condition on one argument of a call: its index, the comparison, and the values.
   using Argument = scmp_arg_cmp;
@@ -94,7 +95,7 @@ int AllowReading(scmp_filter_ctx filter) {
   }
   if (error == 0) error = allow(SCMP_SYS(tgkill), Argument{0, SCMP_CMP_EQ, self});
   if (error == 0) error = allow(SCMP_SYS(prlimit64), Argument{2, SCMP_CMP_EQ, 0});
-  // The C library then falls back to clone, whose flags the filter can check.
+  // After ENOSYS for clone3, the C library calls clone instead, whose flags the filter can check.
   if (error == 0) {
     error = seccomp_rule_add(filter, SCMP_ACT_ERRNO(ENOSYS), SCMP_SYS(clone3), 0);
   }
@@ -129,8 +130,9 @@ absl::Status Confine(const Allowance& allowance) {
       Limit(RLIMIT_CPU, allowance.processor_s, rlim_t{allowance.processor_s} + 1));
   THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_CORE, 0, 0));
   THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_FSIZE, 0, 0));
-  // This allows only descriptors below 1, none of which is left. poll accepts as many descriptors
-  // as this limit.
+  // With this limit no new descriptor can be opened, because only descriptor 0 would be allowed and
+  // it is in use. The limit is not 0, because poll accepts at most as many descriptors as this
+  // limit.
   THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_NOFILE, 1, 1));
   if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return Impossible("no_new_privs", errno);
   prctl(PR_SET_DUMPABLE, 0, 0, 0, 0);

@@ -1,7 +1,7 @@
-// Removes from this process everything that it does not need to read bytes that it already has. It
-// loses new files, sockets, processes, privileges, code, and memory and processor time beyond a
-// limit. This cannot be undone. It uses Linux's seccomp and resource limits, and needs neither
-// root nor namespaces.
+// Confines this process, so that it can only process bytes that it already has in memory. The
+// process can no longer open files or sockets, start processes, gain privileges or load code, and
+// its memory and processor time are limited. This cannot be undone. The implementation uses Linux's
+// seccomp and resource limits, and needs neither root rights nor namespaces.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,13 @@
 namespace thunderhead::sandbox {
 
 struct Allowance {
-  std::uint64_t memory_bytes = 0;  // memory in addition to what the process has now
+  std::uint64_t memory_bytes = 0;  // limit of memory in addition to the memory that the process has
+                                   // now
   std::uint32_t processor_s = 0;
 };
 
-// Returns FAILED_PRECONDITION if the kernel cannot do it. The process may then be partly confined.
+// Returns FAILED_PRECONDITION if the kernel does not support the confinement. The process may then
+// be partly confined.
 absl::Status Confine(const Allowance& allowance);
 
 }  // namespace thunderhead::sandbox

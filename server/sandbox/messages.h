@@ -1,5 +1,5 @@
-// Messages between this program and the reader of a storm file. Each is one list of its members for
-// both directions: `archive` is a Sender or a Receiver.
+// The messages between the server and the reader of a storm file. Each Visit function lists a
+// message's members once, for both directions: `archive` is a Sender or a Receiver.
 #pragma once
 
 #include <algorithm>
@@ -19,15 +19,17 @@ enum class Wanted : std::uint8_t { kProbe, kDescription, kVerticalGrid, kFields 
 struct Request {
   Wanted wanted = Wanted::kProbe;
   std::string version;  // version of the program that asks
-  std::string path;     // for messages: the file itself is an open descriptor
+  std::string path;     // path for error messages; the file itself is passed as an open descriptor
   std::uint64_t record = 0;
   std::optional<storm_files::VerticalGrid> grid;
-  std::uint64_t memory_bytes = 0;  // limit for reading, without the file itself
-  std::uint64_t shared_bytes = 0;  // size of the shared memory, an open descriptor; 0: none
+  std::uint64_t memory_bytes = 0;  // limit in bytes for reading, without the mapped file
+  std::uint64_t shared_bytes = 0;  // size of the shared memory, which is an open descriptor; 0 if
+                                   // there is none
   std::uint32_t processor_s = 0;
 };
 
-// Kinds of replies. Any number of the first two may come, then one of the others.
+// The kinds of replies. A reader sends any number of kProgress and kLog, and then exactly one reply
+// of another kind.
 enum class Reply : std::uint8_t { kProgress, kLog, kError, kProbed, kDescription, kGrid, kFields };
 
 // A line of the reader's log or, for Reply::kError, a status.
@@ -68,11 +70,11 @@ void Visit(Archive& archive, storm_files::VerticalGrid& grid) {
   archive(grid);
 }
 
-// The functions below split each value into all of its members. A type with a new member therefore
-// does not compile until the member is sent, too.
+// The functions below use structured bindings with all members of a type. If a type gets a new
+// member, its function therefore does not compile until it handles the member.
 
-// Sends all members except those that the program knows itself: the path, the reader, and which
-// file it is. Times are sent as seconds and nanoseconds since 1970.
+// Sends all members except `path`, `reader`, `version`, `id` and `device`, which the server sets
+// itself. Times are sent as seconds and nanoseconds since 1970.
 template <typename Archive>
 void Visit(Archive& archive, storm_files::StormFile& file) {
   auto& [path, cells, dx_m, dy_m, times, fields, about, domain, run, latitude_deg, longitude_deg,
@@ -158,7 +160,7 @@ void Visit(Archive& archive, volume::RegularGrid& grid) {
   archive(low_corner_m);
 }
 
-// Sends all members except the borders, which the store adds.
+// Sends all members except `borders`, which the storm store sets.
 template <typename Archive>
 void Visit(Archive& archive, volume::HydrometeorFields& fields) {
   auto& [grid, of_hydrometeors, terrain_height_m, land, borders, motion, air, condensate] = fields;

@@ -15,8 +15,9 @@
 namespace thunderhead::sandbox {
 namespace {
 
-// These limits are far beyond any storm, but small enough for arithmetic in single precision.
-constexpr int kMaxCells = 2'000'000;  // along one axis
+// These limits are far larger than any storm needs, but small enough for arithmetic in single
+// precision.
+constexpr int kMaxCells = 2'000'000;  // maximum number of cells along one axis
 constexpr double kFarthest_m = 1e9;
 
 absl::Status Require(bool condition, const std::string& what) {
@@ -42,8 +43,8 @@ bool AreCells(const glm::ivec3& cells) {
          std::max({cells.x, cells.y, cells.z}) <= kMaxCells;
 }
 
-// Returns whether `question` is true for all values. It is evaluated for a block of values without
-// a branch, so that the compiler can process several at once.
+// Returns whether `question` is true for all values. Within a block of values the loop has no
+// branch, so that the compiler can vectorise it.
 template <typename Question>
 bool AllOf(std::span<const float> values, const Question& question) {
   constexpr std::size_t kBlock = 4096;

@@ -1,5 +1,5 @@
-// Checks values from the reader of a storm file, which other libraries rely on. A reader that a
-// file has taken over may send anything.
+// Checks the values that the reader of a storm file has sent, because other libraries rely on them.
+// A hostile file can take over its reader, which may then send any values.
 #pragma once
 
 #include "absl/status/status.h"
@@ -9,11 +9,11 @@
 
 namespace thunderhead::sandbox {
 
-// Each function returns INVALID_ARGUMENT, naming the member at fault, if a value is implausible.
+// Each function returns INVALID_ARGUMENT, naming the member, if a value is implausible.
 absl::Status CheckPlausible(const storm_files::StormFile& file);
 absl::Status CheckPlausible(const storm_files::VerticalGrid& grid);
-// `file` is the description of the fields' file. A different number of columns means that the file
-// was replaced, or that the reader lies.
+// `file` is the description of the fields' file. A different number of columns is an error: the
+// file was replaced, or the reader was taken over.
 absl::Status CheckPlausible(const volume::HydrometeorFields& fields,
                             const storm_files::StormFile& file);
 

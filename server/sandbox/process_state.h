@@ -1,5 +1,4 @@
-// The kernel's information about a process, which distinguishes one that works from one that waits
-// for a storage.
+// The kernel's information about a process. It shows whether the process is waiting for a storage.
 #pragma once
 
 #include <sys/types.h>
@@ -10,20 +9,22 @@
 namespace thunderhead::sandbox {
 
 struct ProcessState {
-  bool waits_for_storage = false;        // at this moment, and cannot be interrupted
-  std::uint64_t pages_from_storage = 0;  // waited for so far (major page faults)
+  bool waits_for_storage = false;        // true if the process is now in an uninterruptible wait
+                                         // (state D)
+  std::uint64_t pages_from_storage = 0;  // number of pages read from a storage so far (major page
+                                         // faults)
 };
 
 // Reads /proc/PID/stat (proc(5)). Returns nothing if there is no such process, or no /proc.
 std::optional<ProcessState> StateOf(pid_t process);
 
-// Decides at each call whether the storage explains why a process is silent.
+// Decides whether a slow storage explains why a process has sent nothing.
 class StorageWatch {
  public:
   explicit StorageWatch(pid_t process) : process_(process) {}
 
-  // Returns whether the process waits for a storage now, or has got pages from one since the last
-  // call.
+  // Returns whether the process is waiting for a storage now, or has received pages from a storage
+  // since the last call.
   bool ExplainsSilence();
 
  private:

@@ -35,7 +35,8 @@
 namespace thunderhead::sandbox {
 namespace {
 
-// A log sink that keeps what formats log. The server logs it, because this process has no log.
+// A log sink that keeps the lines that storm formats log. They are sent to the server, because this
+// process has no log.
 class KeptLog final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   std::vector<Note> Take() {
@@ -92,7 +93,8 @@ void OfferToEndFirst() {
 
 constexpr std::uint64_t kLargestRequest = 64 << 10;
 
-// Longer than the time for which the server keeps an idle reader. The server then ends it.
+// The time after which an idle reader ends. It is longer than the time for which the server keeps
+// an idle reader, so normally the server ends the reader.
 constexpr std::chrono::minutes kLongestRest{10};
 
 class Reader {
@@ -100,9 +102,9 @@ class Reader {
   Reader(const storm_files::StormFormats& formats, std::span<std::byte> shared)
       : formats_(formats), shared_(shared) {}
 
-  // Maps the file of the first request, and confines the process.
+  // Maps the storm file into memory, and confines the process within the limits of `first`.
   absl::Status Prepare(const Request& first);
-  // Answers a request about that file.
+  // Answers a request about the mapped file.
   absl::Status Answer(const Request& request);
   void Tell(const absl::Status& error);
 
@@ -182,24 +184,25 @@ void Reader::Tell(const absl::Status& error) {
 }  // namespace
 
 int ReadStormFile(const storm_files::StormFormats& formats) {
-  // After the server's end no one waits for the result.
+  // The kernel must kill this process when the server ends, because then no process needs the
+  // result.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   std::signal(SIGPIPE, SIG_IGN);
   Request request;
   Receiver from_server(STDIN_FILENO, std::chrono::seconds(10), kLargestRequest);
   Visit(from_server, request);
-  // A request of another version has another layout.
+  // A request of another version of the program may have another layout, so it is refused.
   if (!from_server.Ok() || request.version != base::Version()) return 1;
   const std::span<std::byte> shared = MapShared(request.shared_bytes);
-  // The other end reads arrays from that memory without asking.
+  // Without the memory this process must exit, because the server expects large arrays there.
   if (shared.size() != request.shared_bytes) return 1;
   Reader reader(formats, shared);
   absl::Status status = reader.Prepare(request);
   while (status.ok()) {
     status = base::Guarded([&] { return reader.Answer(request); });
     if (!status.ok()) break;
-    // The answer has been sent, and the next request may never come, so unused memory is returned
-    // now.
+    // Unused memory is returned to the system after each answer, because the next request may never
+    // come.
     malloc_trim(0);
     Receiver next(STDIN_FILENO, kLongestRest, kLargestRequest);
     Visit(next, request);

@@ -1,7 +1,7 @@
 // The program thunderhead-reader: the confined process that reads one storm file and nothing else.
-// The server starts it (started_reader.h) with the open file and memory for large arrays as the
-// descriptors below. It takes requests on its standard input, one after another, and answers on its
-// standard output.
+// The server starts it (started_reader.h) with two open descriptors: the storm file, and memory for
+// large arrays. The reader receives requests on its standard input, one after another, and sends
+// its replies to its standard output.
 #pragma once
 
 #include "storm_files/storm_format.h"

@@ -75,7 +75,7 @@ absl::Status Nonsense(const std::string& path, const std::string& what) {
                     absl::StrCat("gave a result that cannot be right, by ", what, kWhatToDo)));
 }
 
-// Returns what the reader sent as one line of at most 2000 bytes.
+// Returns a text that the reader sent as one printable line of at most 2000 bytes.
 std::string OneLine(const std::string& text) {
   constexpr std::size_t kLongest = 2000;
   return base::Printable(text.substr(0, kLongest));
@@ -86,12 +86,12 @@ void Log(const Note& note) {
   spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", OneLine(note.text));
 }
 
-// A value larger than any machine's memory means that there is no limit.
+// Without a limit, returns a value that is larger than the memory of any machine.
 std::uint64_t MemoryOf(const ReaderLimits& limits) {
   return limits.memory_bytes > 0 ? limits.memory_bytes : std::uint64_t{1} << 46;
 }
 
-// Returns the status that the reader derived from the file.
+// Returns the status for an error that the reader found in the file.
 absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
   const auto code = static_cast<absl::StatusCode>(note.code);
   std::string text = OneLine(note.text);
@@ -160,7 +160,7 @@ absl::Status Listen(const std::string& path, Receiver& from_reader, Reply wanted
   return Nonsense(path, "its kind");
 }
 
-// How long a reader that has answered is kept for another request about its file.
+// The time for which an idle reader is kept for another request about its file.
 constexpr std::chrono::seconds kRest{2};
 
 }  // namespace
@@ -241,8 +241,8 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
     if (has_rested && ended && !from_reader.AnythingCame()) return std::nullopt;
     return Judge(request.path, from_reader, reader->Process(), limits);
   }
-  // The kernel counts the processor time of all its requests together. A reader is kept only while
-  // the next request has enough of it left.
+  // The kernel limits a reader's processor time over all its requests. A reader is therefore kept
+  // only while enough of this time is left for another request.
   const bool is_young = time_.Now() - reader->Began() < limits_.time / 4;
   if (status.ok() && request.wanted != Wanted::kProbe && is_young) {
     resting_.Put(std::move(reader));
@@ -292,7 +292,7 @@ absl::StatusOr<std::string> ReaderProgram() {
 }
 
 bool IsReaderFailure(const absl::Status& status) {
-  // A reader that was killed may well read the file the next time.
+  // A reader that was killed (UNAVAILABLE) is excluded, because the next reader may succeed.
   return base::DetailsOf(status).reason == kReaderFailed && !absl::IsUnavailable(status);
 }
 

@@ -1,5 +1,6 @@
-// Confined processes that read storm files. They are watched from here: their time, their end, and
-// what they send. However a process fails, the result is one error that names the file.
+// Starts confined processes (readers) that read storm files, and watches their time, their exit and
+// the data that they send. If a reader fails in any way, the result is one error that names the
+// file.
 #pragma once
 
 #include <chrono>
@@ -24,11 +25,13 @@
 namespace thunderhead::sandbox {
 
 struct ReaderLimits {
-  // Memory for reading and for its result. It is 0 if this machine does not report how much it has.
+  // The memory in bytes that a reader may use for reading and for the result. 0 means no limit,
+  // because the machine's memory is unknown.
   std::uint64_t memory_bytes = base::MachineMemoryBytes();
-  // Timeout of this process' wait, and limit of the reader's processor time.
+  // The longest time that the server waits for a request, and the limit of the reader's processor
+  // time.
   std::chrono::milliseconds time{600'000};
-  // Timeout for a reader that sends nothing and is not waiting for its storage.
+  // The longest time that a reader may send nothing, unless it is waiting for its storage.
   std::chrono::milliseconds silence{60'000};
 };
 
@@ -37,8 +40,8 @@ struct ReaderLimits {
 // reader of another version may have another layout of messages.
 absl::StatusOr<std::string> ReaderProgram();
 
-// Keeps the reader that has answered last for a moment. Most requests about a file come in a row:
-// its description, its heights, its times. Safe from any thread.
+// Keeps the reader that was used last for a short time, because several requests about a file
+// usually follow one another: description, heights, times. Safe from any thread.
 class RestingReader {
  public:
   explicit RestingReader(const base::TimeSource& time) : time_(time) {}
@@ -46,7 +49,7 @@ class RestingReader {
   RestingReader(const RestingReader&) = delete;
   RestingReader& operator=(const RestingReader&) = delete;
 
-  // Returns the reader if it has the file to which the path leads now, else null.
+  // Returns the kept reader if it has opened the file to which `path` leads now, else null.
   std::unique_ptr<StartedReader> Take(const std::string& path);
   // Keeps this reader, and ends the one that was kept before.
   void Put(std::unique_ptr<StartedReader> reader);
@@ -63,24 +66,26 @@ class RestingReader {
   std::thread thread_;
 };
 
-// Reads storm files in processes of `program`, or of ReaderProgram() if that is empty. `time`
-// measures the waits for them, and must outlive this. Safe from any thread.
+// Sends requests to readers and receives their results. The readers are processes of `program`, or
+// of ReaderProgram() if `program` is empty. `time` measures how long they take, and must outlive
+// this object. Safe from any thread.
 class Readers {
  public:
-  // A function that receives the result after the reply's kind. Failures of the Receiver are
-  // checked afterwards.
+  // A function that receives the rest of the result, after the kind of the reply. Run checks
+  // afterwards whether the Receiver has failed.
   using Take = std::function<absl::Status(Receiver& from_reader)>;
 
   explicit Readers(const ReaderLimits& limits, const base::TimeSource& time = base::SteadyTime(),
                    std::string program = "", CheckOpened check_opened = {});
 
-  // Has the file read, within `patience`. `wanted` is the reply that `take` understands. Errors of
-  // the file are returned unchanged. `checkpoint` may be empty.
+  // Sends `request` to a reader and waits for its result, but no longer than `patience`. `wanted`
+  // is the kind of reply that `take` receives. Errors of the file are returned unchanged.
+  // `checkpoint` may be empty.
   absl::Status Run(Request request, Reply wanted, std::chrono::milliseconds patience,
                    const storm_files::ReadCheckpoint& checkpoint, const Take& take);
 
  private:
-  // Returns nothing if a reader that was kept has ended without an answer.
+  // Returns nothing if `reader` was kept (`has_rested`) and has ended without a reply.
   std::optional<absl::Status> Ask(std::unique_ptr<StartedReader> reader, bool has_rested,
                                   const Request& request, Reply wanted,
                                   std::chrono::milliseconds patience,
@@ -93,8 +98,9 @@ class Readers {
   RestingReader resting_;
 };
 
-// Returns whether an error means that the reader failed, and not that the file is invalid. The file
-// may be hostile, so it should not be tried again at once.
+// Returns whether an error means that the file made its reader fail. Other errors mean that the
+// file is invalid. A file that makes readers fail may be hostile, so it should not be read again
+// soon.
 bool IsReaderFailure(const absl::Status& status);
 
 }  // namespace thunderhead::sandbox

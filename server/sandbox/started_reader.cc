@@ -60,8 +60,9 @@ absl::StatusOr<base::FileDescriptor> OpenFile(const std::string& path) {
   return NoRegularFile(path);
 }
 
-// Collects processes that did not end at once when they were killed. They free much memory, or wait
-// for a dead network file system. They are checked again whenever another one ends.
+// Collects processes that did not end at once when they were killed. Such a process is still
+// freeing much memory, or is waiting for a network file system that is down. All of them are
+// checked again whenever another process ends.
 void ReapLater(pid_t process) {
   static std::mutex mutex;
   static std::vector<pid_t> left;
@@ -81,8 +82,8 @@ std::vector<char*> Environment() {
         kNames, [text](std::string_view name) { return text.starts_with(name); });
     if (known) kept.push_back(*variable);
   }
-  // Reading allocates and frees arrays of some 100 MB repeatedly. By default each would be mapped
-  // anew, and the kernel would clear all of its pages, one of 4 kB after another.
+  // Reading allocates and frees arrays of some 100 MB repeatedly. By default, the allocator would
+  // map each array anew, and the kernel would clear each of its pages of 4 kB separately.
   static char malloc_keeps_memory[] =
       "GLIBC_TUNABLES=glibc.malloc.hugetlb=1:glibc.malloc.mmap_max=0:"
       "glibc.malloc.trim_threshold=1099511627776:glibc.malloc.arena_max=1";
@@ -91,9 +92,9 @@ std::vector<char*> Environment() {
   return kept;
 }
 
-// Returns the descriptor with a number above those that the reader gets, which Spawn could
-// otherwise overwrite before it has copied them. A program whose standard streams are closed gets
-// such low numbers.
+// Moves a descriptor to a number above the numbers that the reader inherits. Otherwise Spawn could
+// overwrite a low-numbered descriptor before it has copied it. A server whose standard streams are
+// closed gets such low numbers.
 base::FileDescriptor MovedUp(base::FileDescriptor file) {
   constexpr int kBeyond = kSharedDescriptor + 1;
   if (!file.IsOpen() || file.Get() >= kBeyond) return file;
@@ -223,8 +224,8 @@ absl::StatusOr<std::unique_ptr<StartedReader>> StartedReader::Start(const std::s
   if (pipe2(answering.data(), O_CLOEXEC) != 0) return NoReader(first.path, errno);
   base::FileDescriptor replies(answering[0]);
   const base::FileDescriptor replies_to = MovedUp(base::FileDescriptor(answering[1]));
-  // A larger pipe needs fewer switches between the processes. If it is not allowed, the pipe stays
-  // small.
+  // A larger pipe needs fewer switches between the processes. If the system does not allow the
+  // size, the pipe keeps its default size.
   fcntl(replies_to.Get(), F_SETPIPE_SZ, 1 << 20);
   pid_t process = 0;
   const int error =

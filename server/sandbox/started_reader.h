@@ -1,4 +1,5 @@
-// A confined process that has one storm file open, and answers requests about it one after another.
+// A confined process that has opened one storm file, and answers requests about this file one after
+// another.
 #pragma once
 
 #include <sys/types.h>
@@ -21,12 +22,12 @@
 
 namespace thunderhead::sandbox {
 
-// A check that is called for each file that was opened by `path`, with the place where it really
-// is. A link may have replaced a folder since the path was checked. If empty, every place is
-// allowed.
+// A function that decides whether an opened file may be read. `path` is the path by which it was
+// opened, and `place` its real path. The check is necessary because a link may have replaced a
+// folder since the path was checked. If the function is empty, every file may be read.
 using CheckOpened = std::function<absl::Status(const std::string& path, const std::string& place)>;
 
-// A child process. The destructor kills it and collects its exit status.
+// A child process. The destructor kills the process and collects its exit status.
 class Child {
  public:
   Child(pid_t process, const base::TimeSource& time) : process_(process), time_(time) {}
@@ -37,8 +38,8 @@ class Child {
   // Returns 0 once the process has ended.
   pid_t Process() const { return process_; }
 
-  // Returns the signal that ended the process, or 0 if it exited normally. Returns nothing if it
-  // still runs after `patience`.
+  // Waits up to `patience` for the process to end. Returns the signal that ended the process, or 0
+  // if it exited normally. Returns nothing if the process still runs.
   std::optional<int> End(std::chrono::milliseconds patience);
 
  private:
@@ -51,14 +52,15 @@ struct UnmapBytes {
   void operator()(const std::byte* bytes) const;
 };
 
-// Memory that a reader fills with arrays and this process reads. It takes no memory before it is
-// written.
+// Memory that a reader fills with arrays and this process reads. The kernel allocates its pages
+// only when they are written.
 class SharedArrays {
  public:
-  // Creates the memory. If that fails, arrays go through the pipe.
+  // Creates `size` bytes of shared memory. If that fails, the result is empty and arrays go through
+  // the pipe.
   static SharedArrays Make(std::size_t size);
 
-  // Returns a negative number if there is no memory.
+  // Returns the descriptor of the memory, or a negative number if there is no memory.
   int File() const { return file_.Get(); }
   std::span<const std::byte> Bytes() const { return {bytes_.get(), bytes_.get_deleter().size}; }
 
@@ -72,21 +74,23 @@ class SharedArrays {
 
 class StartedReader {
  public:
-  // Opens the file that `first` names, unless it is a probe. Then starts `program` for the file,
-  // with the memory and the processor time of `first`. Returns UNAVAILABLE if no process can be
-  // started. Errors of a file that cannot be opened, or that is not a storm file, name it. `time`
-  // must outlive the reader.
+  // Opens the file that `first` names, unless `first` is a probe. Then starts `program` for the
+  // file, with the limits of memory and processor time in `first`. Returns UNAVAILABLE if no
+  // process can be started. If the file cannot be opened or is not a storm file, the error names
+  // the file. `time` must outlive the reader.
   static absl::StatusOr<std::unique_ptr<StartedReader>> Start(const std::string& program,
                                                               const Request& first,
                                                               const CheckOpened& check_opened,
                                                               const base::TimeSource& time);
 
-  // Returns whether its file is the one to which `path` leads, and unchanged.
+  // Returns whether the reader's file was opened by `path` and still has the identity, size and
+  // times (stamp) `now`.
   bool Reads(const std::string& path, const std::optional<base::FileStamp>& now) const {
     return path == path_ && now.has_value() && now == stamp_;
   }
 
-  // Sends the request, which fits into the pipe. Does not detect that a reader has ended.
+  // Sends the request without blocking, because it fits into the pipe. Does not report an error if
+  // the reader has ended.
   void Ask(Request request);
 
   int Replies() const { return replies_.Get(); }

@@ -1,4 +1,5 @@
-// The features of a scene that a technique can show. The server, the page and the tables read them.
+// The features of a scene that a technique can show. The server, the web page and the tables of
+// measured techniques read them.
 #pragma once
 
 #include <span>
@@ -15,15 +16,18 @@ enum class DetailUse {
 };
 
 struct Capabilities {
-  bool lights = false;  // directional lights in addition to the sun
+  bool lights = false;  // directional lights (Scene::lights) in addition to the sun
   DetailUse detail = DetailUse::kNone;
   bool field_optics = false;  // the fields' own phase functions and false colours
-  bool traced_light = false;  // correction of the light by path tracing
-  bool slices = false;        // images depend on a number of slices or samples
-  bool sparse = false;        // can render a chosen subset of rays, which moving frames need
-  // Rendered on the GPU by a renderer; false: traced separately from the renderers.
+  bool traced_light = false;  // path tracing can correct the technique's light
+  bool slices = false;        // images depend on a number of slices or of samples along a ray
+  // Can render a chosen subset of the rays, which frames of a moving camera need.
+  bool sparse = false;
+  // True if a renderer draws the technique on the GPU. False if the technique is path-traced
+  // without a renderer.
   bool images = true;
-  // The accepted values, the default first; static storage.
+  // The transports that the technique accepts, the default first. The span refers to static
+  // storage.
   std::span<const Transport> transports = {};
 };
 

@@ -14,7 +14,7 @@
 namespace thunderhead::scene {
 namespace {
 
-// Returns the fields regrouped so that each field has its own group.
+// Returns the fields in new groups, one group for each field.
 GroupedFields Parted(const GroupedFields& grouped) {
   GroupedFields parted = grouped;
   parted.groups.clear();
@@ -49,7 +49,7 @@ std::shared_ptr<const DetailedMedium> DetailedMedium::Of(const Scene& scene,
       PlacedDetailOf(layers, tile_of, volume.grid.spacing_m, fields.motion);
   if (!layers.empty()) {
     detailed->control_ = volume::DetailControlOf(fields, parted.terms, volume);
-    // The detail is placed per group, because the fields of a group gain and lose extinction
+    // The detail is placed for each group, because the fields of a group gain and lose extinction
     // together.
     volume::ExtinctionVolume by_group =
         volume::ComputeExtinction(fields, grouped.terms, static_cast<int>(grouped.groups.size()));

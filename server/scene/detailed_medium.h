@@ -1,6 +1,6 @@
-// The extinction of a storm at any place, by field, including the turbulent detail that the light
-// volume draws. It applies the same displacement and noise, and each column keeps its water path.
-// This class is for code that does not use GL.
+// The extinction of a storm at any place, by field, including turbulent detail. The light volume
+// draws the same medium on the GPU. This class applies the same displacement and noise without GL,
+// and detail does not change the water path of a column (the water above an area of ground).
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,8 @@ class DetailedMedium {
   // image with infinitely fine pixels.
   volume::DrawnMedium::Channels At_per_m(const glm::dvec3& place_m) const;
 
-  // Returns the cells, with the bounding box of those that are not empty.
+  // Returns the extinction on the grid's cells, with the bounding box of the cells that are not
+  // empty.
   const volume::ExtinctionVolume& Volume() const { return volume_; }
 
   // Returns an upper bound of each field's extinction in 1/m.

@@ -5,8 +5,8 @@
 namespace thunderhead::scene {
 namespace {
 
-// Returns the phase function of a field whose `optics` have the radius that is drawn. If the
-// technique has one phase function for every field, that is the phase function of cloud water.
+// Returns the phase function with which a field is drawn. The radius in `optics` must be the drawn
+// radius. If the technique has one phase function for every field, it is that of cloud water.
 physics::PhaseFunction PhaseShown(const Scene& scene, const physics::ParticleOptics& optics,
                                   const FieldLook& look) {
   if (look.per_field_phase) return physics::PhaseOf(optics);

@@ -1,5 +1,5 @@
 // The drawn fields of a storm, resolved from the scene once for every technique and for the
-// reference. They include the optics, particle size and detail of each field.
+// path-traced reference. They include the optics, particle size and detail of each field.
 #pragma once
 
 #include <cstddef>
@@ -14,24 +14,26 @@
 
 namespace thunderhead::scene {
 
-// Returns true if the field holds anything, is visible and has a scale above 0.
+// Returns true if the field is not zero everywhere, is visible in the scene and has a scale above
+// 0.
 bool IsDrawn(const Scene& scene, const volume::HydrometeorField& field);
 
 struct DrawnField {
   std::size_t index = 0;  // into HydrometeorFields::fields
   physics::Hydrometeor hydrometeor{};
-  // Extinction per mixing ratio of the file, including the scene's scale. It varies by cell if the
-  // model gives particle sizes.
+  // Extinction per unit of the file's mixing ratio, including the scene's scale. It varies by cell
+  // if the model gives particle sizes.
   volume::MassExtinction mass_extinction;
-  // Effective radius of all the field's particles. It has no value if the file gives extinction.
+  // Effective radius of all the field's particles. It has no value if the file gives extinction
+  // instead of a mixing ratio.
   std::optional<float> radius_m;
-  physics::SizeSource sizes{};  // the source of radius_m
+  physics::SizeSource sizes{};  // where radius_m comes from
   float albedo = 1.0F;
-  physics::PhaseFunction phase;  // from physics::PhaseOf
+  physics::PhaseFunction phase;  // canonical form from physics::PhaseOf
   glm::vec3 color{1.0F};         // white except in false colours
-  // The detail as it is drawn, with a wavelength if the field has detail.
+  // The detail that the technique draws. Its wavelength is resolved if the field has detail.
   Detail detail;
-  Detail asked_detail;  // the scene's detail, whether or not the technique shows it
+  Detail asked_detail;  // the detail in the scene's settings, whether or not the technique shows it
 };
 
 // Returns the drawn fields in the order of `fields`.

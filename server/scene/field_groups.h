@@ -1,5 +1,6 @@
 // A storm's drawn fields in groups with equal optics and detail, and the noises of their detail.
-// Renderers, tracers and exporters build their medium from these groups.
+// All fields of a group add up to one channel of the extinction volume. Renderers, tracers and
+// exporters build their medium from these groups.
 #pragma once
 
 #include <functional>
@@ -19,37 +20,40 @@ namespace thunderhead::scene {
 // Optical properties and detail that the fields of a group have in common.
 struct FieldGroup {
   float albedo = 1.0F;
-  physics::PhaseFunction phase;  // from physics::PhaseOf
+  physics::PhaseFunction phase;  // canonical form from physics::PhaseOf
   glm::vec3 color{1.0F};
-  Detail detail;  // with a wavelength if the group has detail
+  Detail detail;  // the wavelength is resolved if the group has detail
 
   bool operator==(const FieldGroup&) const = default;
 };
 
 struct GroupedFields {
   std::vector<FieldGroup> groups;
-  std::vector<volume::ExtinctionTerm> terms;  // which field adds to which group's channel
-  std::vector<DrawnField> fields;             // the field of each term
+  // For each drawn field, the group to whose channel it adds.
+  std::vector<volume::ExtinctionTerm> terms;
+  std::vector<DrawnField> fields;  // the field of each term
 };
 
+// Groups the storm's drawn fields by equal optics and detail.
 GroupedFields GroupedFieldsOf(const Scene& scene, const volume::HydrometeorFields& fields);
 
-// One noise, and how much of each group it multiplies. The first layer of a medium also displaces
-// the medium.
+// One noise texture and, for each group, the share of the extinction that the noise multiplies. The
+// first layer of a medium also displaces the medium.
 struct DetailLayer {
-  Detail detail;  // its share is unused
+  Detail detail;  // wavelength, octaves and seed of the noise; `share` is unused
   std::vector<double> share_by_group;
 
   double Tile_m() const;  // edge length of the noise's tile
-  // Displacement of the noise by the wind.
+  // Returns how far the wind has displaced the noise.
   glm::dvec2 Drift_m(const volume::AirMotion& motion) const;
 };
 
-// Returns the layers of the groups. Groups that differ only in their share have a common layer.
+// Returns the layers of the groups. Groups whose details differ only in `share` have a common
+// layer.
 std::vector<DetailLayer> DetailLayersOf(const std::vector<FieldGroup>& groups);
 
-// Returns the layers placed in a medium with cells of this size. `tile_of` returns a noise, which
-// must outlive the result.
+// Returns the layers placed in a medium with cells of size `cell_m`. `tile_of` returns the noise
+// tile of a detail, which must outlive the result.
 using TileOf = std::function<const physics::DetailTile*(const Detail&)>;
 volume::PlacedDetail PlacedDetailOf(const std::vector<DetailLayer>& layers, const TileOf& tile_of,
                                     const glm::dvec3& cell_m, const volume::AirMotion& motion);

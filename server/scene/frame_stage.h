@@ -1,5 +1,5 @@
-// The stages whose wall time a frame reports, which are finer than scene::Stage. Also the
-// properties of a scene that a frame reports as not shown.
+// The stages whose wall times a frame reports, which are finer than scene::Stage. Also the
+// properties of a scene or storm that a frame reports as not shown.
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ enum class FrameStage {
   kGround,
   kAir,
   kComposite,
-  kTrace,       // traces the paths of the reference
+  kTrace,       // traces the paths of the path-traced reference
   kCorrection,  // corrects the light by path tracing
   kTone,
   kReadBack,

@@ -1,5 +1,5 @@
-// The ground of a scene for the fields of its storm: which cover can be drawn, and how bright the
-// ground is. This code does not use GL.
+// The ground of a scene as it is drawn for the fields of its storm: its cover, borders and
+// brightness. This code does not use GL.
 #pragma once
 
 #include "glm/vec2.hpp"
@@ -9,15 +9,17 @@
 
 namespace thunderhead::scene {
 
-// Returns the scene's ground, reduced to what can be drawn for these fields.
+// Returns the scene's ground without the parts for which these fields have no data, such as land
+// use or borders.
 Ground DrawnGround(const Scene& scene, const volume::HydrometeorFields& fields);
 
-// Returns the scene with the albedo of the ground that is drawn, which lights the storm and the
-// air. The albedo is the mean of the file's land use if that is drawn, otherwise the scene's own.
+// Returns the scene with Sky::ground_albedo set to the albedo of the ground that is drawn. This
+// albedo lights the storm and the air. It is the mean over the file's land use if the land use is
+// drawn, otherwise the scene's own albedo.
 Scene WithGroundOf(Scene scene, const volume::HydrometeorFields& fields);
 
-// Returns the reflectance by colour of plain ground: bare soil and grass seen from far away. The
-// albedo is that of red.
+// Returns the reflectance in red, green and blue of plain ground, which is bare soil and grass seen
+// from far away. The scene's ground albedo is the red reflectance.
 glm::vec3 PlainReflectance(const Scene& scene);
 
 // Returns the centre of the distance rings, which is the middle of the storm's condensate.

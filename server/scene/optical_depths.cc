@@ -29,7 +29,8 @@ class DepthRays {
         view_(ViewOf(scene, fields)),
         steps_per_half_cell_(ShowsDetail(scene) ? kDetailSteps : 1.0) {}
 
-  // Returns the depths along the ray through normalised device coordinates.
+  // Returns the optical depth and the depth-one distance along the ray through normalised device
+  // coordinates.
   Depths Through(double x, double y) const {
     const auto [origin_m, direction] = RayThrough(view_, x, y);
     const volume::ExtinctionVolume& volume = medium_->Volume();
@@ -48,8 +49,8 @@ class DepthRays {
   }
 
  private:
-  // Steps per cell with detail. The finest octave of detail has a wavelength of 3/8 of a cell,
-  // which is 1.5 steps.
+  // Integration steps in each half cell if the medium has detail. The wavelength of the finest
+  // octave of detail is 3/8 of a cell, which is 1.5 steps.
   static constexpr double kDetailSteps = 2.0;
 
   static bool ShowsDetail(const Scene& scene) {

@@ -9,11 +9,11 @@
 
 namespace thunderhead::scene {
 
-// Sets `optical_depth` and `depth_one_distance_m` of a picture of the scene, of any size. The rays
-// pass through the pixel centres and end at the ground. The medium is the one that the scene's
-// technique draws, with turbulent detail if the technique shows it. For techniques that draw no
-// medium (metaballs, a cumulus' surface, the reference), the medium is the fields without detail.
-// The computation uses several threads.
+// Sets `optical_depth` and `depth_one_distance_m` of `picture`, which shows the scene at any size.
+// The rays pass through the pixel centres and end at the ground. The medium is the one that the
+// scene's technique draws, with turbulent detail if the technique shows it. For techniques that
+// draw no medium (metaballs, cumulus, path-traced reference), the medium is the fields without
+// detail. The computation uses several threads.
 void AddOpticalDepths(const Scene& scene, const volume::HydrometeorFields& fields,
                       picture::LinearPicture* picture);
 

@@ -26,7 +26,8 @@ double Cubic::Largest() const {
   const auto consider = [&](double u) {
     if (u > 0.0 && u < 1.0 && At(u) > At(largest)) largest = u;
   };
-  // The extrema are the roots of the derivative. This form of the roots avoids cancellation.
+  // The extrema are the roots of the cubic's derivative. This formula for the roots avoids
+  // cancellation.
   const double a = 3.0 * factors[3];
   const double half_b = factors[2];
   const double c = factors[1];

@@ -1,7 +1,7 @@
-// A ray split into pieces along which a storm's values are polynomials. Values are given at cell
-// centres and interpolated trilinearly, so they are cubic along the ray between two planes of cell
-// centres. Beyond the outermost centres the values are constant. Integrals and maxima are therefore
-// exact.
+// A ray split into pieces along which a storm's values are polynomials. The fields have values at
+// cell centres, which are interpolated trilinearly. Between two planes of cell centres the values
+// are therefore cubic along the ray. Beyond the outermost centres they are constant. Integrals and
+// maxima are exact because they are computed from the cubics.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@
 
 namespace thunderhead::scene {
 
-// A cubic polynomial of u, the share of a piece from 0 to 1.
+// A cubic polynomial of u, the position in a piece of the ray: 0 at its begin, 1 at its end.
 struct Cubic {
   std::array<double, 4> factors{};  // coefficients of 1, u, u^2, u^3
 
-  // Returns the cubic with these values at 0, 1/3, 2/3 and 1.
+  // Returns the cubic with these values at u = 0, 1/3, 2/3 and 1.
   static Cubic Through(const std::array<double, 4>& values);
 
   double At(double u) const;
@@ -26,19 +26,19 @@ struct Cubic {
   double Integral(double u) const;
   // Returns the u at which the cubic is largest.
   double Largest() const;
-  // Returns the smallest u at which the integral reaches `value`, or 1 if the integral does not
-  // reach it. The cubic must not be negative anywhere.
+  // Returns the smallest u at which the integral from 0 reaches `value`, or 1 if the integral does
+  // not reach it. The cubic must not be negative anywhere.
   double WhereIntegralIs(double value) const;
 };
 
-// The eight cells whose centres surround a place.
+// The eight cells whose centres are the corners of a box around a place.
 struct Corners {
   std::array<std::size_t, 8> cells{};  // x varies fastest, then y, then z
   glm::ivec3 low{0};
   glm::ivec3 high{0};
 
   static Corners Around(const volume::RegularGrid& grid, const glm::dvec3& place_m);
-  // Returns the position between the cell centres, from 0 to 1 along each axis.
+  // Returns the position of `place_m` between the cell centres, from 0 to 1 along each axis.
   glm::dvec3 ShareOf(const volume::RegularGrid& grid, const glm::dvec3& place_m) const;
 };
 

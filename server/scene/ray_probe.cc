@@ -8,8 +8,8 @@
 namespace thunderhead::scene {
 namespace {
 
-// Returns the distances of samples spread evenly over the part in the domain, including both ends.
-// A single sample is in the middle.
+// Returns the distances of samples spread evenly over the part of the ray in the domain, including
+// both ends. A single sample is in the middle.
 std::vector<double> SampleDistances_m(const Span& in_domain, int samples) {
   std::vector<double> distances_m;
   if (in_domain.end_m <= in_domain.begin_m || samples <= 0) return distances_m;

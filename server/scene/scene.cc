@@ -20,9 +20,9 @@ std::array<FieldParameters, physics::kHydrometeorCount> FieldsShown(const Scene&
   return fields;
 }
 
-// Returns the first stage that a change of the additional lights dirties. The view stage applies
-// their colours to the light computed before. A technique that does not show them only reports that
-// it doesn't.
+// Returns the first stage that a change of the additional lights dirties. The view stage multiplies
+// the lights' colours with the light computed before. A technique that does not show the lights
+// only reports them as not shown.
 Stage DirtiedByLights(const Scene& before, const Scene& after) {
   if (before.lights == after.lights) return Stage::kNothing;
   if (!CapabilitiesOf(after.rendering.technique).lights) return Stage::kTone;
@@ -31,7 +31,7 @@ Stage DirtiedByLights(const Scene& before, const Scene& after) {
                  after.lights.end(), [](const DirectionalLight& a, const DirectionalLight& b) {
                    return a.azimuth_deg == b.azimuth_deg && a.elevation_deg == b.elevation_deg;
                  });
-  // Only the program's own techniques are known to apply the colours in the view stage.
+  // Only for the built-in techniques is it known that they apply the colours in the view stage.
   const bool own = !std::holds_alternative<OtherTechnique>(after.rendering.technique);
   return same_directions && own ? Stage::kView : Stage::kLight;
 }
@@ -39,8 +39,8 @@ Stage DirtiedByLights(const Scene& before, const Scene& after) {
 Stage DirtiedByTheRest(const Scene& before, const Scene& after) {
   const bool same_size = before.output.width_px == after.output.width_px &&
                          before.output.height_px == after.output.height_px;
-  // Diffusion takes the ground's light as a boundary condition, so the shares of sun and sky and
-  // the albedo change the storm's light.
+  // Diffusion uses the ground's light as a boundary condition. The shares of sun and sky and the
+  // ground's albedo therefore change the storm's light.
   const MediumSettings* medium = MediumSettingsOf(after.rendering.technique);
   const bool diffuses = medium != nullptr && medium->transport == Transport::kDiffusion;
   // Borders and rings do not change the ground's albedo.
@@ -63,8 +63,8 @@ bool FieldParameters::operator==(const FieldParameters& other) const {
 
 Detail DefaultDetail(physics::Hydrometeor hydrometeor) {
   // All fields have the same seed and wavelength, because one turbulent flow carries them all. The
-  // noise is then fetched only once. Equal shares keep fields that scatter alike in one group. Rain
-  // has no detail because it falls through the eddies.
+  // noise then has to be fetched only once. Equal shares keep fields with equal optics in one
+  // group. Rain has no detail because it falls through the eddies.
   return {.share = hydrometeor == physics::Hydrometeor::kRain ? 0.0F : 1.0F};
 }
 

@@ -19,20 +19,22 @@
 
 namespace thunderhead::scene {
 
-// Structure finer than the grid (shaders/physics/detail.glsl) that drifts with the wind. It changes
-// `share` of the field where the model's air is turbulent. It is drawn if the technique's look has
-// detail.
+// Turbulent structure finer than the grid (shaders/physics/detail.glsl), which drifts with the
+// wind. It changes the share `share` of the field where the model's air is turbulent. It is drawn
+// if FieldLook::detail of the technique is set.
 struct Detail {
   float share = 0.0F;
-  float wavelength_m = 0.0F;  // of the first octave; 0: kDetailWavelengthInCells cells of the storm
+  // Wavelength of the first octave. The value 0 stands for kDetailWavelengthInCells cells of the
+  // storm's grid.
+  float wavelength_m = 0.0F;
   int octaves = 4;
   std::uint32_t seed = 1;
 
   bool operator==(const Detail&) const = default;
 };
 
-// The wavelength at which detail begins. A model's grid resolves waves of several cells, and detail
-// adds the shorter ones.
+// The wavelength at which detail begins, in grid cells. A model's grid resolves waves of several
+// cells, and detail adds the shorter waves.
 inline constexpr float kDetailWavelengthInCells = 3.0F;
 
 float DefaultDetailWavelength_m(const glm::dvec3& cell_m);
@@ -44,7 +46,7 @@ Detail DefaultDetail(physics::Hydrometeor hydrometeor);
 struct FieldParameters {
   bool visible = true;
   float scale = 1.0F;                // multiplies the mixing ratio
-  physics::ParticleOptics optics{};  // the radius applies if `sizes` is kGiven
+  physics::ParticleOptics optics{};  // `optics.radius_m` applies only if `sizes` is kGiven
   physics::SizeSource sizes = physics::SizeSource::kModel;
   Detail detail;
 
@@ -97,13 +99,14 @@ struct Sun {
 };
 
 // A light in addition to the sun, with all of its light from one direction. It lights only the
-// storm, not the ground or the sky, and the air does not attenuate it. Metaballs and the reference
-// show it.
+// storm, not the ground or the sky, and the air does not attenuate it. Only the metaball technique
+// and the path-traced reference show it.
 struct DirectionalLight {
   double azimuth_deg = 75.0;
   double elevation_deg = 20.0;
-  glm::dvec3 color{1.0};    // linear sRGB, up to 1
-  double irradiance = 1.0;  // of white, on a plane facing the light, in the unit of the sun's
+  glm::dvec3 color{1.0};  // linear sRGB, up to 1
+  // Irradiance of white light on a plane that faces the light, in the unit of the sun's irradiance.
+  double irradiance = 1.0;
 
   bool operator==(const DirectionalLight&) const = default;
 };
@@ -111,7 +114,7 @@ struct DirectionalLight {
 struct Sky {
   double brightness = 1.0;
   double ground_albedo = 0.2;
-  double turbidity = 1.5;  // of the air: 1 is without haze, 10 very hazy
+  double turbidity = 1.5;  // turbidity of the air: 1 is without haze, 10 is very hazy
 
   bool operator==(const Sky&) const = default;
 };
@@ -135,12 +138,12 @@ struct Ground {
 // A target accuracy or speed. The server reaches it with the best setting of its tables. Without a
 // target the rendering stays unchanged.
 struct MaxError {
-  double relative_rmse = 0.0;  // of linear radiance, relative to the reference
+  double relative_rmse = 0.0;  // error of linear radiance relative to the path-traced reference
 
   bool operator==(const MaxError&) const = default;
 };
 struct MaxMilliseconds {
-  double milliseconds = 0.0;  // for a frame after the camera moved
+  double milliseconds = 0.0;  // time in milliseconds to a frame after the camera moved
 
   bool operator==(const MaxMilliseconds&) const = default;
 };

@@ -8,11 +8,13 @@
 namespace thunderhead::scene {
 namespace {
 
-// At this distance, a storm 12 km high hides less than 8 % of the sky.
+// Margin around the storm for air under a partly hidden sky. At this distance, a storm 12 km high
+// hides less than 8 % of the sky.
 constexpr double kSkyMargin_m = 1.5e4;
-// The shadow of a low sun is longer, but its far end lies in air that hardly affects the picture.
+// Maximum length of the storm's shadow. The shadow of a low sun is longer, but its far end lies in
+// air that hardly affects the picture.
 constexpr double kLongestShadow_m = 1.5e5;
-// How far the round Earth's ground lies below the world's plane at a distance of 200 km.
+// Depth of the round Earth's ground below the plane of world coordinates at a distance of 200 km.
 constexpr double kFallOfGround_m = 2700.0;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The air that a storm shades. Renderers and the reference subtract the missing light only from
-// in-scattering in this air.
+// The air that a storm shades. Only in this air do renderers and the path-traced reference subtract
+// the light that the storm blocks from the in-scattering.
 #pragma once
 
 #include "glm/vec3.hpp"
@@ -7,15 +7,16 @@
 
 namespace thunderhead::scene {
 
-// Boxes of shaded air. The clear sky and the sun light all air outside both boxes.
+// Two boxes of shaded air. Air outside a box is lit as if there were no storm.
 struct ShadedAir {
-  volume::WorldBox from_sun;  // around the storm and its shadow, down to the ground
-  // Around the places from which the storm hides a large part of the sky.
+  // Air in the storm's shadow: a box around the storm and its shadow, down to the ground.
+  volume::WorldBox from_sun;
+  // Air from which the storm hides a large part of the sky.
   volume::WorldBox from_sky;
 };
 
-// Returns the boxes for a medium with the bounding box `storm`. `towards_sun` must be a unit
-// vector. If the sun is below the horizon, it lights no air.
+// Returns the boxes for a storm whose medium has the bounding box `storm`. `towards_sun` must be a
+// unit vector. If the sun is below the horizon, the storm casts no shadow and `from_sun` is empty.
 ShadedAir ShadedAirOf(const volume::WorldBox& storm, const glm::dvec3& towards_sun,
                       double ground_m);
 

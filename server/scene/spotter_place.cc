@@ -13,43 +13,47 @@
 namespace thunderhead::scene {
 namespace {
 
-// A tower of this height or higher is viewed from kNearest_m to kFarthest_m. For a lower tower
-// these distances shrink in proportion.
+// A tower of the height kTallTower_m or higher is viewed from a distance of kNearest_m to
+// kFarthest_m. For a lower tower these distances shrink in proportion to its height.
 constexpr double kTallTower_m = 12e3;
 constexpr double kNearest_m = 15e3;
 constexpr double kFarthest_m = 25e3;
 constexpr double kStep_m = 500.0;
 constexpr double kMaxSteps = 4000.0;  // enough to leave the domain
 
-// Shares of the picture's height.
+// Shares of the picture's height that ground fills, and that stay free above the tower's top.
 constexpr double kMinGround = 1.0 / 6.0;
 constexpr double kMaxGround = 0.25;
 constexpr double kSkyAboveTop = 0.05;
 
 constexpr int kDirections = 24;
 
-// Weights of the hidden tower, of the hidden sky above it, and of a view straight towards the sun.
-// Against the sun the side that faces the eye is in shadow. The hidden base has the weight 1.
+// Weights of the costs of a place: the hidden tower, the hidden sky above it, and a view straight
+// towards the sun. Looking towards the sun, the side of the storm that faces the eye is in shadow.
+// The hidden base has the weight 1.
 constexpr double kTowerWeight = 0.5;
 constexpr double kSkyWeight = 0.5;
 constexpr double kBacklitWeight = 1.0;
 
-// Within kFarthest_m, a wide anvil hides the tower. Each side is therefore also tried at these
-// multiples of the distance, and farther if cloud surrounds the eye. Each further kFarthest_m adds
-// kDistanceWeight to the cost, because haze reduces contrast.
+// A wide anvil hides the tower from eyes within kFarthest_m. Each side is therefore also tried at
+// these multiples of the distance, and farther if cloud surrounds the eye. Each further kFarthest_m
+// adds kDistanceWeight to the cost, because haze reduces contrast.
 constexpr double kFarther[] = {1.5, 2.0};
 constexpr double kDistanceWeight = 0.3;
 
-// The smallest cost advantage by which a side replaces one nearer to the camera's own azimuth.
+// A side replaces another side that is nearer to the camera's own azimuth only if its cost is lower
+// by at least this value.
 constexpr double kNearEqual = 0.02;
 
 // The elevations, in radians, under which a camera sees the storm's core.
 struct CoreView {
-  double lowest_tilt = 0.0;   // of the camera; the ground fills kMaxGround
-  double highest_tilt = 0.0;  // of the camera; the ground fills kMinGround
-  double to_edge = 0.0;       // from the picture's middle to its upper edge
-  double to_sky = 0.0;        // from the picture's middle to kSkyAboveTop below the upper edge
-  double top = 0.0;           // top of the core
+  // Lowest elevation of the camera's axis, at which ground fills kMaxGround.
+  double lowest_tilt = 0.0;
+  // Highest elevation of the camera's axis, at which ground fills kMinGround.
+  double highest_tilt = 0.0;
+  double to_edge = 0.0;  // angle from the picture's middle to its upper edge
+  double to_sky = 0.0;   // angle from the picture's middle to kSkyAboveTop below the upper edge
+  double top = 0.0;      // top of the core
 
   bool TopFits() const { return top <= highest_tilt + to_sky; }
   double Tilt() const { return std::clamp(top - to_sky, lowest_tilt, highest_tilt); }
@@ -66,13 +70,14 @@ CoreView CoreViewOf(const SpotterCamera& camera, const volume::HydrometeorFields
       std::acos(kEffectiveEarthRadius_m / (kEffectiveEarthRadius_m + camera.eye_height_m));
   const glm::dvec3 top =
       view.local_from_world * (glm::dvec3(core.place_m, core.top_m) - view.eye_m);
-  // The near side of the core hides the middle of its top.
+  // The top of the core is a disc. Its near edge hides its middle, so the distance is that of the
+  // near edge.
   const double distance_m = std::max(glm::length(glm::dvec2(top)) - core.Radius_m(), 1.0);
   return {to_band(kMaxGround) - dip, to_band(kMinGround) - dip, to_band(0.0), to_band(kSkyAboveTop),
           std::atan2(top.z, distance_m)};
 }
 
-// Finds places for a spotter. Sight lines assume a flat Earth.
+// Finds places for a spotter. Its lines of sight assume a flat Earth.
 class Stands {
  public:
   Stands(const volume::HydrometeorFields& fields, const volume::StormCore& core,
@@ -84,8 +89,9 @@ class Stands {
         scale_(std::min(core.Height_m() / kTallTower_m, 1.0)),
         sight_(fields, core, sizes) {}
 
-  // Returns `camera` on the side from which it looks to `azimuth_deg`. The place is the nearest one
-  // that shows the top, is clear of cloud and rain, and is at least `nearest_m` away.
+  // Returns `camera` placed so that it looks towards the core in the direction `azimuth_deg`. The
+  // place is the nearest place that shows the top, is clear of cloud and rain, and is at least
+  // `nearest_m` away.
   SpotterCamera Standing(SpotterCamera camera, double azimuth_deg, double nearest_m) const {
     camera.azimuth_deg = azimuth_deg;
     const glm::dvec2 towards(Direction(azimuth_deg, 0.0));
@@ -101,8 +107,8 @@ class Stands {
     }
   }
 
-  // Returns the cost of a place: its distance, how much it looks towards the sun, and the weighted
-  // hidden shares of the view.
+  // Returns the cost of a place. It grows with the distance, with how directly the camera looks
+  // towards the sun, and with the weighted hidden shares of the view.
   double Cost(const SpotterCamera& camera) const {
     const glm::dvec3 eye_m = Eye(camera);
     const double distance_m = glm::length(camera.place_m - core_.place_m);
@@ -117,8 +123,8 @@ class Stands {
   double Farthest_m() const { return scale_ * kFarthest_m; }
 
  private:
-  // Returns 0 if the sun is behind the camera or at its side, up to 1 if the camera looks towards a
-  // low sun.
+  // Returns a number from 0 to 1. It is 1 if the camera looks straight towards a low sun, and 0 if
+  // the sun is behind the camera or at a right angle to it.
   double Backlit(const SpotterCamera& camera) const {
     if (towards_sun_.z <= 0.0) return 0.0;
     return std::max(glm::dot(Direction(camera.azimuth_deg, 0.0), towards_sun_), 0.0);
@@ -141,8 +147,8 @@ SpotterCamera OnBestSide(const Stands& stands, const SpotterCamera& camera) {
   double least_cost = std::numeric_limits<double>::infinity();
   const auto look_at = [&](double nearest_m) {
     for (int i = 0; i < kDirections; ++i) {
-      // Directions alternate between right and left, with growing distance from the camera's own
-      // azimuth.
+      // The tried directions alternate between right and left, with growing distance from the
+      // camera's own azimuth. Among equal costs the nearest azimuth therefore wins.
       const int turn = i % 2 == 1 ? (i + 1) / 2 : -i / 2;
       const SpotterCamera standing =
           stands.Standing(camera, camera.azimuth_deg + turn * 360.0 / kDirections, nearest_m);

@@ -1,6 +1,6 @@
-// The place of a spotter for requests that give none. It is about 15 to 25 km from the strongest
-// core, or farther if an anvil would be overhead. It is on a side that the sun lights and from
-// which little rain hides the core's base.
+// The position that a spotter camera gets when a request gives none. It is about 15 to 25 km from
+// the strongest core, or farther if an anvil would be overhead. It is on a side of the storm that
+// the sun lights and from which little rain hides the core's base.
 #pragma once
 
 #include "scene/scene.h"
@@ -9,13 +9,14 @@
 
 namespace thunderhead::scene {
 
-// The directions that may be chosen.
+// The sides of the core on which SpottingCore may place the spotter.
 enum class SpottersSide { kBest, kOppositeAzimuth };
 
-// Returns `camera` with a place, azimuth and elevation that show the whole tower. Ground fills a
-// sixth to a quarter of the picture's height. `camera` gives eye height and lens. With
-// kOppositeAzimuth it also gives the azimuth to look to. With kBest its azimuth only decides
-// between equal sides. `towards_sun` is a unit vector. A sun below the horizon lights no side.
+// Returns `camera` with a place, azimuth and elevation that show the core's whole cloud tower.
+// Ground fills a sixth to a quarter of the picture's height. `camera` gives the eye height and
+// focal length. With kOppositeAzimuth, `camera` also gives the azimuth in which the spotter looks.
+// With kBest, its azimuth only decides between equally good sides. `towards_sun` is a unit vector.
+// If the sun is below the horizon, no side counts as lit.
 //
 // The distance is the smallest that shows the tower's top. It is 1.25 to 2.1 times the tower's
 // height (15 to 25 km for 12 km), and 15 to 25 km for a higher tower. It is larger if cloud or rain

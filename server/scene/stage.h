@@ -3,7 +3,8 @@
 
 namespace thunderhead::scene {
 
-// The stages in their order. A change reruns the first stage that it dirties and every later one.
+// The stages in their order. After a change, the first stage that the change dirties and every
+// later stage run again.
 enum class Stage { kStorm, kExtinction, kLight, kView, kTone, kNothing };
 
 }  // namespace thunderhead::scene

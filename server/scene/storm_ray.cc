@@ -11,8 +11,8 @@
 namespace thunderhead::scene {
 namespace {
 
-// Returns the part of the ray within the domain and the box outside of which all interpolated
-// values are 0.
+// Returns the part of the ray that lies in the domain and in the box around the condensate. Outside
+// this box all interpolated values are 0.
 Span NearCondensate(const volume::HydrometeorFields& fields, const glm::dvec3& origin_m,
                     const glm::dvec3& direction, const Span& in_domain) {
   const volume::RegularGrid& grid = fields.grid;

@@ -15,7 +15,8 @@ namespace thunderhead::scene {
 
 enum class Seen { kCloud, kGround, kSky };
 
-// A ray with a smaller optical depth shows what lies behind the cloud.
+// The smallest optical depth at which cloud counts as seen. A ray with a smaller optical depth
+// shows the ground or sky behind the cloud.
 inline constexpr double kThinnestSeen_depth = 0.1;
 
 class StormRay {
@@ -34,12 +35,12 @@ class StormRay {
   // Returns the part of the ray in the domain, up to the ground. It is empty if the ray misses the
   // domain.
   const Span& InDomain() const { return in_domain_; }
-  // Returns the ray's pieces near condensate.
+  // Returns the ray's pieces (ray_pieces.h) in and next to cells with condensate.
   const std::vector<RayPiece>& Pieces() const { return pieces_; }
 
   Seen WhatIsSeen() const;
-  // Returns the distance to what is seen, or nothing for the sky. For cloud, it is the point with
-  // half of the cloud's visible contribution in front of it.
+  // Returns the distance to the cloud or ground that is seen, or nothing for the sky. For cloud,
+  // the distance is that of the point with half of the cloud's visible contribution in front of it.
   std::optional<double> WhereSeen_m() const;
 
  private:

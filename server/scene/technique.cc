@@ -125,7 +125,7 @@ Stage FirstDirtyStage(const Technique& before, const Technique& after) {
         },
         after);
   }
-  // Techniques that draw a medium use the same extinction.
+  // All techniques that draw a medium use the same extinction, so a change between them keeps it.
   const bool media = MediumSettingsOf(before) != nullptr && MediumSettingsOf(after) != nullptr;
   const bool same_look = FieldLookOf(before) == FieldLookOf(after);
   return media && same_look ? Stage::kLight : Stage::kExtinction;

@@ -23,37 +23,37 @@ std::string_view NameOf(const Technique& technique);
 
 const Capabilities& CapabilitiesOf(const Technique& technique);
 
-// Returns null for techniques that do not draw a medium with these settings.
+// Returns the technique's medium settings, or null if the technique has none.
 const MediumSettings* MediumSettingsOf(const Technique& technique);
 MediumSettings* MediumSettingsOf(Technique* technique);
-// Returns default settings for techniques that have none. A technique added as an extension may
-// still draw a medium.
+// Returns the technique's medium settings, or default settings if it has none. A technique added as
+// an extension has none but may still draw a medium.
 MediumSettings MediumSettingsOrDefault(const Technique& technique);
 
 // Returns which of the fields' own properties the technique shows.
 FieldLook FieldLookOf(const Technique& technique);
 
-// Returns true if the technique is path-traced progressively instead of being drawn by a renderer.
+// Returns true if the technique is path-traced progressively, without a renderer.
 bool IsTraced(const Technique& technique);
 
-// Returns the number of slices or samples that the technique's pictures depend on, if they depend
-// on one.
+// Returns the number of slices or ray samples that determines the technique's picture, or nothing
+// if the technique has no such number.
 std::optional<int> SlicesOf(const Technique& technique);
 void SetSlices(Technique* technique, int slices);
 
-// Returns the number with which the technique converges: slices, samples or metaballs. Returns 1 if
-// there is none.
+// Returns the number that makes the technique converge as it grows: slices, samples or metaballs.
+// Returns 1 if the technique has no such number.
 int CountOf(const Technique& technique);
 void SetCount(Technique* technique, int count);
 
-// Returns the number of slices, balls or ellipsoids that cover a pixel, by which the cost grows
-// with the pixels.
+// Returns the number of slices, balls or ellipsoids that cover a pixel. The cost of a picture is
+// proportional to this number times the number of pixels.
 double SamplesPerPixel(const Technique& technique, double slice_share);
 
 // Returns when path tracing corrects the technique's light.
 TracedLight TracedLightOf(const Technique& technique);
-// Sets when path tracing corrects the light. It has no effect on techniques without that
-// correction.
+// Sets when path tracing corrects the light. The call has no effect on techniques that cannot be
+// corrected.
 void SetTracedLight(Technique* technique, TracedLight traced_light);
 
 // Returns the first stage that must rerun when `before` becomes `after`.

@@ -8,13 +8,14 @@ enum class Transport {
   kPaper,       // Riley et al. 2003 (Vis), eq. 14-17 as printed
   kConsistent,  // the exact exponential of the effective extinction
   kDiffusion,   // multiple scattering from the diffusion equation; only in the light volume
-  kLowAlbedo,   // single scattering; each interaction removes light from the beam
-  // Single scattering, with phase functions normalised over their dynamic range for display.
+  kLowAlbedo,   // single scattering: each interaction removes light from the beam
+  // Single scattering as for kLowAlbedo, with phase functions normalised over their dynamic range
+  // for display.
   kPaperLowAlbedo,
 };
 
-// Returns true if the transport uses the paper's stepwise arithmetic and display instead of the
-// exact exponential.
+// Returns true if the transport uses the stepwise arithmetic and the display of Riley et al. 2003
+// instead of the exact exponential.
 constexpr bool IsPaper(Transport transport) {
   return transport == Transport::kPaper || transport == Transport::kPaperLowAlbedo;
 }

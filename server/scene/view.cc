@@ -21,25 +21,26 @@ namespace {
 
 constexpr double kMargin = 1.05;
 
-// Above practically all air, so that a picture from this altitude shows what a satellite sees.
+// An altitude above practically all air, so that a picture from there shows what a satellite sees.
 constexpr double kSatelliteAltitude_m = 1e5;
 
-// Sets the axes of a view along `forward`, with `up` upright in the local frame of `zenith`.
+// Sets the axes of a view along `forward`. The picture's vertical is that of `zenith`.
 void LookAlong(const glm::dvec3& forward, const glm::dvec3& zenith, View* view) {
   view->forward = forward;
   view->right = glm::normalize(glm::cross(forward, zenith));
   view->up = glm::cross(view->right, forward);
 }
 
-// Returns half the picture's size divided by the focal length, cut out of a frame of 36 x 24 mm.
+// Returns half the width and height of the picture divided by the focal length. The picture is cut
+// out of a frame of 36 x 24 mm.
 glm::dvec2 HalfFrame(double focal_length_mm, double aspect_ratio) {
   const double half_width_mm = aspect_ratio >= 1.5 ? 18.0 : 12.0 * aspect_ratio;
   return glm::dvec2(half_width_mm, half_width_mm / aspect_ratio) / focal_length_mm;
 }
 
 // Sets the members of a view that follow from the Earth's curvature and the eye's place. Returns
-// how far sea level at the eye is below the world's plane. A paraboloid approximates the sphere: at
-// 150 km they differ by 0.05 m.
+// how far sea level at the eye is below the plane of world coordinates. A paraboloid approximates
+// the sphere. At a distance of 150 km the two differ by 0.05 m.
 double StandOnEarth(const Site& site, View* view) {
   view->touch_m = site.storm_middle_m;
   view->ground_curvature_per_m = 1.0 / kEffectiveEarthRadius_m;

@@ -2,11 +2,11 @@
 // under the camera.
 //
 // World coordinates are those of the plane that touches the round Earth below the storm's middle.
-// The ground falls away from that point as d^2 / 2R, and the upright of a distant eye tilts
-// accordingly. A distant storm therefore sinks below a spotter's horizon while rays stay straight
-// lines. The storm itself stays flat, so its parts at a distance r from its middle are r^2 / 2R too
-// high. That is 15 m at 15 km and 170 m at 50 km, however far away the eye is. A top-down camera
-// sees a flat world.
+// At a distance d from that point the ground is d^2 / 2R below the plane, where R is the Earth's
+// radius. The vertical at a distant eye is tilted accordingly. A distant storm therefore sinks
+// below a spotter's horizon although rays stay straight lines. The storm itself is not curved, so
+// its parts at a distance r from its middle are r^2 / 2R too high. This error is 15 m at r = 15 km
+// and 170 m at r = 50 km, however far away the eye is. A top-down camera sees a flat world.
 #pragma once
 
 #include "glm/mat3x3.hpp"
@@ -19,10 +19,11 @@ namespace thunderhead::scene {
 
 using physics::kEffectiveEarthRadius_m;
 
-// `right`, `up` and `forward` are unit vectors. The ray through normalised device coordinates (x,
-// y) starts at eye_m + x half_width_m right + y half_height_m up. Its direction is forward + x
-// tan_half_width right + y tan_half_height up. The half sizes are zero in perspective, and the
-// tangents are zero for parallel rays.
+// The position and orientation of a camera. `right`, `up` and `forward` are unit vectors. The ray
+// through normalised device coordinates (x, y) starts at eye_m + x half_width_m right + y
+// half_height_m up. Its direction is forward + x tan_half_width right + y tan_half_height up. With
+// perspective `half_width_m` and `half_height_m` are zero. With parallel rays the two tangents are
+// zero.
 struct View {
   glm::dvec3 eye_m{0.0};
   glm::dvec3 right{1.0, 0.0, 0.0};
@@ -35,9 +36,10 @@ struct View {
 
   // Transforms world directions to east, north and up at the eye.
   glm::dmat3 local_from_world{1.0};
-  double altitude_m = 0.0;              // height of the eye above sea level
-  glm::dvec2 touch_m{0.0};              // where the world's plane touches the Earth
-  double ground_curvature_per_m = 0.0;  // curvature away from touch_m; 0 is flat
+  double altitude_m = 0.0;  // height of the eye above sea level
+  glm::dvec2 touch_m{0.0};  // the point where the plane of world coordinates touches the Earth
+  // 1/R of the Earth, by which the ground falls away from touch_m; 0 for a flat world
+  double ground_curvature_per_m = 0.0;
 
   bool Orthographic() const { return half_width_m > 0.0; }
 };
@@ -50,7 +52,7 @@ struct ViewRay {
 // Returns the ray through normalised device coordinates.
 ViewRay RayThrough(const View& view, double x, double y);
 
-// The position of a storm, as far as a view depends on it.
+// The values of a storm that a view depends on.
 struct Site {
   double ground_height_m = 0.0;  // height above sea level of the ground under a spotter
   glm::dvec2 storm_middle_m{0.0};
@@ -71,23 +73,23 @@ Site SiteOf(const volume::HydrometeorFields& fields, const glm::dvec2& place_m);
 // Returns the view of the scene's camera on its storm.
 View ViewOf(const Scene& scene, const volume::HydrometeorFields& fields);
 
-// Returns an elevation from which an orbit camera shows the box `low_m` to `high_m` well. It is 4
-// degrees if the height is at least a tenth of the width, as for single storms, and 35 degrees if
-// it is at most a fiftieth.
+// Returns an elevation from which an orbit camera shows the box `low_m` to `high_m` well. The
+// elevation is 4 degrees if the box's height is at least a tenth of its width, as for single
+// storms. It is 35 degrees if the height is at most a fiftieth of the width.
 double FramingElevation_deg(const glm::dvec3& low_m, const glm::dvec3& high_m);
 
 // Returns a camera that shows the whole box `low_m` to `high_m` from the direction of `camera`.
 OrbitCamera Framing(OrbitCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,
                     double aspect_ratio);
-// Returns a spotter that shows the whole box. `camera` gives the azimuth to look to and the focal
-// length.
+// Returns a spotter camera from which the whole box is visible. `camera` gives the azimuth in which
+// the spotter looks and the focal length.
 SpotterCamera Framing(SpotterCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,
                       double aspect_ratio);
 TopDownCamera Framing(TopDownCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m,
                       double aspect_ratio);
 
-// Returns the spotter at its own place, turned to the middle of the box, with the horizon in the
-// picture.
+// Returns the spotter camera at its own place, turned to the middle of the box, with the horizon in
+// the picture.
 SpotterCamera LookingAt(SpotterCamera camera, const glm::dvec3& low_m, const glm::dvec3& high_m);
 
 }  // namespace thunderhead::scene

@@ -18,7 +18,7 @@
 namespace thunderhead::service {
 namespace {
 
-// Pause after an error, for example when no file descriptors are left.
+// Pause after a failed accept, for example when no file descriptors are left.
 constexpr std::chrono::milliseconds kPause{100};
 
 }  // namespace

@@ -16,11 +16,12 @@ namespace thunderhead::service {
 
 class AcceptLoop {
  public:
-  // Takes ownership of `connection`, which is non-blocking. It is called on the loop's thread.
+  // Takes ownership of `connection`, whose socket is non-blocking. It is called on the loop's
+  // thread.
   using Take = std::function<void(base::FileDescriptor connection)>;
 
-  // An additional task of the loop's thread. It runs at least once every `pause`, measured by
-  // `time`, which must outlive the loop.
+  // An additional task of the loop's thread. It runs at least once every `pause`. `time` measures
+  // the pause and must outlive the loop.
   struct Chore {
     std::chrono::milliseconds pause;
     std::function<void()> run;

@@ -23,7 +23,7 @@ std::optional<std::string> Metadata(const grpc::CallbackServerContext& context, 
   return std::string(begin->second.data(), begin->second.size());
 }
 
-// Returns all lines of the header, in order.
+// Returns all values of the x-forwarded-for header, in order.
 std::string ForwardedFor(const grpc::CallbackServerContext& context) {
   const auto [begin, end] = context.client_metadata().equal_range("x-forwarded-for");
   std::string all;
@@ -60,8 +60,8 @@ CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, c
                access::CallKind kind) {
   access::Credentials credentials{"", PeerOf(door, context)};
   const std::string header = Metadata(context, "authorization").value_or("");
-  // If there are several tokens, a proxy in front may have checked a different one. So none of them
-  // is valid.
+  // If there are several tokens, a proxy in front may have checked a different one than this server
+  // would. So all of them are rejected.
   const bool is_one = context.client_metadata().count("authorization") == 1;
   if (is_one && absl::StartsWithIgnoreCase(header, kScheme)) {
     credentials.token = header.substr(sizeof(kScheme) - 1);

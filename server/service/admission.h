@@ -1,5 +1,5 @@
-// Admission of calls: reads the client's credentials from a call's metadata and asks the access
-// control (access::Door) for a decision.
+// Admits calls: reads the client's credentials from a call's metadata and asks the access control
+// (access::Door) whether the call is allowed.
 #pragma once
 
 #include <grpcpp/server_context.h>
@@ -18,17 +18,17 @@ namespace thunderhead::service {
 
 using CallerOr = absl::StatusOr<std::shared_ptr<const access::Caller>>;
 
-// Admits a call by its header "authorization: Bearer TOKEN" and the client's address. For calls
-// from the gateway and from trusted proxies, the address is the one that they report.
+// Admits a call by its header "authorization: Bearer TOKEN" and the client's address. The gateway
+// and trusted proxies report the address of their client, which is used instead of their own.
 CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, const char* method,
                access::CallKind kind);
 
-// The entry point of one service. Each call is either handled or refused. An exception in a handler
-// gives INTERNAL.
+// The entry point of one service. Each call is either handled or refused. If a handler throws an
+// exception, the call ends with INTERNAL.
 class Entrance {
  public:
-  // `closed` is the reason for refusing even admitted calls; OK means that they are handled.
-  // `calls` counts the admitted calls.
+  // If `closed` is not OK, all calls are refused with it, even admitted ones. `calls` counts the
+  // admitted calls of each connection.
   Entrance(access::Door& door, ConnectionCalls& calls, absl::Status closed = absl::OkStatus())
       : door_(door), calls_(calls), closed_(std::move(closed)) {}
 

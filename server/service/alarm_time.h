@@ -1,4 +1,4 @@
-// Conversion of a TimeSource's times for alarms of gRPC.
+// Converts times of a TimeSource for gRPC's alarms, which use the system clock.
 #pragma once
 
 #include <chrono>
@@ -7,8 +7,8 @@
 
 namespace thunderhead::service {
 
-// Returns the system clock's time at which an alarm for `due` must fire. The alarm's callback must
-// check `time` again, and set another alarm if `due` has not passed.
+// Returns the system clock's time at which to set an alarm for `due`. When the alarm fires, its
+// callback must check `time`, and set another alarm if `due` has not been reached.
 inline std::chrono::system_clock::time_point AlarmTime(const base::TimeSource& time,
                                                        base::TimeSource::Clock::time_point due) {
   return std::chrono::system_clock::now() +

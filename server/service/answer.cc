@@ -13,7 +13,8 @@ void Answer::Give(absl::Status status) {
     if (place.ok()) place_ = *std::move(place);
     delivery_.Begin(response_.ByteSizeLong());
   }
-  // An error sends no message, and HTTP/2 flow control does not limit what it does send.
+  // An error needs no deadline: it sends no message, and HTTP/2 flow control does not delay
+  // trailers.
   Finish(ToGrpcStatus(status));
 }
 

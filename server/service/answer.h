@@ -1,5 +1,5 @@
-// The response of a unary call, from when it is ready until its client has received it. During that
-// time it counts towards the caller's pending responses and has a deadline.
+// The response of a unary call, from when it is ready until the client has received it. Meanwhile
+// it counts as one of the caller's pending responses and has a deadline.
 #pragma once
 
 #include <google/protobuf/message.h>
@@ -23,7 +23,7 @@ class Answer final : public grpc::ServerUnaryReactor {
          std::shared_ptr<const access::Caller> caller, const google::protobuf::Message& response)
       : caller_(std::move(caller)), response_(response), delivery_(context, limits) {}
 
-  // Ends the call with the response, which must be complete, or with an error. It must be called
+  // Ends the call with the response, which must be complete, or with an error. Must be called
   // exactly once.
   void Give(absl::Status status);
 

@@ -13,14 +13,14 @@
 namespace thunderhead::service {
 namespace {
 
-// If another change of a session's scene is in progress, the session is retried for this long.
-// After that, the other change, which may wait for a long read, is assumed to know the new
-// catalogue.
+// If another change of a session's scene is in progress, moving the session is tried this many
+// times. After that, the other change (which may wait for a long read) is assumed to be based on
+// the new catalogue.
 constexpr int kAttempts = 40;
 constexpr std::chrono::milliseconds kBetweenAttempts{50};
 
-// Returns true if the time now comes from a different file than before the change, or if the storm
-// has come back.
+// Returns true if the time at that index now comes from a different file than before the change, or
+// if the storm has come back.
 bool IsReplaced(const storm_store::StormChange& change, std::size_t time) {
   if (change.before == nullptr) return true;
   const std::vector<storm_store::StormTime>& before = change.before->times;
@@ -59,7 +59,7 @@ CatalogueFollower::~CatalogueFollower() { store_.Listen({}); }
 std::string CatalogueFollower::IdNow(std::string id) const {
   if (store_.Find(id) != nullptr) return id;
   const std::lock_guard lock(mutex_);
-  // Follows the renamings at most once each, so that a cycle of names ends the loop.
+  // Each renaming is followed at most once, so that a cycle of names ends.
   for (std::size_t i = 0; i <= renamed_.size(); ++i) {
     const auto next = renamed_.find(id);
     if (next == renamed_.end()) return id;
@@ -82,7 +82,8 @@ void CatalogueFollower::Follow(const storm_store::CatalogueChange& change) {
     if (attempt > 0) std::this_thread::sleep_for(kBetweenAttempts);
     std::erase_if(sessions, [&](const auto& session) { return Move(*session, change); });
   }
-  // The sessions are moved first, so that a client that asks again finds its scene's time.
+  // The sessions are moved before clients are notified, so that a client that then asks for the
+  // times finds its scene's time.
   ++changes_;
   for (const auto& session : everybody) session->audience().WakeAll();
 }
@@ -94,8 +95,8 @@ bool CatalogueFollower::Move(session::Session& session,
   absl::StatusOr<ReadScene> newest = NewestSceneOf(session);
   if (!newest.ok()) return true;
   v1::Scene& scene = newest->scene;
-  // A storm that was absent comes back under its id. The sessions that could not show it then
-  // match.
+  // A storm that was absent comes back under its id. Sessions that could not show it meanwhile are
+  // then moved too.
   const auto at = std::ranges::find_if(change, [&](const storm_store::StormChange& storm) {
     return (storm.before != nullptr ? storm.before : storm.after)->id == scene.storm_id();
   });

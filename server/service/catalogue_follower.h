@@ -1,5 +1,5 @@
-// Moves sessions when the times of their storm change. A session that shows the newest time
-// advances to a newer one. Other sessions keep their time, even if its index changes.
+// Moves sessions when the times of their storm change. A session that shows the last time advances
+// to a newer last time. Other sessions keep their time, even if its index changes.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@
 
 namespace thunderhead::service {
 
-// A time of a storm, as a scene refers to it.
+// A time of a storm, as a scene refers to it: by the storm's id and the time's index.
 struct StormPlace {
   std::string storm_id;
   std::uint32_t time_index = 0;
@@ -25,16 +25,17 @@ struct StormPlace {
   bool operator==(const StormPlace&) const = default;
 };
 
-// Returns the time that a scene should show after a change, given the time that it showed before.
-// The last time stays the last. Other times stay the same, or become the preceding one if the time
-// no longer exists. If the storm returns after an absence, the index stays or becomes the last.
-// Returns nothing if the storm is gone.
+// Returns the time that a scene should show after `change`, if it showed `time_index` before. The
+// last time becomes the new last time. Another time stays the same time; if it no longer exists,
+// the preceding time is returned. If the storm had disappeared and is back, the index stays the
+// same, up to the last index. Returns nothing if the storm is gone.
 std::optional<StormPlace> PlaceAfter(const storm_store::StormChange& change,
                                      std::uint32_t time_index);
 
 class CatalogueFollower {
  public:
-  // Listens to the store during its lifetime. All arguments must outlive it.
+  // Subscribes to the store's changes for as long as this object exists. All arguments must outlive
+  // it.
   CatalogueFollower(storm_store::StormStore& store, session::Sessions& sessions,
                     const drawing::RenderLoop& loop);
   // Waits for a change that is being processed.
@@ -42,11 +43,11 @@ class CatalogueFollower {
   CatalogueFollower(const CatalogueFollower&) = delete;
   CatalogueFollower& operator=(const CatalogueFollower&) = delete;
 
-  // Returns the number of changes of the catalogue so far. Clients are notified of each.
+  // Returns the number of changes of the catalogue so far. Clients are notified of each change.
   std::uint64_t Changes() const { return changes_; }
 
-  // Returns the current id of a storm that formerly had `id`. A run with one file is named after
-  // the file; with two or more files it is named after its folder. Returns `id` itself if no
+  // Returns the current id of a storm that formerly had the id `id`. (A run with one file is named
+  // after the file, and after its folder once it has more files.) Returns `id` itself if no
   // renaming is known.
   std::string IdNow(std::string id) const;
 

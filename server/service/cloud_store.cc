@@ -18,14 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Limits on the number of clouds, each of whose files takes up to a few megabytes.
+// Maximum number of clouds in all and per identity. The file of a cloud takes up to a few
+// megabytes.
 constexpr std::size_t kMaxClouds = 64;
 constexpr std::size_t kMaxCloudsEach = 32;
 // Memory per grid cell while a cloud is generated: the water, and a copy of it for writing.
 constexpr std::size_t kBytesPerCell = 8;
 
-constexpr std::chrono::seconds kRetryWhenBusy{3};  // about the time to generate one
-// A retry helps only after a cloud has been deleted.
+constexpr std::chrono::seconds kRetryWhenBusy{3};  // about the time to generate a cloud
+// The maximum number of clouds is reached, so a retry helps only after a cloud was deleted.
 constexpr std::chrono::minutes kRetryWhenFull{1};
 
 absl::Status TooManyClouds(const char* who, std::size_t maximum) {
@@ -118,8 +119,9 @@ absl::Status CloudStore::Delete(const std::string& storm_id) {
 
 absl::Status CloudStore::FolderAnswers() {
   return patient_.Ask(path_, [path = path_] {
-    // Creates a new file, because the status of an existing one may come from a cache. Only the
-    // response matters here. Other errors of the folder are reported when the cloud is written.
+    // A new file is created, because the status of an existing file may come from a cache. Only
+    // whether the storage responds matters here. Other errors of the folder are reported when the
+    // cloud is written.
     const std::string asked = absl::StrCat(path, "/.answers-", ::getpid());
     const int file =
         ::open(asked.c_str(), O_CREAT | O_EXCL | O_NOFOLLOW | O_WRONLY | O_CLOEXEC, S_IRUSR);

@@ -1,6 +1,5 @@
-// The clouds that a server generated on request. They are storm files in one folder, in which
-// clouds are generated one at a time and from which they can be deleted. Safe to call from any
-// thread.
+// The clouds that a server generates on request. They are storm files in one folder. Clouds are
+// generated one at a time, and can be deleted. Safe to call from any thread.
 #pragma once
 
 #include <chrono>
@@ -23,30 +22,31 @@ namespace thunderhead::service {
 
 class CloudStore {
  public:
-  // `path` is the folder; if it is empty, no clouds are generated. Clouds that the storm store has
-  // already loaded from the folder come from an earlier server and can be deleted too. The memory
-  // for generating a cloud is reserved in `memory`, which may be null.
+  // `path` is the folder; if it is empty, no clouds can be generated. Clouds that the storm store
+  // has already loaded from the folder were made by an earlier server run, and can be deleted too.
+  // The memory for generating a cloud is reserved in `memory`, which may be null (no limit).
   CloudStore(std::string path, storm_store::StormStore& store,
              std::shared_ptr<base::MemoryBudget> memory = nullptr);
 
   // Generates the cloud into a new file and adds it to the storm store, for the identity `owner`
-  // (empty for none). Returns FAILED_PRECONDITION without a folder, UNAVAILABLE during another
-  // call, and DEADLINE_EXCEEDED if the folder's storage does not respond at the start. Returns
-  // RESOURCE_EXHAUSTED without memory, or at the maximum number of clouds. That maximum applies to
-  // all clouds, and to the clouds of one identity since the server started.
+  // (empty for none). Returns FAILED_PRECONDITION without a folder, and UNAVAILABLE while another
+  // call generates a cloud. Returns DEADLINE_EXCEEDED if the folder's storage does not respond at
+  // the start. Returns RESOURCE_EXHAUSTED without enough memory, or at the maximum number of
+  // clouds. The maximum applies to all clouds, and to those that one identity has made since the
+  // server started.
   absl::StatusOr<storm_store::StormInfoPtr> Make(const clouds::CloudShape& shape,
                                                  const clouds::CloudOrigin& origin,
                                                  const clouds::GenerateObserver& observer,
                                                  const std::stop_token& stop,
                                                  const std::string& owner = "");
 
-  // Returns true if the storm is one of these clouds.
+  // Returns true if the storm is a cloud of this store.
   bool Holds(const std::string& storm_id) const;
 
-  // Removes a cloud's file, and the cloud from the storm store. Returns NOT_FOUND for an unknown
-  // id, FAILED_PRECONDITION for any other storm, PERMISSION_DENIED if the file cannot be removed,
-  // and DEADLINE_EXCEEDED if its storage does not respond. In the last case the cloud is kept,
-  // although the file may still be removed later.
+  // Removes the cloud's file, and the cloud from the storm store. Returns NOT_FOUND for an unknown
+  // id, FAILED_PRECONDITION for a storm that is not a generated cloud, and PERMISSION_DENIED if the
+  // file cannot be removed. Returns DEADLINE_EXCEEDED if the storage does not respond. In this case
+  // the cloud is kept, although its file may still be removed later.
   absl::Status Delete(const std::string& storm_id);
 
  private:
@@ -64,9 +64,9 @@ class CloudStore {
   const std::string path_;
   storm_store::StormStore& store_;
   const std::shared_ptr<base::MemoryBudget> memory_;
-  base::PatientCalls patient_{std::chrono::seconds(10)};  // requests to the storage
+  base::PatientCalls patient_{std::chrono::seconds(10)};  // calls to the storage, with a timeout
   std::mutex making_;                                     // held while a cloud is generated
-  mutable std::mutex mutex_;  // not held during requests to the storage, which may hang
+  mutable std::mutex mutex_;  // not held during calls to the storage, which may block
   struct File {
     std::string path;
     std::string owner;

@@ -1,6 +1,7 @@
-// Reports which connections of gRPC's port are in use, that is, have an admitted call. gRPC reports
-// neither its connections nor the connection of a call. But the peer of a call is the remote end of
-// its connection, and no two connections share it at a time. Safe to call from any thread.
+// Reports which connections to gRPC's port are in use, which means that they have an admitted call.
+// gRPC reports neither its connections nor the connection of a call. But a call's peer is the
+// remote address and port of its connection, which no two open connections share. Safe to call from
+// any thread.
 #pragma once
 
 #include <chrono>
@@ -28,8 +29,8 @@ class ConnectionCalls {
     Clock::time_point since{};  // when the last call began or ended
   };
 
-  // Counts a call of the connection with this peer, "1.2.3.4:80" or "[::1]:80". The call counts
-  // until the last copy of the result is destroyed, which may outlive this object.
+  // Counts a call of the connection with this peer, such as "1.2.3.4:80" or "[::1]:80". The call
+  // counts until the last copy of the result is destroyed. The result may outlive this object.
   std::shared_ptr<const void> Begin(const std::string& peer);
   // Returns the use of a connection, or nothing if it never had a call.
   std::optional<Use> UseOf(const std::string& peer) const;

@@ -10,7 +10,8 @@
 namespace thunderhead::service {
 namespace {
 
-// Checks all of the request except the scenes, because each scene may fail independently.
+// Checks everything in the request except the scenes. A bad scene makes only its own picture fail
+// later.
 absl::Status CheckShape(v1::CreateRenderJobRequest request) {
   for (v1::RenderJobPicture& picture : *request.mutable_pictures()) picture.clear_scene();
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));

@@ -24,9 +24,9 @@ absl::Status Open(Engine& engine, const std::string& owner, const session::Rules
   return absl::OkStatus();
 }
 
-// Handles the result of saving the session. On a full disk the session is opened all the same, so
-// that a class can begin. If the storage hangs the session is refused, because nothing would report
-// when it is saved.
+// Handles the result of saving the session. If the disk is full, the session is opened
+// nevertheless, so that for example a lesson can begin. If the storage hangs, the session is
+// refused, because its state could not be reported to the client.
 absl::Status Saved(Engine& engine, const absl::Status& saved, v1::CreateSessionResponse& response) {
   if (base::DetailsOf(saved).reason == base::kStorageHangs) {
     // The session can be closed because its keys were not sent to any client.

@@ -8,7 +8,7 @@
 namespace thunderhead::service {
 namespace {
 
-// Reports the deletion to all people who see the cloud, including those who look around. They keep
+// Reports the deletion to all people who see the cloud, including people who look around. They keep
 // the last frame.
 void TellSessions(session::Sessions& sessions, const std::string& storm_id) {
   for (const std::shared_ptr<session::Session>& session : sessions.AllDrawn()) {

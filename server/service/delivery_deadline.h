@@ -23,19 +23,20 @@ class DeliveryDeadline {
       : limits_(limits), call_(std::make_shared<Call>(context, *limits.time)) {}
   DeliveryDeadline(const DeliveryDeadline&) = delete;
   DeliveryDeadline& operator=(const DeliveryDeadline&) = delete;
-  // Ends the deadline. The call has ended, and this must be destroyed before OnDone returns.
+  // Stops checking. The call must have ended, and this object must be destroyed before OnDone
+  // returns.
   ~DeliveryDeadline();
 
-  // Starts the deadline for the next message of that many bytes. It runs until Taken(). It is cheap
-  // enough to call for each frame.
+  // Starts the deadline for a message of that many bytes. The deadline runs until Taken(). This
+  // function is cheap enough to call for each frame.
   void Begin(std::size_t bytes);
   void Taken();
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  // State that the alarm may still use after the call has ended. The alarm is not set again for
-  // each message. When it fires, it checks the deadline of the message that is being written.
+  // The state that the alarm uses, which may outlive the call. The alarm is not set again for each
+  // message. When it fires, it checks the deadline of the message that is being written.
   struct Call : std::enable_shared_from_this<Call> {
     Call(grpc::CallbackServerContext* of, const base::TimeSource& by) : context(of), time(by) {}
     void SetAlarm(Clock::time_point at);

@@ -1,4 +1,4 @@
-// The draining of a server: it accepts no new work, and ends when the existing work is done.
+// The draining of a server: it accepts no new work, and ends when the work in progress is done.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@ class Drain {
   // Returns the number of pictures that were started and not yet delivered.
   int Pictures() const { return pictures_; }
 
-  // Counts a picture from its request to its delivery.
+  // Counts a picture as long as this object exists: from its request to its delivery.
   class Picture {
    public:
     explicit Picture(Drain& drain) : drain_(drain) { ++drain_.pictures_; }
@@ -25,7 +25,7 @@ class Drain {
     Picture(const Picture&) = delete;
     Picture& operator=(const Picture&) = delete;
 
-    // Returns an error after Begin, which refuses new work.
+    // Returns an error once Begin was called, because new work is then refused.
     absl::Status Check() const {
       return drain_.HasBegun() ? base::ShuttingDown() : absl::OkStatus();
     }

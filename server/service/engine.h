@@ -1,5 +1,5 @@
-// The objects that the handlers use: storms, sessions, the render loop, threads for blocking work,
-// and generated clouds. Handlers run on gRPC's threads and must not block there.
+// The objects that the handlers of the rpcs use: storms, sessions, the render loop, threads for
+// blocking work, and generated clouds. Handlers run on gRPC's threads and must not block there.
 #pragma once
 
 #include <functional>
@@ -31,26 +31,27 @@ struct Engine {
   base::WakeSignal& wake;
   base::Executor& executor;
   CloudStore& clouds;
-  session::SessionKeeper* keeper;  // null if sessions end with the server
+  session::SessionKeeper* keeper;  // null if sessions are not saved
   const CatalogueFollower& catalogue;
   Drain& drain;
   Limits limits;
 };
 
-// Calls `done` after an attempt to save the changes of sessions. If sessions end with the server,
-// it calls `done` at once with OK. Otherwise it calls it on another thread, as
-// SessionKeeper::SaveThen does.
+// Calls `done` after an attempt to save the changes of sessions. If sessions are not saved, calls
+// `done` at once with OK. Otherwise `done` is called on another thread, as by
+// SessionKeeper::SaveThen.
 void SaveThen(Engine& engine, session::SessionKeeper::Done done);
 
-// Returns the storm's fields at that time. An error names `path`, the field of the request that
-// holds the storm's id.
+// Returns the storm's fields at that time. Errors name `path`, the field of the request that holds
+// the storm's id.
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
     storm_store::StormStore& store, const std::string& storm_id, int time_index,
     const std::string& path);
 
-// Frames the condensate if the camera needs it, then calls `then`. Without framing, the call
-// happens at once. Otherwise it happens on the executor after the fields were read, in the turn of
-// the identity `owner`. `scene` must live until then.
+// If the camera's defaults depend on the storm, sets them so that the condensate is framed. Then
+// calls `then`: immediately if no framing is needed, otherwise on the executor after the fields
+// were read. The executor does the work in the turn of the identity `owner`. `scene` must live
+// until `then` is called.
 void FrameThen(Engine& engine, const std::string& owner, v1::Scene& scene,
                std::function<void(const absl::Status&)> then);
 

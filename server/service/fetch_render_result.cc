@@ -26,8 +26,8 @@ using ResultReactor = grpc::ServerWriteReactor<v1::FetchRenderResultResponse>;
 
 constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 20;
 
-// Returns the error for a missing file: it was dropped just now, or an operator removed it from the
-// folder.
+// Returns the error for a missing file. Either it was just dropped, or an operator removed it from
+// the folder.
 absl::Status Gone() {
   return base::WithDetails(absl::NotFoundError("the picture's file is gone; ask for it again"),
                            {.reason = "NO_SUCH_RESULT"});
@@ -59,7 +59,7 @@ class ResultFile {
 
   bool AtEnd() const { return offset_ >= place_.bytes; }
 
-  // Returns the job's folder, whose storage may hang.
+  // Returns the job's folder, which identifies the storage for calls with a timeout.
   std::string Storage() const { return std::filesystem::path(place_.path).parent_path(); }
 
  private:
@@ -68,9 +68,9 @@ class ResultFile {
   std::ifstream file_;
 };
 
-// Sends a file in chunks, and reads each chunk while no other is being written. It deletes itself
-// when gRPC calls OnDone, which follows its call of Finish. So no read is in progress then, except
-// one that hangs, which does not use this object.
+// Sends a file in chunks. It reads the next chunk only while no chunk is being written. It deletes
+// itself when gRPC calls OnDone, which follows the call of Finish. At that time no read is in
+// progress, except one that hangs, and this read does not use the object.
 class ResultStream final : public ResultReactor {
  public:
   ResultStream(jobs::Jobs& jobs, const ResultReading& reading, const Limits& limits,

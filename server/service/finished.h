@@ -1,4 +1,4 @@
-// The reactors of calls that finish at once or after one piece of work. They write refusals to the
+// The reactors of calls that finish at once or after one piece of work. They report refusals to the
 // audit log.
 #pragma once
 
@@ -18,8 +18,8 @@
 
 namespace thunderhead::service {
 
-// Refuses a call without an entry in the audit log: either access control refused the call, or its
-// handler wrote the entry.
+// Refuses a call without writing an entry to the audit log. It is used if the access control
+// refused the call, or if the handler has already written the entry.
 inline grpc::ServerUnaryReactor* Refused(grpc::CallbackServerContext* context,
                                          const absl::Status& why) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
@@ -45,8 +45,8 @@ inline grpc::ServerUnaryReactor* Finished(const Limits& limits,
 }
 
 // Finishes with the result of `work`, which runs on a thread of the executor in the caller's turn.
-// The work is skipped if the caller has cancelled the call. gRPC keeps the call's objects alive
-// until then.
+// If the caller has cancelled the call by then, `work` is skipped. gRPC keeps the call's objects
+// alive until the call finishes.
 template <typename Work>
 grpc::ServerUnaryReactor* FinishedBy(Engine& engine, grpc::CallbackServerContext* context,
                                      const std::shared_ptr<const access::Caller>& caller,
@@ -64,8 +64,8 @@ grpc::ServerUnaryReactor* FinishedBy(Engine& engine, grpc::CallbackServerContext
   return answer;
 }
 
-// A refused stream of any kind. The first constructor is for streams that access control refused.
-// It deletes itself when gRPC calls OnDone.
+// A refused stream of any kind. The first constructor is for streams that the access control
+// refused, the second for refusals by a handler. The object deletes itself when gRPC calls OnDone.
 template <typename Reactor>
 class RefusedStream final : public Reactor {
  public:

@@ -43,8 +43,9 @@ absl::Status NotThere(const v1::GetStormMapRequest& request, int index,
       "FIELD_NOT_THERE", {{"allowed", names}});
 }
 
-// Returns the indices of the fields to add, each once. Water paths and optical depths cannot be
-// added to each other.
+// Returns the indices of the fields whose water paths are added, each index once. Water paths and
+// optical depths cannot be added to each other, so a request for both is refused. Without requested
+// fields, all mass fields are added, or all optical depths if there are no mass fields.
 absl::StatusOr<std::vector<std::size_t>> FieldsAdded(const v1::GetStormMapRequest& request,
                                                      const storm_store::StormInfo& storm,
                                                      const volume::HydrometeorFields& fields) {

@@ -1,5 +1,6 @@
-// Declares one handler for each rpc, defined in the file named after it. Handlers that may refuse,
-// or whose work waits for its turn, get the caller.
+// Declares one handler for each rpc of ThunderheadService. Each is defined in the file that is
+// named after the rpc. All handlers get the caller, for refusals and for work that runs in the
+// caller's turn.
 #pragma once
 
 #include <grpcpp/support/server_callback.h>

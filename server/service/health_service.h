@@ -1,6 +1,6 @@
-// Answers gRPC's health checks. Unlike gRPC's own service, it does not offer the stream Watch: its
-// calls would stay open for clients that need no token and are not counted. Clients that call Watch
-// interpret UNIMPLEMENTED as "serving".
+// Answers gRPC's health checks. Unlike gRPC's own health service, it does not offer the streaming
+// method Watch. Health checks need no token and are not counted, so anyone could keep such streams
+// open. Clients that call Watch interpret UNIMPLEMENTED as "serving".
 #pragma once
 
 #include <grpcpp/grpcpp.h>
@@ -15,7 +15,7 @@ namespace thunderhead::service {
 
 class HealthService final : public grpc::health::v1::Health::CallbackService {
  public:
-  // Reports health for the whole server, and by the full name of `service`.
+  // Reports the health of the whole server, under an empty name and under the full name `service`.
   explicit HealthService(std::string service) : service_(std::move(service)) {}
 
   void SetServing(bool serving) { serving_ = serving; }

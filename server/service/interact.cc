@@ -31,7 +31,8 @@ namespace {
 
 using session::Clock;
 
-// Maximum number of answers that wait for a slow client. At the maximum no further request is read.
+// Maximum number of answers that wait for a slow client. At this number, no further request is
+// read.
 constexpr std::size_t kMaxWaitingAnswers = 16;
 
 absl::Status NotJoined() {
@@ -77,8 +78,9 @@ std::string NameOfRequest(const v1::InteractRequest& request) {
 
 // One client's call. It lives until gRPC, the session and the pending updates have released it.
 // There is at most one pending read and one pending write. Finish is called once, while nothing is
-// being written. The thread of the read handles requests one after another. The next message is
-// chosen when the last write is done, so that the newest state is sent.
+// being written. The thread that completes a read handles the request, so requests are handled one
+// after another. The next message is chosen only when the last write is done, so that the newest
+// state is sent.
 class InteractCall : public InteractReactor,
                      public Asker,
                      public std::enable_shared_from_this<InteractCall> {
@@ -105,7 +107,8 @@ class InteractCall : public InteractReactor,
         join_due_(engine.limits.time->Now() + engine.limits.join_timeout),
         delivery_(std::in_place, context, engine.limits) {}
 
-  // Writes the next message or ends the call, if there is a reason and nothing is being written.
+  // Writes the next message, or ends the call if there is a reason to end it. Does nothing while a
+  // message is being written.
   void Wake() override {
     std::optional<grpc::ByteBuffer> message;
     std::optional<grpc::Status> end;
@@ -171,7 +174,7 @@ class InteractCall : public InteractReactor,
 
   void OnDone() override {
     if (session_ != nullptr) {
-      // This comes first, because a session without viewers expires sooner.
+      // Touch comes first, because a session expires sooner once it has no viewers.
       session_->Touch();
       {
         const std::lock_guard lock(mutex_);
@@ -179,7 +182,9 @@ class InteractCall : public InteractReactor,
       }
       session_->audience().Leave(person_id_, session_->Now());
     }
-    delivery_.reset();  // because the session and updates may keep the call for longer
+    // Ends the deadline here, because the session and pending updates may keep the call alive for
+    // longer.
+    delivery_.reset();
     held_by_grpc_.reset();
   }
 
@@ -214,7 +219,8 @@ class InteractCall : public InteractReactor,
     Wake();
   }
 
-  // Returns the status to end the call with if it must end now. The caller must hold mutex_.
+  // Returns the status with which the call must end now; nothing if it continues. The caller must
+  // hold mutex_.
   std::optional<grpc::Status> Ended() {
     if (end_.has_value()) return end_;
     if (session_ == nullptr) return std::nullopt;
@@ -248,7 +254,8 @@ class InteractCall : public InteractReactor,
       return ResponseOf(response);
     }
     Watch(Watched());
-    // News and frames alternate, so that neither delays the other on a slow link.
+    // News (changes other than frames) and frames alternate, so that neither delays the other on a
+    // slow link.
     const auto next_news = [&] { return news_->Next(*session_, engine_.catalogue); };
     std::optional<grpc::ByteBuffer> next = frame_next_ ? NextFrame() : next_news();
     if (!next.has_value()) next = frame_next_ ? next_news() : NextFrame();
@@ -284,15 +291,15 @@ class InteractCall : public InteractReactor,
     watched_ = nullptr;
     if (session == nullptr) return;
     const auto watcher_id = session->hub().Join(shared_from_this(), wants_);
-    if (!watcher_id.ok()) return;  // the session has closed, which the next message reports
+    if (!watcher_id.ok()) return;  // the session has closed; the next message reports this
     watched_ = session;
     watcher_id_ = *watcher_id;
   }
 
   // Reads the next request, unless too many answers are waiting.
   void ReadOn() {
-    // The read starts under the lock. Without a pending read or write, nothing else would prevent
-    // the call from being finished meanwhile.
+    // The read is started under the lock. Otherwise the call could be finished before the read has
+    // started, because there would be no pending read or write to prevent that.
     const std::lock_guard lock(mutex_);
     if (reading_ || finished_ || answers_.size() + updates_ >= kMaxWaitingAnswers) return;
     reading_ = true;
@@ -307,7 +314,8 @@ class InteractCall : public InteractReactor,
     Wake();
   }
 
-  // Handles the received request. An error ends the call, while a refused request gets an answer.
+  // Handles the received request. A refused request gets an answer. Only a returned error ends the
+  // call.
   absl::Status Handle() {
     v1::InteractRequest request;
     grpc::ProtoBufferReader reader(&received_);
@@ -404,7 +412,7 @@ class InteractCall : public InteractReactor,
       watched = watched_;
       watcher_id = watcher_id_;
     }
-    // An acknowledgement of a view that was left meanwhile is late, but not an error.
+    // An acknowledgement for a view that the viewer has left meanwhile is late, but not an error.
     if (watched == nullptr || acknowledgement.own_view() != (watched != session_)) {
       return absl::OkStatus();
     }
@@ -465,9 +473,9 @@ class InteractCall : public InteractReactor,
   bool end_told_ = false;
   std::optional<grpc::Status> end_;
   std::deque<grpc::ByteBuffer> answers_;
-  std::size_t updates_ = 0;  // updates whose answer is pending
+  std::size_t updates_ = 0;  // number of updates of the scene whose answer is pending
 
-  // Join sets these before anything else can use them.
+  // Join sets these members before anything else can use them.
   std::shared_ptr<session::Session> session_;
   std::uint64_t person_id_ = 0;
   std::optional<PersonRequests> requests_;
@@ -479,9 +487,9 @@ class InteractCall : public InteractReactor,
   bool takes_stills_ = false;
   delivery::ViewerWants wants_;
   std::shared_ptr<session::Session> watched_;  // the session whose frames are sent
-  std::uint64_t watcher_id_ = 0;               // the id in its hub
+  std::uint64_t watcher_id_ = 0;               // the viewer's id in the hub of watched_
   std::uint64_t told_doubts_ = 0;
-  // The liveness check that the message being written asks for.
+  // The number of the doubt about which the message being written asks the client (CheckAlive).
   std::optional<std::uint64_t> asking_for_;
 };
 

@@ -1,5 +1,6 @@
-// The Interact call: a whole session in one stream each way, for clients that stay connected. Its
-// messages are handled as bytes, so that a message for many people is serialized once.
+// The Interact call: a whole session in one stream in each direction, for clients that stay
+// connected. Messages are handled as bytes, so that a message for many people is serialized only
+// once.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>

@@ -1,5 +1,5 @@
-// The responses of Interact, as bytes that all people of a session share. Its requests are in
-// interact_requests.h.
+// Serializes the responses of Interact, as bytes that all people of a session share. The requests
+// are in interact_requests.h.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
@@ -14,19 +14,19 @@
 
 namespace thunderhead::service {
 
-// Returns the functions that serialize whole responses, for session::Audience.
+// Returns the functions with which session::Audience serializes its updates as whole responses.
 session::AudienceFormat InteractFormat();
-// Returns a frame's message without its sequence number, for session::FrameEncoder.
+// Serializes a frame without its sequence number, for drawing::FrameEncoder.
 std::string SerializedFrame(const delivery::EncodedFrame& frame);
 
-// Serializes responses. Responses with frames and scenes share the bytes of their largest part.
+// Serialize responses. Responses with a frame or a scene share the bytes of that part.
 grpc::ByteBuffer FrameResponse(const std::shared_ptr<const delivery::EncodedFrame>& frame,
                                bool own_view);
 grpc::ByteBuffer SceneResponse(const session::NewestScene& scene);
 grpc::ByteBuffer ResponseOf(const v1::InteractResponse& response);
 // Returns the last message of a call.
 v1::InteractResponse EndResponse(const absl::Status& why);
-// Returns the answer to a refused request.
+// Returns the response that reports a refused request.
 v1::InteractResponse RefusedResponse(std::uint64_t request_id, const absl::Status& why);
 
 v1::Role RoleMessage(session::Role role);

@@ -19,7 +19,8 @@ namespace {
 constexpr std::size_t kMaxNameCharacters = 40;
 constexpr int kParticipantKeyWords = 4;  // each of 8 hexadecimal digits
 
-// Returns the length in bytes of the UTF-8 character that begins with `byte`; 0 if none does.
+// Returns the length in bytes of the UTF-8 character that begins with `byte`; 0 if no character
+// does.
 std::size_t CharacterBytes(unsigned char byte) {
   if (byte < 0x80) return 1;
   if (byte >= 0xc2 && byte < 0xe0) return 2;
@@ -39,8 +40,8 @@ std::uint32_t CodePointOf(std::string_view character) {
 }
 
 // Returns true for control characters, and for characters that have no width or change the text
-// direction. A name with them could imitate another. Joiners are allowed, because scripts need
-// them.
+// direction. With such characters, a name could imitate another name. Joiners are allowed, because
+// some scripts need them.
 bool IsHidden(std::uint32_t code) {
   constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 8> kHidden{{{0x00, 0x1f},
                                                                             {0x7f, 0x9f},

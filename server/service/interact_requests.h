@@ -1,5 +1,5 @@
-// Reads and validates values of Interact's requests, because clients may send anything. The
-// functions need no session, only plain values.
+// Reads and validates values in Interact's requests, because clients may send anything. The
+// functions use only plain values, no session.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace thunderhead::service {
 
-// Returns `rules`, changed by the rules that the message sets.
+// Returns `rules` with the values that the message sets.
 session::Rules RulesOf(const v1::SessionRules& message, session::Rules rules);
 
 // Returns the ray, or INVALID_ARGUMENT for a direction of length 0. `path` names the ray's field.
 absl::StatusOr<session::Ray> RayOf(const v1::Ray& message, const std::string& path);
 
-// Returns the key with which a person reconnects, or a new key if it is empty. Returns
+// Returns the key with which a person reconnects. Returns a new key if `key` is empty. Returns
 // INVALID_ARGUMENT, which names the field `path`, for a key that no server can have issued.
 absl::StatusOr<std::string> ParticipantKeyOf(const std::string& key, const std::string& path);
 

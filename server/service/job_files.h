@@ -1,4 +1,4 @@
-// How the thread of render jobs checks the files of storms. It is a plain value.
+// How the thread of render jobs checks storm files. A plain value that tests can replace.
 #pragma once
 
 #include <chrono>
@@ -12,8 +12,8 @@ namespace thunderhead::service {
 
 struct JobFiles {
   std::function<std::optional<base::FileStamp>(const std::string& path)> stamp = base::StampOf;
-  // The timeout of this check, and of reading a piece of a result. After it, the file's storage
-  // counts as hanging, and its pictures are retried later.
+  // The timeout of this check, and of reading a piece of a result. If it expires, the file's
+  // storage counts as blocked, and the pictures of the file are retried later.
   std::chrono::milliseconds patience = std::chrono::seconds(5);
 };
 

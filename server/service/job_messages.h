@@ -18,15 +18,15 @@ void ToMessage(const jobs::PictureView& picture, v1::RenderJobPictureState& mess
 
 jobs::Asker AskerOf(const access::Caller& caller);
 
-// Returns a picture as a job stores it, with the storm and the valid time that its scene means now,
-// if they exist. It checks nothing else; other errors are found when the picture is drawn.
+// Returns a picture as a job stores it. The storm and the valid time that its scene means now are
+// added, if they exist. Nothing else is checked; other errors are found when the picture is drawn.
 jobs::PictureOrder OrderOf(const storm_store::StormStore& store,
                            const v1::RenderJobPicture& picture);
 
 // Returns the path of a job's results on the HTTP port: "/results/KEY".
 std::string ResultPathOf(const std::string& result_key);
 
-// A picture's key and place from its path, "/results/KEY/7". Other paths give nothing.
+// The job's key and the picture's index from a path such as "/results/KEY/7".
 struct ResultPath {
   std::string key;
   std::size_t place = 0;

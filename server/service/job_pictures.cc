@@ -27,8 +27,8 @@ std::string ExtensionOf(v1::ImageFormat format) {
   return absl::AsciiStrToLower(absl::StripPrefix(name, "IMAGE_FORMAT_"));
 }
 
-// Checks the files of storms for the thread that all jobs share. A hanging storage therefore delays
-// that thread only once, for a limited time, and no longer delays other pictures after that.
+// Checks the storm files of all render jobs, on one thread. A hanging storage delays that thread
+// only once, for a limited time, and after that does not delay other pictures.
 class StormFiles {
  public:
   StormFiles(const JobFiles& files, const base::TimeSource& time)
@@ -83,7 +83,8 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
   }
 
  private:
-  // Finds the time that the order means. Its index or storm id may have changed since.
+  // Finds the time that the order means, because its index or the storm's id may have changed since
+  // the order was made.
   absl::Status Place(const jobs::PictureOrder& order) {
     if (!request_.ParseFromString(order.request)) {
       return absl::DataLossError("the server's record of this picture is damaged");
@@ -93,7 +94,7 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
     input_.set_storm_id(scene.storm_id());
     input_.set_valid_time(order.valid_time);
     input_.set_device(engine_.loop.Device().device);
-    // For an order without a time, the error is found as for any other picture.
+    // If the order has no time, the error is found later, as for any other picture.
     if (order.valid_time.empty()) return absl::OkStatus();
     THUNDERHEAD_ASSIGN_OR_RETURN(const storm_store::StormInfoPtr storm,
                                  FindStorm(engine_.store, scene.storm_id()));
@@ -124,7 +125,7 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
   v1::RenderImageRequest request_;
   v1::RenderImageResponse picture_;
   v1::RenderJobInput input_;
-  std::string path_;  // the file's path; empty if unknown
+  std::string path_;  // path of the storm file; empty if unknown
   std::optional<base::FileStamp> stamp_;
   absl::Status status_;
   PictureJob job_;

@@ -7,8 +7,9 @@
 
 namespace thunderhead::service {
 
-// Returns the function that begins a job's picture. Its orders come from OrderOf, and a picture's
-// description is a FetchRenderResultResponse. `engine` must outlive the function and its pictures.
+// Returns the function that begins a picture of a job. The picture's order was made by OrderOf, and
+// its description is a FetchRenderResultResponse. `engine` must outlive the function and its
+// pictures.
 jobs::BeginPicture JobPictures(Engine& engine, const JobFiles& files);
 
 }  // namespace thunderhead::service

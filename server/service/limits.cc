@@ -13,7 +13,7 @@ namespace {
 // Retry delays for a full session, and for a picture that this machine draws too slowly.
 constexpr std::chrono::seconds kViewerRetry{30};
 constexpr std::chrono::seconds kRenderRetry{60};
-// Retry delay for requests that are too large, for which only the operator can help.
+// Retry delay for requests that are too large. Only an operator can raise the limit.
 constexpr std::chrono::minutes kSizeRetry{60};
 
 absl::Status TooLarge(const std::string& what, std::uint64_t number, std::uint64_t maximum,

@@ -39,11 +39,11 @@ bool Bind(int socket, const std::string& name) {
   return bind(socket, reinterpret_cast<const sockaddr*>(&address), bytes) == 0;
 }
 
-// Limits the warnings, because any user of this machine may connect at any rate.
+// Maximum number of warnings per second. Any user of this machine may try to connect, at any rate.
 constexpr int kMaxWarningsPerSecond = 5;
 
-// Returns true for a process of this process' user. Root is refused too, because it has no need to
-// connect.
+// Returns true if the connecting process belongs to the same user as this process. Root is refused
+// too, because it has no need to connect.
 bool IsOwnUser(int connection, base::LineLimit& warnings) {
   ucred peer{};
   socklen_t bytes = sizeof(peer);

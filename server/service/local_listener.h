@@ -1,5 +1,5 @@
-// The socket through which the gateway and the command line reach the service in their own process.
-// It accepts only connections of this process' user, and passes them to gRPC.
+// The local socket through which the gateway and the command line reach the service in the same
+// process. It accepts only connections of the process' user, and passes them to gRPC.
 #pragma once
 
 #include <grpcpp/server.h>
@@ -15,11 +15,11 @@ namespace thunderhead::service {
 
 class LocalListener {
  public:
-  // Accepts connections for `server` until it is destroyed. It must be destroyed before the server
-  // shuts down.
+  // Accepts connections for `server` until this object is destroyed. That must happen before the
+  // server shuts down.
   static absl::StatusOr<std::unique_ptr<LocalListener>> Start(grpc::Server& server);
 
-  // Returns its address in the notation of gRPC's clients.
+  // Returns the socket's address in the notation of gRPC's clients.
   const std::string& address() const { return address_; }
 
  private:

@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookPause{100};
 
-// A connection counts as used for this long after its last call, because some handlers respond
-// after they have released the caller.
+// A connection counts as used until this long after its last call, because some handlers release
+// the caller before they respond.
 constexpr std::chrono::seconds kJustUsed{10};
 
 }  // namespace
@@ -46,7 +46,7 @@ std::optional<std::string> OpenSockets::PeerOf(int socket) {
 }
 
 bool OpenSockets::Take(int socket, const std::string& peer, Clock::time_point now) {
-  // The descriptor's number belonged to a connection that is closed now.
+  // If the descriptor's number is known, it belonged to a connection that is closed by now.
   if (const auto closed = open_.find(socket); closed != open_.end()) Forget(closed);
   const Open newcomer{peer, base::NetworkOf(peer), now};
   const auto is_full = [&] { return open_.size() >= most_ || HasItsShare(newcomer); };
@@ -55,7 +55,7 @@ bool OpenSockets::Take(int socket, const std::string& peer, Clock::time_point no
     const std::string* const own = HasItsShare(newcomer) ? &newcomer.network : nullptr;
     if (!CloseLeastNeeded(own, now)) return false;
   }
-  // The same peer may have belonged to a connection that is closed now.
+  // If the same peer is known, it belonged to a connection that is closed by now.
   for (auto open = open_.begin(); open != open_.end();) {
     const auto at = open++;
     if (at->second.peer == peer && peer_of_(at->first) != peer) open_.erase(at);
@@ -111,8 +111,8 @@ void OpenSockets::CloseUnused(std::chrono::milliseconds unused, Clock::time_poin
 
 void OpenSockets::Close(std::map<int, Open>::iterator open) {
   const auto& [socket, connection] = *open;
-  // gRPC sees the end of the connection and closes it. Since gRPC owns the descriptor, it may have
-  // closed it just now.
+  // After the shutdown, gRPC sees the end of the connection and closes it. gRPC owns the descriptor
+  // and may just have closed it, so the peer is compared first.
   if (peer_of_(socket) == connection.peer) shutdown(socket, SHUT_RDWR);
   Forget(open);
 }

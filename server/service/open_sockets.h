@@ -1,6 +1,6 @@
-// Counts the open connections, in total and per address, although other objects own and close them.
-// It checks their descriptors again when there seem to be too many. A new connection then replaces
-// one that has no call. It must be used by one thread only.
+// Counts the open connections, in total and per address. Other objects own and close the
+// connections; this class checks their descriptors when the maximum seems to be reached. A new
+// connection beyond the maximum replaces a connection without a call. Used by one thread only.
 #pragma once
 
 #include <chrono>
@@ -21,9 +21,9 @@ class OpenSockets {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // `most` limits all connections, and `most_per_address` those of one address, or of one network
-  // (/64) with IPv6. Addresses in `proxies` are limited only by `most`. `calls` reports which
-  // connections have calls. Tests replace `peer_of`.
+  // `most` limits all connections, and `most_per_address` those of one IPv4 address or IPv6 network
+  // (/64). Only `most` applies to addresses in `proxies`. `calls` reports which connections have
+  // calls. Tests replace `peer_of`.
   OpenSockets(std::size_t most, std::size_t most_per_address, base::TrustedProxies proxies,
               std::shared_ptr<ConnectionCalls> calls,
               std::function<std::optional<std::string>(int)> peer_of = PeerOf)
@@ -37,14 +37,15 @@ class OpenSockets {
   // is not connected.
   static std::optional<std::string> PeerOf(int socket);
 
-  // Counts a connection. At the maximum, in total or of the peer's address, it shuts down another
-  // connection without a call. That connection belongs to the peer's address, or to the address
-  // with the most connections. It is the one that has been without a call for longest; connections
-  // that never had a call come first. Returns false if all have calls. Checks for connections that
-  // were closed elsewhere at most ten times a second.
+  // Counts a new connection. If the maximum is reached (in total, or of the peer's address), shuts
+  // down another connection without a call. This connection belongs to the peer's address, or to
+  // the address with the most connections if the total is reached. Connections that never had a
+  // call are shut down first, then those without a call for longest. Returns false if all of them
+  // have calls. Connections that other objects have closed are searched for at most ten times a
+  // second.
   bool Take(int socket, const std::string& peer, Clock::time_point now);
 
-  // Shuts down the connections that have been without a call for that long.
+  // Shuts down the connections that have had no call for `unused` or longer.
   void CloseUnused(std::chrono::milliseconds unused, Clock::time_point now);
 
  private:
@@ -59,7 +60,7 @@ class OpenSockets {
   bool CloseLeastNeeded(const std::string* network, Clock::time_point now);
   void Close(std::map<int, Open>::iterator open);
   void ForgetClosed(Clock::time_point now);
-  // Removes a connection. Its use is kept if a newer connection has the same peer.
+  // Removes a connection. Its call counts are kept if a newer connection has the same peer.
   void Forget(std::map<int, Open>::iterator open);
   bool HasOpen(const std::string& peer) const;
 

@@ -20,7 +20,7 @@ namespace {
 
 using session::Clock;
 
-// Returns the answer to a request that is answered only if it is refused.
+// Returns the answer for a request that is answered only if it was refused.
 std::optional<v1::InteractResponse> RefusalOf(std::uint64_t request_id,
                                               const absl::Status& status) {
   if (status.ok()) return std::nullopt;
@@ -91,7 +91,8 @@ absl::Status PersonRequests::ChangeRoster(Asker& asker, const v1::InteractReques
         }
       },
       now);
-  asker.Wake();  // a person who follows again gets the message later, but sees the session at once
+  // Wakes the call, so that a person who follows again sees the session's view at once.
+  asker.Wake();
   return status;
 }
 
@@ -119,9 +120,9 @@ absl::Status PersonRequests::Update(const std::shared_ptr<Asker>& asker, std::ui
   return absl::OkStatus();
 }
 
-// Calls `take` with the camera, whose defaults are filled in, or with an error. It does so at once,
-// or on the executor if the defaults depend on the storm. If this function itself returns an error,
-// `take` is not called.
+// Calls `take` with the camera, after filling in its defaults, or with an error. The call happens
+// at once, or on the executor if the defaults depend on the storm. If this function returns an
+// error, `take` is not called.
 absl::Status PersonRequests::WithCamera(const std::shared_ptr<Asker>& asker,
                                         std::uint64_t request_id, const v1::Camera& message,
                                         TakeCamera take) {
@@ -158,8 +159,8 @@ absl::Status PersonRequests::Detach(const std::shared_ptr<Asker>& asker, std::ui
   return asked;
 }
 
-// Detaching waits until the own view exists, so that a person whose camera is refused keeps
-// following.
+// The person detaches only when the own view exists, so that a person whose camera is refused keeps
+// following the session's view.
 absl::Status PersonRequests::DetachTo(Asker& asker, std::uint64_t look, std::uint64_t returns,
                                       const absl::StatusOr<scene::Camera>& camera) {
   THUNDERHEAD_RETURN_IF_ERROR(camera.status());
@@ -201,7 +202,7 @@ absl::Status PersonRequests::Point(const v1::Point& point) {
   return session_->audience().Point(person_id_, ray, session_->Now());
 }
 
-// Finds the positions on the executor, because there are many.
+// Computes the mark's positions on the executor, because it may have many.
 absl::Status PersonRequests::AddMark(const std::shared_ptr<Asker>& asker, std::uint64_t request_id,
                                      const v1::AddMark& message) {
   THUNDERHEAD_RETURN_IF_ERROR(session_->audience().MayMark(person_id_));
@@ -239,8 +240,8 @@ absl::Status PersonRequests::PlaceMark(const std::shared_ptr<Asker>& asker,
           THUNDERHEAD_RETURN_IF_ERROR(status);
           return session::LineSeen(*session_, engine_.store, rays);
         });
-        // This precedes the announcement of the mark, because the person may draw the next one
-        // after it.
+        // The flag is reset before the mark is announced, because the person may draw the next mark
+        // as soon as the announcement arrives.
         drawing_ = false;
         const absl::Status drawn =
             positions_m.ok() ? Draw(*std::move(positions_m), color) : positions_m.status();

@@ -1,5 +1,5 @@
-// Handles the requests of a person who has joined a session: changes of its scene, the person's own
-// view, control, pointers and marks. The call itself delivers the frames.
+// Handles the requests of a person who has joined a session: changes of the session's scene, the
+// person's own view, control, pointers and marks. The Interact call itself delivers the frames.
 #pragma once
 
 #include <atomic>
@@ -20,17 +20,17 @@
 
 namespace thunderhead::service {
 
-// The call that sends the requests. Every pending request keeps a reference to it.
+// The Interact call that sent the requests. Every pending request keeps a reference to it.
 class Asker : public delivery::Viewer {
  public:
-  // Announces that the answer to a request will follow by Settle.
+  // Announces that the answer to a request will follow by a call of Settle.
   virtual void Await() = 0;
-  // Sends the answer to a request. Without an answer, the request was obeyed and nothing needs to
-  // be sent.
+  // Sends the answer to a request. No answer means that the request was carried out and nothing
+  // needs to be sent.
   virtual void Settle(const std::optional<v1::InteractResponse>& answer) = 0;
 };
 
-// Handles the requests of one person in one call, and is a part of the call's asker. Obey must be
+// Handles the requests of one person in one Interact call, of which it is a part. Obey must be
 // called by one thread at a time.
 class PersonRequests {
  public:
@@ -43,11 +43,11 @@ class PersonRequests {
         person_id_(person_id),
         participant_key_(std::move(participant_key)) {}
 
-  // Obeys a request at once, or calls Await on `asker` and obeys it later. An error is the reason
-  // for a refusal.
+  // Carries out a request immediately, or calls Await on `asker` and carries it out later. Returns
+  // an error if the request is refused.
   absl::Status Obey(const std::shared_ptr<Asker>& asker, const v1::InteractRequest& request);
-  // Returns the session that draws the person's own view; null while the person follows. Safe to
-  // call from any thread.
+  // Returns the session that draws the person's own view. Returns null while the person sees the
+  // session's view. Safe to call from any thread.
   std::shared_ptr<session::Session> OwnView();
 
  private:
@@ -61,8 +61,9 @@ class PersonRequests {
                           const v1::Camera& message, TakeCamera take);
   absl::Status Detach(const std::shared_ptr<Asker>& asker, std::uint64_t request_id,
                       const v1::Detach& detach);
-  // Detaches unless the person has returned to the session's view since the request. `returns` is
-  // the number of returns at the time of the request.
+  // Opens the person's own view, unless the person has returned to the session's view since the
+  // request. `returns` is Person::returns at the time of the request. The number of the camera
+  // request is `look` (LookingAround::Begin).
   absl::Status DetachTo(Asker& asker, std::uint64_t look, std::uint64_t returns,
                         const absl::StatusOr<scene::Camera>& camera);
   absl::Status MoveCamera(const std::shared_ptr<Asker>& asker, std::uint64_t request_id,

@@ -23,7 +23,8 @@ namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-// Returns the picture as linear radiance in OpenEXR. Its estimated error is not known yet.
+// Encodes the picture as linear radiance in OpenEXR, without its estimated error, which is not
+// known yet.
 absl::StatusOr<std::string> EncodeLight(drawing::DisplayFrame& picture,
                                         const volume::HydrometeorFields& fields,
                                         const storm_store::StormInfo* storm,
@@ -56,8 +57,8 @@ void Describe(const drawing::DisplayFrame& picture, double encode_ms,
   if (picture.accuracy.has_value()) ToMessage(*picture.accuracy, *response.mutable_accuracy());
 }
 
-// Adds the description of a picture to a PNG file. To an OpenEXR file it adds the values that were
-// unknown when the file was encoded. `storm` is null if the storm no longer exists.
+// Adds the description to the picture's file. A PNG file gets all texts. An OpenEXR file gets only
+// the values that were unknown when it was encoded. `storm` is null if the storm no longer exists.
 void AddTexts(const storm_store::StormInfo* storm, v1::RenderImageResponse& response) {
   if (response.format() == v1::IMAGE_FORMAT_EXR && response.has_accuracy()) {
     picture::SetExrNumber(kErrorText, response.accuracy().estimated_error(),
@@ -67,7 +68,7 @@ void AddTexts(const storm_store::StormInfo* storm, v1::RenderImageResponse& resp
   response.set_image(frame::WithTexts(response.image(), TextsOf(response, *storm)));
 }
 
-// Errors of drawing do not concern a single field, so they name the whole scene.
+// Errors of drawing do not concern a single field of the scene, so they name the whole scene.
 absl::Status OfScene(const absl::Status& status) {
   return base::WithDetails(status, {.reason = "SCENE_NOT_DRAWN", .field = "scene"});
 }

@@ -1,5 +1,5 @@
-// One picture of the service, from its request to its bytes. It serves both calls that wait for the
-// picture, and render jobs.
+// One picture outside sessions, from its request to its bytes. It serves calls that wait for the
+// picture (RenderImage), and render jobs.
 #pragma once
 
 #include <atomic>
@@ -19,7 +19,7 @@ class PictureListener {
  public:
   // Reports the progress of path tracing. It must not block.
   virtual void Progressed(const drawing::ImageProgress& /*progress*/) {}
-  // Reports the end; it is the last call and happens once. If `status` is OK, the response is
+  // Reports the end. It is called once, as the last call. If `status` is OK, the response is
   // complete.
   virtual void Ended(const absl::Status& status) = 0;
 
@@ -27,12 +27,12 @@ class PictureListener {
   ~PictureListener() = default;
 };
 
-// Whether a call waits for the picture. A picture without a waiting call lets others go first.
+// Whether a call waits for the picture. Pictures with a waiting call are drawn first.
 enum class Awaited { kByACall, kByNobody };
 
-// Reads, draws and encodes a picture in a lane of the render loop, which also ends the job. All
-// arguments must live until then. `owner` is the identity whose share of drawing time the picture
-// uses.
+// Reads, draws and encodes a picture in a lane of the render loop. All arguments must live until
+// PictureListener::Ended is called. `owner` is the identity to whose share of drawing time the
+// picture counts.
 class PictureJob {
  public:
   PictureJob(Engine& engine, const v1::RenderImageRequest& request,
@@ -46,7 +46,7 @@ class PictureJob {
         owner_(std::move(owner)) {}
 
   void Begin();
-  // Cancels the picture at its next piece of work. Safe to call from any thread.
+  // Cancels the picture before its next piece of work. Safe to call from any thread.
   void Cancel();
 
  private:
@@ -64,9 +64,9 @@ class PictureJob {
   const Awaited awaited_;
   const std::string owner_;
   double encode_ms_ = 0.0;
-  // The memory of the picture, held until delivery.
+  // The memory of the picture, held until the picture is delivered.
   std::shared_ptr<const base::MemoryReservation> memory_;
-  // The fields of a picture with linear radiance, kept until delivery.
+  // The fields of a picture with linear radiance, kept until the picture is delivered.
   std::shared_ptr<const volume::HydrometeorFields> fields_;
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };

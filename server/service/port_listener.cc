@@ -18,7 +18,7 @@
 namespace thunderhead::service {
 namespace {
 
-// Number of checks of the connections within the timeout of an unused connection.
+// The connections are checked this many times within the timeout of an unused connection.
 constexpr int kLooks = 10;
 
 struct HostAndPort {
@@ -26,7 +26,7 @@ struct HostAndPort {
   std::string port;
 };
 
-// Splits an address; the host is without the brackets of an IPv6 address.
+// Splits "HOST:PORT". The host is returned without the brackets of an IPv6 address.
 HostAndPort Split(const std::string& address) {
   const std::size_t colon = address.rfind(':');
   HostAndPort parts{address.substr(0, colon), address.substr(colon + 1)};
@@ -64,10 +64,10 @@ base::FileDescriptor ListenOn(const addrinfo& at, std::chrono::milliseconds unan
       ::socket(at.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket.IsOpen()) return {};
   Set(socket.Get(), SOL_SOCKET, SO_REUSEADDR, 1);
-  // [::] accepts IPv4 as well. Each accepted connection inherits the options set here.
+  // A socket on [::] accepts IPv4 too. Each accepted connection inherits the options set here.
   if (at.ai_family == AF_INET6) Set(socket.Get(), IPPROTO_IPV6, IPV6_V6ONLY, 0);
   Set(socket.Get(), IPPROTO_TCP, TCP_NODELAY, 1);
-  // gRPC's own keepalive does not end a connection in the middle of a message, so the socket has a
+  // gRPC's keepalive does not end a connection in the middle of a message, so the socket gets a
   // timeout too.
   Set(socket.Get(), IPPROTO_TCP, TCP_USER_TIMEOUT, static_cast<int>(unanswered.count()));
   if (bind(socket.Get(), at.ai_addr, at.ai_addrlen) != 0) return {};
@@ -87,7 +87,8 @@ absl::StatusOr<std::unique_ptr<PortListener>> PortListener::Open(
     for (const addrinfo* at = found.get(); at != nullptr; at = at->ai_next) {
       base::FileDescriptor socket = ListenOn(*at, unanswered);
       if (!socket.IsOpen()) continue;
-      // With port 0, each address would get a different port.
+      // With port 0, each address would get a different port, so the first one's port is used for
+      // all.
       const int its_port = PortOf(socket.Get());
       if (sockets.empty()) port = its_port;
       if (its_port == port) sockets.push_back(std::move(socket));
@@ -95,7 +96,7 @@ absl::StatusOr<std::unique_ptr<PortListener>> PortListener::Open(
   };
   const bool all = parts.host == "0.0.0.0" || parts.host == "::";
   listen(all ? "::" : parts.host);
-  // A machine without IPv6 needs this address.
+  // On a machine without IPv6, 0.0.0.0 must be used instead of [::].
   if (all && sockets.empty()) listen("0.0.0.0");
   if (!sockets.empty()) {
     return std::unique_ptr<PortListener>(new PortListener(std::move(sockets), port));
@@ -107,7 +108,7 @@ absl::StatusOr<std::unique_ptr<PortListener>> PortListener::Open(
 
 absl::Status PortListener::Start(Acceptor acceptor, OpenSockets open, const Options& options,
                                  Refused refused) {
-  // The objects are shared, because functions have to be copyable.
+  // The objects are held by shared pointers, because std::function must be copyable.
   const auto sockets = std::make_shared<OpenSockets>(std::move(open));
   const auto handshakes = std::make_shared<base::Allowances>(options.handshakes_per_address);
   auto take = [acceptor = std::shared_ptr(std::move(acceptor)), sockets, handshakes,

@@ -1,5 +1,5 @@
-// The TCP port of gRPC. gRPC's own listener has no limit on connections, so that idle connections
-// could use up the process's file descriptors.
+// The TCP port of the gRPC server. gRPC's own listener does not limit the number of connections, so
+// that idle connections could use up the process's file descriptors. This listener does.
 #pragma once
 
 #include <grpcpp/server_builder.h>
@@ -22,27 +22,28 @@ namespace thunderhead::service {
 class PortListener {
  public:
   using Acceptor = std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>;
-  // Called on the listener's thread when a new connection was refused, with the reason.
+  // Called on the listener's thread when a new connection from `peer` was refused because of `why`.
   using Refused = std::function<void(const std::string& peer, const absl::Status& why)>;
 
   struct Options {
-    std::chrono::milliseconds unused;                    // timeout of connections without a call
-    double handshakes_per_address = 0.0;                 // as in Limits; 0 means no limit
-    base::TrustedProxies proxies;                        // addresses without these limits
+    std::chrono::milliseconds unused;     // timeout of connections without a call
+    double handshakes_per_address = 0.0;  // as Limits::max_handshakes_per_address
+    // Addresses to which the limits per address do not apply.
+    base::TrustedProxies proxies;
     const base::TimeSource* time = &base::SteadyTime();  // must outlive the listener
   };
 
-  // Listens on "HOST:PORT", where port 0 picks a free one. Connections wait until Start. The hosts
-  // 0.0.0.0 and [::] mean all addresses of this machine, both IPv4 and IPv6. `unanswered` limits
-  // the time until the peer acknowledges data that was sent. Returns UNAVAILABLE if listening
-  // fails.
+  // Listens on "HOST:PORT"; port 0 picks a free port. Connections wait until Start. The hosts
+  // 0.0.0.0 and [::] mean all addresses of this machine, both IPv4 and IPv6. If a peer does not
+  // acknowledge sent data within `unanswered`, its connection is closed. Returns UNAVAILABLE if
+  // listening fails.
   static absl::StatusOr<std::unique_ptr<PortListener>> Open(const std::string& address,
                                                             std::chrono::milliseconds unanswered);
 
   int Port() const { return port_; }
 
   // Passes connections to `acceptor` until this object is destroyed. It must be destroyed before
-  // its server shuts down.
+  // the gRPC server shuts down.
   absl::Status Start(Acceptor acceptor, OpenSockets open, const Options& options, Refused refused);
 
  private:

@@ -15,10 +15,10 @@
 namespace thunderhead::service {
 namespace {
 
-// A request with its defaults, and the scene that it refers to.
+// A request with its defaults filled in, and the scene that it refers to.
 struct Asked {
   v1::ProbeRayRequest request;
-  ReadScene scene;  // at revision 0 without a session
+  ReadScene scene;  // its revision is 0 if the request names no session
   storm_store::StormInfoPtr storm;
 };
 

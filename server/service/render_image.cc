@@ -64,7 +64,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
-      // A disconnected client also cancels the drawing.
+      // If the client has disconnected, the drawing is cancelled too.
       if (!end_.has_value()) return;
       if (!ok) end_ = grpc::Status(grpc::StatusCode::CANCELLED, "the client is gone");
     }
@@ -100,13 +100,13 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     {
       const std::lock_guard lock(mutex_);
       end_ = ToGrpcStatus(status);
-      if (writing_) return;  // OnWriteDone writes the end
+      if (writing_) return;  // OnWriteDone then writes the end
     }
     WriteEnd();
   }
 
-  // Writes the next chunk, or the end. It must be called only while no write is pending, and is
-  // called again after each chunk.
+  // Writes the next chunk, or ends the call after the last one. It must be called only while no
+  // write is pending, and is called again after each chunk.
   void WriteEnd() {
     if (!end_->ok()) {
       delivery_.Begin(0);
@@ -141,8 +141,8 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
 
 }  // namespace
 
-// gRPC receives a reactor that has begun. If its start throws an exception, it is destroyed here
-// and releases its caller's place.
+// Once a reactor has begun, gRPC owns it. If its start throws an exception, it is destroyed here,
+// and the caller's pending call is no longer counted.
 grpc::ServerUnaryReactor* RenderImage(Engine& engine, grpc::CallbackServerContext* context,
                                       const CallerRef& caller,
                                       const v1::RenderImageRequest* request,

@@ -1,4 +1,5 @@
-// Declares one handler for each rpc of RenderJobService, defined in the file named after it.
+// Declares one handler for each rpc of RenderJobService. Each is defined in the file that is named
+// after the rpc.
 #pragma once
 
 #include <grpcpp/support/server_callback.h>
@@ -36,7 +37,8 @@ grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, const Limits& limits
                                           const v1::CancelRenderJobRequest* request,
                                           v1::CancelRenderJobResponse* response);
 
-// The means to read files of results: separate threads, and calls with a timeout to the storage.
+// What FetchRenderResult needs to read result files: separate threads, and calls to the storage
+// with a timeout.
 struct ResultReading {
   base::Executor& threads;
   base::PatientCalls& calls;

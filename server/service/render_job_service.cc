@@ -22,8 +22,8 @@ RenderJobService::RenderJobService(Engine& engine, access::Door& door, Connectio
     : engine_(engine),
       jobs_(jobs),
       entrance_(door, calls, jobs != nullptr ? absl::OkStatus() : NoJobs()),
-      // A stream waits for one read at a time, and access control limits the streams. So the
-      // executor refuses no read.
+      // The executor refuses no read: each stream waits for at most one read at a time, and the
+      // access control limits the number of streams.
       reading_({.threads = kReadingThreads,
                 .max_waiting = door.limits().max_streams,
                 .max_waiting_each = door.limits().max_streams_per_identity}),

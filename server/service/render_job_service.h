@@ -1,5 +1,5 @@
-// The render job service as gRPC calls it. It checks access for each call and dispatches the call
-// to its handler.
+// RenderJobService as gRPC calls it. It checks access for each call and dispatches the call to its
+// handler (render_job_handlers.h).
 #pragma once
 
 #include <chrono>
@@ -42,8 +42,8 @@ class RenderJobService final : public v1::RenderJobService::CallbackService {
   void Stop() { reading_.Stop(); }
 
  private:
-  // One identity may use two threads, and one is left for others, so that a large file on a slow
-  // disk delays few callers.
+  // One identity may use two of these threads, so that one thread is left for others. A large file
+  // on a slow disk then delays few callers.
   static constexpr int kReadingThreads = 3;
 
   Engine& engine_;

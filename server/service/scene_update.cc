@@ -22,10 +22,10 @@ using google::protobuf::util::FieldMaskUtil;
 
 using google::protobuf::FieldDescriptor;
 
-// Returns the fields that a path of an update mask names, from the scene's own field down to the
-// last. Returns INVALID_ARGUMENT for an empty component or for a name that the preceding message
-// does not have. It does so too for a path that continues after a field that is not a single
-// message. Every later step uses this result, so reflection never gets an unchecked name.
+// Returns the fields that a path of an update mask names, from the scene's own field to the last
+// one. Returns INVALID_ARGUMENT for an empty component, for a name that does not exist, or for a
+// path that continues after a field that is not a single message. Every later step uses this
+// result, so reflection never gets an unchecked name.
 absl::StatusOr<std::vector<const FieldDescriptor*>> FieldsOf(const std::string& path) {
   std::vector<const FieldDescriptor*> fields;
   const google::protobuf::Descriptor* message = v1::Scene::descriptor();
@@ -45,8 +45,8 @@ absl::StatusOr<std::vector<const FieldDescriptor*>> FieldsOf(const std::string& 
   return fields;
 }
 
-// Returns INVALID_ARGUMENT for a path into a different kind of camera or technique than the scene
-// has, because it would replace the scene's own kind.
+// Returns INVALID_ARGUMENT for a path into another kind of camera or technique than the scene has,
+// because setting it would replace the scene's kind.
 absl::Status CheckKinds(const v1::Scene& scene, const std::string& path,
                         const std::vector<const FieldDescriptor*>& fields) {
   const google::protobuf::Message* message = &scene;
@@ -65,7 +65,7 @@ absl::Status CheckKinds(const v1::Scene& scene, const std::string& path,
   return absl::OkStatus();
 }
 
-// Returns the session's newest scene, with the fields that the mask names replaced.
+// Returns the session's newest scene in which the fields that the mask names are replaced.
 absl::StatusOr<v1::Scene> Merged(v1::Scene scene, const SceneChange& change) {
   for (const std::string& path : change.update_mask.paths()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, FieldsOf(path));
@@ -86,7 +86,7 @@ absl::StatusOr<ReadScene> Read(std::uint64_t revision, const std::string& serial
   return read;
 }
 
-// Returns the newest accepted scene, even if it still waits for its storm.
+// Returns the scene of the newest accepted update, even if this scene still waits for its storm.
 absl::StatusOr<ReadScene> NewestTakenOf(session::Session& session) {
   const std::optional<session::SerializedScene> newest = session.NewestTaken();
   if (!newest.has_value()) return absl::InternalError("the session has no scene yet");
@@ -103,7 +103,7 @@ absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const Sc
   Changed changed{0, std::make_shared<v1::Scene>(change.scene)};
   std::optional<std::uint64_t> expected = change.expected_revision;
   if (change.update_mask.paths_size() > 0) {
-    // The fields that are not named must come from the newest scene.
+    // Fields that the mask does not name come from the newest scene.
     THUNDERHEAD_ASSIGN_OR_RETURN(ReadScene newest, NewestTakenOf(session));
     if (!expected.has_value()) expected = newest.revision;
     THUNDERHEAD_ASSIGN_OR_RETURN(*changed.scene, Merged(std::move(newest.scene), change));
@@ -123,8 +123,8 @@ absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const Sc
   return changed;
 }
 
-// Returns the error for a person who lost control and regained it, while another person changed the
-// scene.
+// Returns the error for a person who lost control and then regained it. Meanwhile another person
+// changed the scene, so the update is no longer valid.
 absl::Status Overruled() {
   return base::WithDetails(
       absl::AbortedError("somebody else steered while the storm of this update was read, and "

@@ -1,4 +1,4 @@
-// Changes to a session's scene, however they arrive.
+// Changes of a session's scene, by UpdateScene or Interact.
 #pragma once
 
 #include <cstdint>
@@ -32,21 +32,21 @@ struct ReadScene {
 };
 absl::StatusOr<ReadScene> NewestSceneOf(const session::Session& session);
 
-// Shows a complete scene, as Session::Show does.
+// Shows a complete scene. The result is that of Session::Show.
 bool ShowScene(const storm_store::StormStore& store, session::Session& session,
                std::uint64_t revision, const v1::Scene& scene);
 
-// Completes the changed scene and shows it, then calls `done` with its revision. That happens at
-// once, or on another thread if the storm must be read to place the camera.
+// Completes the changed scene, shows it, and calls `done` with its revision. All this happens at
+// once, or later on another thread if the storm must be read to place the camera.
 //
-// `may` reports whether the caller may change the scene. It is called first. It is called again
-// before the scene is shown, because control may pass to another person during the read. It is also
-// called when another change arrives meanwhile; a change that is no longer permitted does not block
-// the other one.
+// `may` returns OK if the caller may change the scene. It is called first. It is called again
+// before the scene is shown, because control may pass to another person while the storm is read. It
+// is also called when another change arrives meanwhile: a change that is no longer permitted does
+// not block the other change.
 //
-// The change's limits must have been checked. `owner` is the caller's identity. Returns
-// INVALID_ARGUMENT and NOT_FOUND as PrepareScene does, and ABORTED if the scene is at another
-// revision.
+// The change's limits must have been checked before. `owner` is the caller's identity. The errors
+// passed to `done` are INVALID_ARGUMENT and NOT_FOUND as by PrepareScene, and ABORTED if the scene
+// is not at the expected revision.
 void ChangeScene(Engine& engine, const std::string& owner,
                  const std::shared_ptr<session::Session>& session, const SceneChange& change,
                  std::function<absl::Status()> may,

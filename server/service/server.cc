@@ -38,14 +38,15 @@ namespace {
 
 // Size of the largest uncompressed picture that CheckScene allows, with a margin.
 constexpr int kMaxResponseBytes = 128 << 20;
-// A viewer that disappeared without closing its connection is detected after the sum of these.
+// Time and timeout of gRPC's keepalive pings. A viewer that disappeared without closing its
+// connection is detected after their sum.
 constexpr int kKeepaliveTimeMs = 20'000;
 constexpr int kKeepaliveTimeoutMs = 10'000;
-// Timeouts for a client that connects and sends nothing, or starts no call.
+// Timeouts for a client that connects and sends nothing, and for one that starts no call.
 constexpr int kHandshakeTimeoutMs = 10'000;
 constexpr int kIdleConnectionMs = 60'000;
-// Maximum number of threads for services whose calls occupy a thread each, which is only
-// reflection. Further calls are refused.
+// Maximum number of threads for calls that occupy a thread each. Only gRPC's reflection service has
+// such calls. Further calls are refused.
 constexpr int kMaxCallThreads = 16;
 
 std::shared_ptr<grpc::ServerCredentials> CredentialsOf(const TlsFiles& files) {
@@ -77,8 +78,8 @@ Limits LimitsOf(const ServerOptions& options) {
   return limits;
 }
 
-// Makes gRPC refuse compressed requests with UNIMPLEMENTED and inflate none. A megabyte of gzip may
-// hold a gigabyte, and gRPC inflates a message before it checks its size.
+// Makes gRPC refuse compressed requests with UNIMPLEMENTED. A megabyte of gzip may contain a
+// gigabyte, and gRPC would decompress a message before it checks the size.
 void RefuseCompression(grpc::ServerBuilder& builder) {
   for (const auto algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
     builder.SetCompressionAlgorithmSupportStatus(algorithm, false);
@@ -243,11 +244,12 @@ class RunningServer final : public Server {
   void Shutdown() override {
     health_.SetServing(false);
     if (jobs_ != nullptr) jobs_->CancelPictures();
-    // This comes first, so that no picture is started after a client has seen its stream end.
+    // The loop is stopped first, so that no picture is started after a client has seen its stream
+    // end.
     if (loop_ != nullptr) loop_->RequestStop();
     sessions_.CloseAll(base::ShuttingDown());
     if (loop_ != nullptr) loop_->Stop();
-    // These follow the loop, which has ended their pictures.
+    // The jobs stop after the loop, which has ended their pictures.
     if (jobs_ != nullptr) jobs_->Stop();
     if (job_service_ != nullptr) job_service_->Stop();
     executor_.Stop();
@@ -257,7 +259,7 @@ class RunningServer final : public Server {
       server_->Shutdown(std::chrono::system_clock::now() + shutdown_grace_);
       server_->Wait();
     }
-    // This comes last, because calls wait for it.
+    // The keeper ends last, because calls wait for its saves.
     keeper_.reset();
   }
 
@@ -280,7 +282,7 @@ class RunningServer final : public Server {
   std::unique_ptr<session::SessionKeeper> keeper_;
   std::unique_ptr<CatalogueFollower> catalogue_;
   std::unique_ptr<Engine> engine_;
-  std::unique_ptr<jobs::Jobs> jobs_;  // null if none are kept
+  std::unique_ptr<jobs::Jobs> jobs_;  // null if the server keeps no render jobs
   std::unique_ptr<grpc::Service> service_;
   std::unique_ptr<RenderJobService> job_service_;
   HealthService health_{v1::ThunderheadService::service_full_name()};

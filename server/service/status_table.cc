@@ -19,16 +19,16 @@ using std::chrono::milliseconds;
 
 constexpr char kDomain[] = "thunderhead";
 
-// Limits of the texts. gRPC drops a status of more than 8 KiB, and a shader's log may be longer. A
-// status contains its message twice, the second time as base64 in the details.
+// Maximum sizes of an error's texts. gRPC drops a status of more than 8 KiB, and a shader's error
+// log may be longer. A status contains its message twice, the second time as base64 in the details.
 constexpr std::size_t kMaxMessageBytes = 2000;
 constexpr std::size_t kMaxDetailBytes = 600;
 
 struct Row {
   absl::StatusCode engine;
   grpc::StatusCode wire;
-  const char* reason;  // default, if the status has none
-  // The default if the status has none; 0 means that a retry does not help.
+  const char* reason;  // default reason, if the status has none
+  // Default retry delay, if the status has none. 0 means that a retry does not help.
   milliseconds retry_after = {};
 };
 
@@ -41,7 +41,7 @@ constexpr std::array kTable = {
     Row{absl::StatusCode::kUnauthenticated, grpc::StatusCode::UNAUTHENTICATED, "UNAUTHENTICATED"},
     Row{absl::StatusCode::kPermissionDenied, grpc::StatusCode::PERMISSION_DENIED,
         "PERMISSION_DENIED"},
-    // A retry may succeed, because memory may become free later.
+    // Memory may become free later, so a retry may succeed.
     Row{absl::StatusCode::kResourceExhausted, grpc::StatusCode::RESOURCE_EXHAUSTED,
         "RESOURCE_EXHAUSTED", std::chrono::seconds(30)},
     Row{absl::StatusCode::kFailedPrecondition, grpc::StatusCode::FAILED_PRECONDITION,
@@ -66,7 +66,7 @@ const Row& RowOf(absl::StatusCode code) {
 }
 
 // Returns the text made printable, as protobuf strings and log lines require, and truncated to
-// `max_bytes`. The size is that of the encoding of grpc-message, which writes three bytes for each
+// `max_bytes`. The size is counted in the encoding of grpc-message, which uses three bytes for each
 // byte outside ASCII.
 std::string Sendable(std::string_view text, std::size_t max_bytes) {
   std::string printable = base::Printable(text);
@@ -132,7 +132,7 @@ grpc::Status ToGrpcStatus(const absl::Status& status) {
   telemetry::Counted().refusals.Of(details.reason.empty() ? row.reason : details.reason).Add();
   google::rpc::Status all;
   all.set_code(row.wire);
-  // Clients that read the details expect code and message there too.
+  // Clients that read the details expect the code and the message there too.
   all.set_message(message);
   all.add_details()->PackFrom(ErrorInfoOf(details, row));
   const milliseconds retry_after =

@@ -1,4 +1,4 @@
-// Restores the scenes of sessions that were saved while the server was down, perhaps by an older
+// Restores the scenes of stored sessions after a restart. They may have been stored by an older
 // version of this program.
 #pragma once
 
@@ -12,8 +12,9 @@
 
 namespace thunderhead::service {
 
-// Checks the scene like a client's, and fills in the defaults of fields that its writer did not
-// know. The storm may no longer exist; viewers of the session are then informed.
+// Checks the scene like a scene from a client, and fills in the defaults of fields that the writing
+// version did not know. The scene's storm may no longer exist; the session's viewers are then
+// informed by a Problem.
 absl::StatusOr<session::DecodedScene> DecodeStoredScene(
     const storm_store::StormStore& store, const std::vector<scene::TechniqueInfo>& techniques,
     const std::string& serialized);

@@ -10,8 +10,8 @@
 namespace thunderhead::service {
 namespace {
 
-// The service's base class: Interact uses bytes and all other calls use messages. gRPC needs a
-// generated class for each call.
+// The base class of the service. Interact uses bytes and all other calls use messages. For each
+// call, gRPC needs a generated class in this chain.
 using Generated = v1::ThunderheadService;
 using Calls = Generated::WithCallbackMethod_GetServerInfo<Generated::WithCallbackMethod_ListStorms<
     Generated::WithCallbackMethod_DescribeStorm<Generated::WithCallbackMethod_GenerateCloud<

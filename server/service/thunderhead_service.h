@@ -1,5 +1,5 @@
-// The service as gRPC calls it. It checks access for each call and dispatches the call to its
-// handler.
+// ThunderheadService as gRPC calls it. It checks access for each call and dispatches the call to
+// its handler (handlers.h).
 #pragma once
 
 #include <grpcpp/impl/service_type.h>

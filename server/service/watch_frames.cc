@@ -90,11 +90,12 @@ class FrameStream : public FramesReactor,
   }
 
   void OnDone() override {
-    // This comes first, because a session without viewers expires sooner.
+    // Touch comes first, because a session expires sooner once it has no viewers.
     session_->Touch();
     if (viewer_id_ != 0) session_->hub().Leave(viewer_id_);
     session_->audience().RemoveOnlooker();
-    delivery_.reset();  // because the hub may keep the stream for longer
+    // Ends the deadline here, because the hub may keep the stream alive for longer.
+    delivery_.reset();
     held_by_grpc_.reset();
   }
 
@@ -108,7 +109,8 @@ class FrameStream : public FramesReactor,
     return ToGrpcStatus(closed);
   }
 
-  // Sets the response. `writing_` is set, so no other thread accesses the response.
+  // Sets the response. Must be called while `writing_` is set, so that no other thread uses the
+  // response.
   void SetResponse(const delivery::FrameEvent& event) {
     response_.set_viewer_id(viewer_id_);
     if (const auto* frame = std::get_if<std::shared_ptr<const delivery::EncodedFrame>>(&event)) {
@@ -134,18 +136,19 @@ class FrameStream : public FramesReactor,
   const CallerRef caller_;  // counts the stream while it lives
   std::shared_ptr<FrameStream> held_by_grpc_;
   v1::WatchFramesResponse response_;
-  // The revision of the scene sent last. It is accessed only while `response_` is accessed.
+  // The revision of the scene that was sent last. It is used under the same conditions as
+  // `response_`.
   std::uint64_t sent_revision_ = 0;
   std::mutex mutex_;
   std::uint64_t viewer_id_ = 0;
   bool writing_ = false;
   bool disconnected_ = false;
-  absl::Status known_;  // the reason why the caller may no longer watch
+  absl::Status known_;  // reason why the caller may no longer watch; OK while it may
   bool finished_ = false;
   std::optional<DeliveryDeadline> delivery_;
 };
 
-// Returns the session, which then counts one more onlooker.
+// Returns the session, after adding an onlooker to it.
 absl::StatusOr<std::shared_ptr<session::Session>> FindToWatch(
     Engine& engine, const v1::WatchFramesRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));

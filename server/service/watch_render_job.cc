@@ -85,13 +85,14 @@ class JobStream final : public JobReactor,
   }
 
   void OnDone() override {
-    delivery_.reset();  // because the jobs may keep the stream for longer
+    // Ends the deadline here, because the jobs may keep the stream alive for longer.
+    delivery_.reset();
     held_by_grpc_.reset();
   }
 
  private:
-  // Returns the status to end with if the stream ends now. Otherwise sets the response if there is
-  // news. The caller must hold mutex_.
+  // Returns the status with which the stream ends now. If it continues, sets the response to the
+  // changes since the last message, if any. The caller must hold mutex_.
   std::optional<grpc::Status> Next() {
     if (disconnected_) return grpc::Status(grpc::StatusCode::CANCELLED, "the client disconnected");
     if (!known_.ok()) return ToGrpcStatus(known_);
@@ -114,14 +115,14 @@ class JobStream final : public JobReactor,
   const CallerRef caller_;  // counts the stream while it lives
   const std::string id_;
   std::shared_ptr<JobStream> held_by_grpc_;
-  v1::WatchRenderJobResponse response_;  // gRPC reads it while `writing_`
+  v1::WatchRenderJobResponse response_;  // gRPC reads it while `writing_` is set
   std::mutex mutex_;
   std::uint64_t sent_version_ = 0;
   bool has_news_ = false;
   bool has_ended_ = false;
   bool writing_ = false;
   bool disconnected_ = false;
-  absl::Status known_;  // the reason why the caller may no longer watch
+  absl::Status known_;  // reason why the caller may no longer watch; OK while it may
   bool finished_ = false;
   std::optional<DeliveryDeadline> delivery_;
 };

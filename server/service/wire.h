@@ -1,5 +1,5 @@
-// Protobuf's wire format for messages that share their largest part. The shared bytes are
-// serialized once, and a short prefix completes each message.
+// Writes protobuf's wire format for messages that share their largest part. The shared bytes are
+// serialized once, and each message gets its own short prefix.
 #pragma once
 
 #include <grpcpp/support/byte_buffer.h>
@@ -14,7 +14,7 @@ namespace thunderhead::service {
 
 // Appends a field with a number or a bool.
 void AppendNumber(int field, std::uint64_t value, std::string* bytes);
-// Appends the tag and length of a field. Its `size` bytes must follow.
+// Appends the tag and length of a field with `size` bytes. The caller must append these bytes next.
 void AppendLength(int field, std::size_t size, std::string* bytes);
 
 // Returns a slice that shares the bytes without a copy and keeps them alive.

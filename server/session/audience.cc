@@ -8,7 +8,8 @@
 namespace thunderhead::session {
 namespace {
 
-// The caller of Hold limits how often the times change.
+// The minimum pause between updates of the times in memory is zero, because the caller of Hold
+// already limits how often they change.
 constexpr std::chrono::milliseconds kAtOnce{0};
 
 }  // namespace
@@ -253,7 +254,7 @@ Told Audience::Marks(std::uint64_t count) {
   return all;
 }
 
-// Sends the change of the marks. All the marks are serialized only when a person needs them.
+// Sends the change of the marks. All marks together are serialized only when a person needs them.
 void Audience::TellMarks(Time now) {
   marks_ = {{marks_.told.count + 1, nullptr}, board_.marks_revision(), now};
   marks_changes_.push_back(
@@ -278,7 +279,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
     gone.push_back(members_.at(id).viewer);
     Forget(id);
   }
-  // Places are found without the lock because that takes a while.
+  // The positions are computed without the lock, because this takes a while.
   if (!rays_.empty() && now >= pointers_.told_at + kPointersPause) {
     const auto rays = TakeRays();
     for (const auto& [id, ray] : rays) finding_.insert(id);
@@ -312,7 +313,7 @@ std::optional<Audience::Time> Audience::Tick(Time now, const Place& place) {
   return next;
 }
 
-// Takes rays in turn, so that many pointing people do not delay one another for long.
+// Takes rays of people in turn, so that many people who point do not delay one another for long.
 std::map<std::uint64_t, Ray> Audience::TakeRays() {
   std::map<std::uint64_t, Ray> taken;
   while (!rays_.empty() && taken.size() < kMaxFound) {

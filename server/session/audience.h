@@ -1,7 +1,7 @@
-// The people of a session and their connections. Changes the roster and the board under a lock and
-// sends the outcome to all of them. Each update is serialized once for all people, a few times a
-// second at most, and only the newest state is sent. Safe from any thread; knows no message
-// formats.
+// The people of a session and their connections. An Audience changes the roster (who is present and
+// who steers) and the board (pointers and marks) under a lock, and sends the new state to all
+// people. Each update is serialized once for all people and sent at most a few times a second;
+// older states are skipped. Safe from any thread. Knows no message formats.
 #pragma once
 
 #include <chrono>
@@ -24,7 +24,7 @@
 
 namespace thunderhead::session {
 
-// The times of a storm that are in memory.
+// The times of one storm's series whose fields are in memory.
 struct HeldTimes {
   std::string storm_id;
   std::vector<int> time_indices;
@@ -32,7 +32,7 @@ struct HeldTimes {
   bool operator==(const HeldTimes&) const = default;
 };
 
-// Serializes the updates for people into bytes, which are opaque here.
+// Functions that serialize the updates for people. The audience only passes the bytes on.
 struct AudienceFormat {
   std::function<std::string(const Roster&)> presence = [](const Roster&) { return ""; };
   std::function<std::string(const std::vector<Pointer>&)> pointers = [](const auto&) { return ""; };
@@ -41,13 +41,13 @@ struct AudienceFormat {
   std::function<std::string(const HeldTimes&)> held_times = [](const auto&) { return ""; };
 };
 
-// The last update about one subject that was sent to people.
+// The newest update of one subject (presence, pointers, marks, ...) that was sent to people.
 struct Told {
-  std::uint64_t count = 0;  // number of updates; 0: none yet
+  std::uint64_t count = 0;  // number of updates so far; 0 before the first
   std::shared_ptr<const std::string> bytes;
 };
 
-// A ray from a viewpoint.
+// A ray from a person's eye, on which the person points or draws.
 struct Ray {
   glm::dvec3 origin_m{0.0};
   glm::dvec3 direction{0.0, 1.0, 0.0};  // has length 1
@@ -62,21 +62,21 @@ class Audience {
   static constexpr std::chrono::milliseconds kScenePause{200};
   static constexpr std::chrono::milliseconds kPointersPause{33};
   static constexpr std::chrono::milliseconds kMarksPause{200};
-  // Maximum number of pointers whose places are found in one Tick. Further pointers wait for the
-  // next.
+  // Maximum number of pointers whose positions one Tick computes. The other pointers wait for the
+  // next Tick.
   static constexpr std::size_t kMaxFound = 8;
   // Number of changes of marks that are kept, which cover 6 s of continuous drawing. A person who
-  // has missed more gets all the marks.
+  // has missed more changes is sent all marks.
   static constexpr std::size_t kMaxMarksChanges = 32;
 
   // `on_due` is called, without the lock, when Tick must be called soon.
   Audience(const AudienceFormat& format, const Rules& rules, Board board, Time now,
            std::function<void()> on_due, const RosterTimeouts& timeouts = {});
 
-  // Adds a person. `member` is woken when there is an update for it. Marks with `owner_key` become
-  // the new person's. Returns none for a viewer if there are already `most` people, onlookers
-  // included. A returning person may exceed `most` by one because the lost connection may not have
-  // ended yet.
+  // Adds a person and returns the id. `member` is woken when there is an update for the person.
+  // Marks with `owner_key` become the new person's. Returns none for a viewer if there are already
+  // `most` people and onlookers. A returning person may exceed `most` by one, because the lost
+  // connection may not have ended yet.
   std::optional<std::uint64_t> Join(Role role, const std::string& name,
                                     std::shared_ptr<delivery::Viewer> member, Time now,
                                     std::size_t most = std::numeric_limits<std::size_t>::max(),
@@ -88,7 +88,8 @@ class Audience {
   void RemoveOnlooker();
   // Records that a message came from the person.
   void Heard(std::uint64_t id);
-  // Records that the person was asked for a sign of life, because of doubt number `doubts`.
+  // Records that the server asked the person for a sign of life because of doubt number `doubts`
+  // (Person::doubts).
   void Checked(std::uint64_t id, std::uint64_t doubts, Time now);
 
   // Functions that change the roster or the board.
@@ -100,14 +101,16 @@ class Audience {
   // marks, viewers only their own. If a viewer names another person's mark, the result is
   // PERMISSION_DENIED and nothing is erased.
   absl::Status Erase(std::uint64_t id, const std::vector<std::uint64_t>& mark_ids, Time now);
-  // Moves the person's pointer to the point that the ray hits, once Tick has found it. Without a
-  // ray, removes the pointer.
+  // Moves the person's pointer to the point where the ray meets the storm or the ground. The next
+  // Tick computes that point. Without a ray, the pointer is removed.
   absl::Status Point(std::uint64_t id, const std::optional<Ray>& ray, Time now);
 
-  // Restores the control of the previous server run. Must be called before the first person joins.
+  // Restores who had control in the previous server run. Must be called before the first person
+  // joins.
   void RestoreControl(const KeptControl& kept, Time now);
-  // Records that the session shows a scene of that revision, which all people must be sent.
-  // `domain` is the domain of its storm; if absent, the previous domain is kept.
+  // Records that the session shows the scene with that revision, and that all people must be sent
+  // it. `domain` identifies the domain of the scene's storm (storm_store::DomainOf). If absent, the
+  // previous domain is kept.
   void SceneChanged(std::uint64_t revision, const std::optional<std::string>& domain, Time now);
   // Sets the times in memory of the storm that the session shows. Sends them to all people if they
   // changed.
@@ -115,7 +118,7 @@ class Audience {
   // Wakes all people when the session has ended.
   void WakeAll();
 
-  // The following functions return copies.
+  // The following functions return copies of the state.
   Board Drawn() const;
   Rules CurrentRules() const;
   KeptControl ControlToKeep() const;
@@ -123,31 +126,32 @@ class Audience {
   absl::Status MaySteer(std::uint64_t id) const;
   absl::Status PresenterMaySteer() const;
   absl::Status MayMark(std::uint64_t id) const;
-  // Returns false for a person who has left or gave no sign of life when asked.
+  // Returns true if the person is present: they have not left, and were not removed because they
+  // gave no sign of life.
   bool IsThere(std::uint64_t id) const;
   std::uint64_t Doubts(std::uint64_t id) const;  // Person::doubts
   bool Follows(std::uint64_t id) const;
   std::uint64_t Returns(std::uint64_t id) const;  // Person::returns
   bool Empty() const;
 
-  // Returns the last presence update for that person. It is empty if the last update is older than
-  // the person's joining.
+  // Returns the last presence update for that person. It is empty if that update was made before
+  // the person joined.
   Told Presence(std::uint64_t id) const;
   Told Pointers() const;
-  // Returns the update of the marks for a person who has received `count` of them: the next change,
-  // or all the marks. All the marks may be newer than what others were sent; applying a change
-  // twice is harmless. A `count` of 0 gets all the marks.
+  // Returns the marks update for a person who has received `count` marks updates: the next change,
+  // or all marks if `count` is 0 or that change is no longer kept. All marks may include changes
+  // that follow later as updates; applying a change twice is harmless.
   Told Marks(std::uint64_t count);
   Told TimesHeld() const;
-  // Returns an update without bytes; its count changes when people must take the newest scene.
+  // Returns an update without bytes. A new count tells a connection to send the newest scene.
   Told Scene() const;
 
-  // Ends expired states, finds the places of pointers, and sends the updates that are due. Returns
-  // when it must be called next if nothing happens before.
+  // Ends states whose time is over, computes the positions of pointers, and sends the updates that
+  // are due. Returns when it must be called next if nothing happens earlier.
   std::optional<Time> Tick(Time now, const Place& place);
 
  private:
-  // One subject of updates: the last update, and the revision that it was made of.
+  // One subject of updates: its last update, and the revision of the state that this update shows.
   struct Subject {
     Told told;
     std::uint64_t told_revision = 0;
@@ -156,11 +160,11 @@ class Audience {
 
   struct Member {
     std::shared_ptr<delivery::Viewer> viewer;
-    std::uint64_t joined_at = 0;  // revision of the roster at joining
+    std::uint64_t joined_at = 0;  // revision of the roster when the person joined
   };
 
-  // The following functions need mutex_. TellDue sends the subjects whose pause is over and returns
-  // true if there were any.
+  // The following functions need mutex_. TellDue sends the subjects whose minimum pause since the
+  // last update is over. It returns true if it sent any.
   void Forget(std::uint64_t id);
   void TellMarks(Time now);
   bool TellDue(Time now);
@@ -178,9 +182,10 @@ class Audience {
   Board board_;
   std::map<std::uint64_t, Member> members_;
   std::size_t onlookers_ = 0;
-  std::map<std::uint64_t, Ray> rays_;  // rays of pointers whose places must still be found
-  std::set<std::uint64_t> finding_;    // people whose pointers' places are being found
-  std::uint64_t last_found_ = 0;       // id of the person whose ray was taken last
+  std::map<std::uint64_t, Ray> rays_;  // rays of pointers whose positions must still be computed
+  std::set<std::uint64_t> finding_;    // people whose pointer positions are being computed
+  // Id of the person whose ray was taken last, so that people take turns.
+  std::uint64_t last_found_ = 0;
   Subject presence_;
   Subject pointers_;
   Subject marks_;                                                 // all marks

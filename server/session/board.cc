@@ -11,8 +11,8 @@
 namespace thunderhead::session {
 namespace {
 
-// Colours that differ from one another on cloud, sky and ground, also for colour-blind people: the
-// bright ones of Okabe and Ito's palette, in linear sRGB.
+// The colours of people's marks: the bright ones of Okabe and Ito's palette, in linear sRGB. They
+// differ from one another on cloud, sky and ground, also for colour-blind people.
 constexpr std::array<glm::vec3, 6> kColors = {{{0.665F, 0.112F, 0.0F},
                                                {0.093F, 0.456F, 0.812F},
                                                {0.871F, 0.775F, 0.054F},

@@ -1,7 +1,7 @@
-// Pointers and marks by which people show one another things on a session's picture. Both are
-// positions in the world, so they stay in place when the camera turns. A mark is shown with the
-// domain of the storm that it was drawn on. It is kept, but hidden, while a storm of another domain
-// is shown. A plain value.
+// The pointers and marks with which people point at things in a session's picture. Both are
+// positions in the world, so they stay in place when the camera turns. A mark belongs to the domain
+// (region) of the storm that it was drawn on, and is hidden while a storm of another domain is
+// shown. A plain value.
 #pragma once
 
 #include <cstddef>
@@ -27,10 +27,11 @@ struct Mark {
   std::uint64_t person_id = 0;
   std::vector<glm::dvec3> positions_m;
   glm::vec3 color{1.0F};  // linear sRGB
-  // Secret key of the person who drew it. It assigns the marks to the person's new connection;
-  // empty: none.
+  // Secret key of the person who drew it; empty if unknown. The key gives the marks to the person's
+  // new connection after a lost one.
   std::string owner_key{};
-  std::string domain{};  // domain of the storm that it lies on; empty: not known
+  // Domain (storm_store::DomainOf) of the storm that it was drawn on; empty if not known.
+  std::string domain{};
 
   bool operator==(const Mark&) const = default;
 };
@@ -47,18 +48,19 @@ class Board {
   Board() = default;
   explicit Board(std::vector<Mark> marks);
 
-  // Records that a storm of that domain is shown. Marks without a known domain get the first
-  // domain.
+  // Records that a storm of that domain is shown. Marks whose domain is not known get the first
+  // domain that is shown.
   void ShowDomain(const std::string& domain);
 
-  // Adds a mark. Without a colour, it gets the person's own colour. FAILED_PRECONDITION if too many
-  // marks are shown. If marks of other domains are kept, the oldest of those is erased instead.
+  // Adds a mark and returns its id. Without a colour, the mark gets the person's own colour. If the
+  // board is full, it erases the oldest hidden mark. FAILED_PRECONDITION if the board is full and
+  // all its marks are shown.
   absl::StatusOr<std::uint64_t> Add(std::uint64_t person_id, std::vector<glm::dvec3> positions_m,
                                     const std::optional<glm::vec3>& color,
                                     const std::string& owner_key = "");
   // Gives the marks with that key to the person, who has come back with another id.
   void HandOver(const std::string& owner_key, std::uint64_t person_id);
-  // Returns true if one of `ids` is another person's mark.
+  // Returns true if a mark in `ids` belongs to another person.
   bool HasOfOthers(const std::vector<std::uint64_t>& ids, std::uint64_t person_id) const;
   // Erases `ids`, or all shown marks if `ids` is empty. With `person_id`, erases only that person's
   // marks.
@@ -75,16 +77,16 @@ class Board {
   // Returns the largest id of the people who drew the marks; 0 without marks.
   std::uint64_t LastPerson() const;
   const std::vector<Pointer>& pointers() const { return pointers_; }
-  // These revisions count changes.
+  // These revisions count changes of the marks and of the pointers.
   std::uint64_t marks_revision() const { return marks_revision_; }
   std::uint64_t pointers_revision() const { return pointers_revision_; }
 
  private:
   bool IsShown(const Mark& mark) const { return mark.domain == domain_; }
 
-  std::string domain_;  // empty: not known
+  std::string domain_;  // domain of the shown storm; empty if not known
   std::vector<Mark> marks_;
-  std::set<std::uint64_t> drawn_;  // ids for TakeMarksChange
+  std::set<std::uint64_t> drawn_;  // ids of marks that TakeMarksChange must return as drawn
   std::vector<std::uint64_t> erased_;
   std::vector<Pointer> pointers_;
   std::uint64_t mark_count_ = 0;

@@ -1,7 +1,7 @@
-// Predicts how soon after a change of a scene the next change of the same gesture comes. Clients
-// send changes thirty times a second, but they arrive at larger and uneven intervals over a slow or
-// distant link. A scene changed in such a gesture is at rest only after a longer pause. A plain
-// value; the time is an argument.
+// Predicts the time from one change of a scene to the next change of the same gesture, such as a
+// drag of the camera. Clients send changes thirty times a second, but over a slow or distant link
+// the changes arrive at larger and uneven intervals. A scene that changes in a gesture counts as at
+// rest only after a longer pause. A plain value; the time is an argument.
 #pragma once
 
 #include <chrono>
@@ -17,8 +17,9 @@ class ChangeRhythm {
   // A change after a longer pause begins another gesture.
   static constexpr std::chrono::milliseconds kLongestPause{700};
 
-  // Records a change of the scene. Returns the usual pause before the next change: the longest
-  // recent pause, which is forgotten slowly. It is 0 after the first change of a gesture.
+  // Records a change of the scene. Returns the pause to expect before the next change: the longest
+  // recent pause between changes, which decays slowly. Returns 0 after the first change of a
+  // gesture.
   Duration Changed(Time now);
 
  private:

@@ -338,7 +338,7 @@ void Roster::Give(Person& to) {
   steering_ = to.id;
   away_since_.reset();
   awaited_.reset();
-  // The person who steers must see the view that they steer.
+  // The person who steers must see the session's view, which they steer.
   ReturnToView(to);
   to.asks = false;
 }

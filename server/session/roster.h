@@ -2,14 +2,14 @@
 // what the rules allow each of them. A plain value; the time is an argument. Knows no connections
 // and no messages.
 //
-// One person steers at a time. Control is in one of four states. A person has it. It waits some
-// seconds for the person who steered and lost the connection. It is kept for the presenters while
-// none is present. Or it is free.
+// At most one person steers at a time. Control is in one of four states. A person has it. Or it
+// waits some seconds for the person who steered and lost the connection. Or it is kept for the
+// presenters while none of them is present. Or it is free.
 //
-// A person is identified by a secret key. A client sends the key again, with the same role, when it
-// comes back. The lost connection may not have ended yet. But a duplicated browser tab also sends
-// the same key while the first connection is still alive. So the first connection is doubted: it is
-// asked for a sign of life and removed if there is none.
+// A person is identified by a secret key. A client that comes back sends the key again, with the
+// same role. Its lost connection may still seem to be open. But a duplicated browser tab also sends
+// the same key, while the first connection is alive. So the server doubts the first connection: it
+// asks that client for a sign of life and removes the person if none arrives.
 #pragma once
 
 #include <chrono>
@@ -33,7 +33,8 @@ struct Rules {
   bool control_locked = false;    // viewers may neither ask for control nor give it to one another
   bool following_locked = false;  // viewers may not look around
   bool viewers_may_mark = false;
-  bool free_when_away = false;  // control becomes free when the presenters have been away
+  // Control becomes free when no presenter has been present for a while.
+  bool free_when_away = false;
 
   bool operator==(const Rules&) const = default;
 };
@@ -43,24 +44,27 @@ struct Person {
   std::string name;      // may be empty
   Role role = Role::kViewer;
   bool follows = true;
-  bool hidden = false;                                            // the window is hidden
-  bool asks = false;                                              // asks for control
-  std::optional<std::chrono::steady_clock::time_point> asked_at;  // last request
+  bool hidden = false;  // the window is hidden
+  // Has asked for control and waits for an answer.
+  bool asks = false;
+  // Time of the last request for control.
+  std::optional<std::chrono::steady_clock::time_point> asked_at;
   std::uint64_t returns = 0;  // number of returns to the session's view
   std::string key = {};       // secret key that identifies the person on return
-  bool answers = true;        // answers requests for a sign of life
-  std::uint64_t doubts = 0;   // number of doubts so far
-  std::optional<std::chrono::steady_clock::time_point> doubted_at;  // last, and unheard since
-  std::optional<std::chrono::steady_clock::time_point> checked_at;  // when it was asked
+  bool answers = true;        // whether the client answers requests for a sign of life
+  std::uint64_t doubts = 0;   // number of times that the connection was doubted
+  // Time of the last doubt; absent if a message came since.
+  std::optional<std::chrono::steady_clock::time_point> doubted_at;
+  // Time at which the client was asked for a sign of life.
+  std::optional<std::chrono::steady_clock::time_point> checked_at;
 
   bool operator==(const Person&) const = default;
 };
 
-// The part of a session's control that is kept across restarts: a viewer's, kept for presenters, or
-// free.
+// Who has control, as it is saved across restarts: a viewer, the presenters, or no one.
 struct KeptControl {
   bool is_free = false;
-  // The viewer who steers or for whom control waits. An empty key means no viewer.
+  // The viewer who steers or for whom control waits. An empty key means that no viewer does.
   std::string viewer_key;
   std::string viewer_name;
   std::uint64_t viewer_id = 0;
@@ -70,16 +74,20 @@ struct KeptControl {
 
 // Timeouts for people who wait for one another.
 struct RosterTimeouts {
-  std::chrono::milliseconds answer = std::chrono::seconds(20);    // for a request for control
-  std::chrono::milliseconds ask_again = std::chrono::seconds(5);  // minimum between requests
-  std::chrono::milliseconds away = std::chrono::seconds(60);      // until control becomes free
+  // Time to answer a request for control.
+  std::chrono::milliseconds answer = std::chrono::seconds(20);
+  // Minimum time between two requests of a person.
+  std::chrono::milliseconds ask_again = std::chrono::seconds(5);
+  // How long no presenter may be present until control becomes free.
+  std::chrono::milliseconds away = std::chrono::seconds(60);
   // How long control waits for a person whose connection was lost, before others get it.
   std::chrono::milliseconds come_back = std::chrono::seconds(10);
   // The same wait after a restart of the server. It is longer because clients wait longer after
   // each failed attempt to reconnect.
   std::chrono::milliseconds come_back_to_new_server = std::chrono::seconds(30);
-  // How long a doubted person has to answer, from when the question was sent, and in total. The
-  // total is longer because the question may wait behind a large picture on a slow link.
+  // How long a doubted person has to give a sign of life. The first limit counts from when the
+  // question was sent, the second from when the doubt began. The second is longer because the
+  // question may wait behind a large picture on a slow link.
   std::chrono::milliseconds sign_of_life = std::chrono::seconds(3);
   std::chrono::milliseconds sign_of_life_in_all = std::chrono::seconds(15);
 };
@@ -88,8 +96,8 @@ class Roster {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // Control is kept for a presenter, who may be about to connect. New ids follow `last_id`, the
-  // largest id that was in use before the server started again.
+  // At first, control is kept for a presenter, who may be about to connect. New ids follow
+  // `last_id`, the largest id that was in use before the server was restarted.
   Roster(const Rules& rules, Time now, std::uint64_t last_id = 0,
          const RosterTimeouts& timeouts = {})
       : timeouts_(timeouts), rules_(rules), away_since_(now), count_(last_id) {}
@@ -100,17 +108,17 @@ class Roster {
   KeptControl ControlToKeep() const;
 
   // Adds a person and returns their id. If control waits for a person with that key and role, the
-  // new person steers again. If such a person left while asking for control, the new person asks,
-  // or gets control if it is free by now. Other connections with this key and role are doubted if
-  // they answer questions. `answers` says whether the new one does.
+  // new person steers. If a person with that key and role left while asking for control, the new
+  // person asks, or gets control if it is free by now. Other connections with this key and role are
+  // doubted if their clients answer questions. `answers` says whether the new client does.
   std::uint64_t Join(Role role, std::string name, Time now, std::string key = "",
                      bool answers = true);
-  // Removes the person. Their control, or their request for it, goes to another connection with the
-  // same key and role. Without one, it waits for such a connection.
+  // Removes the person. Their control, or their request for control, goes to another connection
+  // with the same key and role. If there is none, it waits for such a connection.
   void Leave(std::uint64_t id, Time now);
   // Records that a message came from the person.
   void Heard(std::uint64_t id);
-  // Records that the person was asked for a sign of life, because of doubt number `doubts`.
+  // Records that the server asked the person for a sign of life because of doubt number `doubts`.
   void Checked(std::uint64_t id, std::uint64_t doubts, Time now);
   // Returns true if the key is not empty and a person with that key and role is present.
   bool Has(Role role, const std::string& key) const;
@@ -119,7 +127,7 @@ class Roster {
 
   // PERMISSION_DENIED unless the person steers.
   absl::Status MaySteer(std::uint64_t id) const;
-  // The same check for a presenter who has only the key and no place in the roster.
+  // Checks the same for a presenter who has the presenter's key but is not in the roster.
   // PERMISSION_DENIED while a viewer steers.
   absl::Status PresenterMaySteer() const;
 
@@ -132,26 +140,26 @@ class Roster {
   // first, if any. Control that a viewer gives up goes back to the presenters. PERMISSION_DENIED if
   // a viewer gives it to a viewer while control is locked.
   absl::Status GiveControl(std::uint64_t from, std::uint64_t to, Time now);
-  // Refuses a request for control; the same people may do so.
+  // Refuses a request for control. The person who steers and presenters may do so.
   absl::Status RefuseControl(std::uint64_t from, std::uint64_t to);
   absl::Status TakeControl(std::uint64_t id);
 
   absl::Status SetRules(std::uint64_t id, const Rules& rules);
   const Rules& rules() const { return rules_; }
 
-  // Replaces the timeouts, also for waits that have begun.
+  // Replaces the timeouts, also for people who are already waiting.
   void SetTimeouts(const RosterTimeouts& timeouts) { timeouts_ = timeouts; }
 
-  // Makes the person leave the session's view, which a viewer may not do while following is locked.
-  // Returns false if Person::returns is no longer `returns`: the person has returned since, and
-  // that later action takes effect.
+  // Makes the person leave the session's view. PERMISSION_DENIED for a viewer while following is
+  // locked. Returns false, without an effect, if Person::returns differs from `returns`: the person
+  // has returned to the session's view since the request, and the return takes effect.
   absl::StatusOr<bool> Detach(std::uint64_t id, std::uint64_t returns);
   absl::Status Follow(std::uint64_t id);
 
   absl::Status MayMark(std::uint64_t id) const;
 
-  // Ends unanswered requests and frees control that was kept for too long. Returns the doubted
-  // people who gave no sign of life; they are removed.
+  // Ends unanswered requests for control, and frees control that was kept for too long. Removes
+  // doubted people who gave no sign of life, and returns their ids.
   std::vector<std::uint64_t> Advance(Time now);
 
   // Returns when Advance has something to do next.
@@ -160,15 +168,16 @@ class Roster {
   // Returns the people in the order in which they joined.
   const std::vector<Person>& people() const { return people_; }
   const Person* Find(std::uint64_t id) const;
-  // Returns the id of the person who steers; 0: no person.
+  // Returns the id of the person who steers; 0 if no one steers.
   std::uint64_t steering() const { return steering_; }
   bool presenter_away() const;
-  // Returns the person for whom control waits, as they left. Null if there is none.
+  // Returns the person for whom control waits, in the state in which they left. Null if control
+  // waits for no one.
   const Person* awaited() const { return awaited_.has_value() ? &awaited_->left : nullptr; }
   bool control_is_free() const {
     return steering_ == 0 && !away_since_.has_value() && !awaited_.has_value();
   }
-  // Counts changes of all the state above.
+  // Counts the changes of the state that the functions above return.
   std::uint64_t revision() const { return revision_; }
 
  private:
@@ -199,16 +208,18 @@ class Roster {
   Time WaitEnds(const Awaited& awaited) const;
   // Frees control, or gives it to the viewer who has waited longest.
   void Free();
-  // Gives control to a presenter, or keeps it for one from `since` on.
+  // Gives control to a presenter. If none is present, keeps control for one, counting the absence
+  // from `since`.
   void GiveBack(Time since);
 
   RosterTimeouts timeouts_;
   Rules rules_;
-  // Requests of people who left, by role and key, for as long as they are valid.
+  // Requests for control by people who left, by role and key, until the requests expire.
   std::map<std::pair<Role, std::string>, Request> asked_and_left_;
   std::vector<Person> people_;
   std::uint64_t steering_ = 0;
-  std::optional<Time> away_since_;  // set while control is kept for presenters
+  // The time since which control is kept for absent presenters; absent if it is not kept for them.
+  std::optional<Time> away_since_;
   std::optional<Awaited> awaited_;  // set while control waits for that person
   std::uint64_t count_ = 0;
   std::uint64_t revision_ = 1;

@@ -62,8 +62,8 @@ absl::Status SessionKeeper::Restore(const DecodeScene& decode) {
                                                  std::move(decoded->serialized), decoded->domain);
   }
   THUNDERHEAD_RETURN_IF_ERROR(store_.Remove(too_old));
-  // Saves the new revisions before clients can see them, so that the next restart gives larger
-  // ones.
+  // The new revisions are saved before clients can see them, so that the next restart uses even
+  // larger ones.
   return FirstError(SaveChanges());
 }
 
@@ -77,8 +77,8 @@ SessionKeeper::Outcome SessionKeeper::SaveChanges() {
       ended.push_back(id);
       continue;
     }
-    // The version is read before the record, so that the record is at least as new as the version
-    // says.
+    // The version is read before the record. So the saved record is at least as new as the version
+    // that `kept` remembers.
     const SessionVersion version = kept.session->Version();
     const Clock::time_point use = kept.session->UsedUntil();
     if (version.scene_revision == 0) continue;  // the session is still being created

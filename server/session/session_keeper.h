@@ -25,19 +25,21 @@ namespace thunderhead::session {
 struct DecodedScene {
   scene::Scene scene;
   std::string serialized;
-  std::optional<std::string> domain;  // domain of its storm, if the storm is available
+  // Identifies the storm's domain; absent if the storm is not available.
+  std::optional<std::string> domain;
 };
 using DecodeScene = std::function<absl::StatusOr<DecodedScene>(const std::string& serialized)>;
 
 class SessionKeeper {
  public:
   static constexpr std::chrono::milliseconds kPause{500};
-  // Maximum time by which a session's last use may be newer than in its record.
+  // A session whose other state is unchanged is saved again once its last use is this much later
+  // than in its record.
   static constexpr std::chrono::seconds kUsePause{30};
 
-  // Restores the store's sessions into `sessions`, except those that are too old. If a scene cannot
-  // be decoded, the error is logged and its session stays in the store until it is too old. Both
-  // must outlive the keeper.
+  // Restores the store's sessions into `sessions`, except sessions that are too old. If a scene
+  // cannot be decoded, the error is logged, and its session stays in the store until it is too old.
+  // `store` and `sessions` must outlive the keeper.
   static absl::StatusOr<std::unique_ptr<SessionKeeper>> Start(SessionStore& store,
                                                               Sessions& sessions,
                                                               const DecodeScene& decode);
@@ -58,7 +60,7 @@ class SessionKeeper {
   void SaveThen(Done done);
 
  private:
-  // A session and the state of it that is in the store.
+  // A session, and the version of it that the store holds.
   struct Kept {
     std::shared_ptr<Session> session;
     std::optional<SessionVersion> saved;

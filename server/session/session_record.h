@@ -1,4 +1,4 @@
-// The state of a session that is kept while the server is down. Plain values.
+// The saved state of a session, from which a restarted server restores it. Plain values.
 #pragma once
 
 #include <chrono>
@@ -22,7 +22,7 @@ struct SessionKeys {
 struct SessionRecord {
   std::string id;
   SessionKeys keys;
-  std::string owner;  // identity that opened it; empty: no owner
+  std::string owner;  // identity of the caller that created it; empty if it has no owner
   Rules rules;
   KeptControl control;
   std::string scene;  // as the service serialized it; opaque here

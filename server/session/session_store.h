@@ -1,5 +1,5 @@
-// Keeps sessions' records while the server is down. Used by one thread at a time; each call may
-// block.
+// The interface of a store of session records that survives restarts of the server. Used by one
+// thread at a time. Each call may block.
 #pragma once
 
 #include <string>

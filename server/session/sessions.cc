@@ -15,22 +15,24 @@ namespace thunderhead::session {
 namespace {
 
 // A session key is a secret of 128 bits.
-constexpr int kKeyWords = 4;  // of 32 bits
+constexpr int kKeyWords = 4;  // number of words of 32 bits
 constexpr int kIdWords = 2;
 
-// This is larger than the number of revisions by which a session can be ahead of its record. So a
-// restored session never gives a revision to a second scene.
+// The revisions that a restored session skips. The number is larger than the number of revisions by
+// which a session can be ahead of its record. So a restored session never gives two scenes the same
+// revision.
 constexpr std::uint64_t kUnsavedRevisions = 1'000'000;
 
-// Abandoned sessions expire one after another, so that one may soon be free.
+// Sessions that are no longer used expire one after another, so that there may soon be place for a
+// new one.
 constexpr std::chrono::seconds kSessionRetryAfter{30};
 
 absl::Status Gone(const std::string& message, const std::string& reason = "SESSION_NOT_FOUND") {
   return base::WithDetails(absl::NotFoundError(message), {.reason = reason});
 }
 
-// A mistyped key may be a secret except for one character, so the error prints only its first four
-// characters.
+// The key in the error may be a secret with one mistyped character, so the error prints only its
+// first four characters.
 absl::Status NotFound(const std::string& key) {
   constexpr std::size_t kPrinted = 4;
   const std::string begin = key.size() > kPrinted ? key.substr(0, kPrinted) + "..." : key;
@@ -211,7 +213,8 @@ std::shared_ptr<OwnView> OwnView::Of(const std::shared_ptr<Session>& session, st
     std::erase_if(session->own_views_, [](const auto& other) { return other.expired(); });
     session->own_views_.push_back(view);
   }
-  // The scene is read after the session knows the view, so that the view misses no scene.
+  // The view is registered with the session before the newest scene is read, so that it misses no
+  // scene.
   if (const auto newest = session->Newest(); newest.has_value()) view->Follow(*newest);
   return view;
 }
@@ -233,7 +236,7 @@ void OwnView::Show() {
   if (!scene_.has_value()) return;
   scene::Scene scene = *scene_->scene;
   scene.camera = camera_;
-  // Only sessions trace the reference. A view of one person uses the default technique.
+  // Only sessions show the reference. An own view uses the default technique instead.
   if (scene::IsTraced(scene.rendering.technique)) {
     scene.rendering.technique = scene::Rendering().technique;
   }

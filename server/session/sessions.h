@@ -1,6 +1,6 @@
-// The sessions of a server. Each shows one scene, which every update replaces, to any number of
-// people. People join with one of its two keys. A session expires when it has not been used for a
-// while. Safe from any thread. Knows no GL and no message formats.
+// The sessions of a server. Each session shows one scene to any number of people; every update
+// replaces the scene. People join with one of the session's two keys. A session expires when it has
+// not been used for a while. Safe from any thread. Knows no GL and no message formats.
 #pragma once
 
 #include <chrono>
@@ -34,15 +34,15 @@ struct NewestScene {
   std::uint64_t revision = 0;
   std::shared_ptr<const scene::Scene> scene;
   Clock::time_point changed_at;
-  // Usual pause before the next change of the same gesture. 0 if no next change is expected.
+  // Pause to expect before the next change of the same gesture. 0 if no further change is expected.
   Clock::duration usual_pause{};
   // The scene as the service serialized it for viewers; opaque here.
   std::shared_ptr<const std::string> serialized;
 };
 
-// Revisions of the parts of a session that are kept in the store.
+// The revisions and values of the parts of a session that are kept in the store.
 struct SessionVersion {
-  std::uint64_t scene_revision = 0;  // 0: it has no scene yet
+  std::uint64_t scene_revision = 0;  // 0 if the session has no scene yet
   std::uint64_t marks_revision = 0;
   Rules rules;
   KeptControl control;
@@ -52,13 +52,13 @@ struct SessionVersion {
 
 // Events that a session reports to its server.
 struct SessionSignals {
-  std::function<void()> on_work;  // the session may need a frame
-  std::function<void()> on_due;   // Audience::Tick is due soon
+  std::function<void()> on_work;  // called when the session may need a frame
+  std::function<void()> on_due;   // called when Audience::Tick must be called soon
 };
 
 class OwnView;
 
-// An update whose scene is not complete yet.
+// An update of the scene that was received, but whose scene is not complete yet.
 struct IncompleteUpdate {
   std::function<bool()> still_counts = {};  // false: its sender lost control; empty: it counts
   std::string serialized = {};              // the scene as far as it is known; may be empty
@@ -77,12 +77,12 @@ class Session {
           const RosterTimeouts& timeouts = {}, std::string owner = "",
           const base::TimeSource& time = base::SteadyTime());
 
-  // Identifies the session in this process; not a secret.
+  // Identifies the session in this process. The id is not secret, unlike the keys.
   const std::string& id() const { return id_; }
   const SessionKeys& keys() const { return keys_; }
-  // The identity that opened it; empty: no owner.
+  // The identity of the caller that created it; empty if it has no owner.
   const std::string& owner() const { return owner_; }
-  // Returns true for the session that draws an OwnView. No key opens it.
+  // Returns true for the internal session that draws an OwnView. No key opens such a session.
   bool IsOwnView() const { return keys_.viewer.empty(); }
   delivery::FrameHub& hub() { return hub_; }
   delivery::VideoEncoders& video() { return video_; }
@@ -90,37 +90,42 @@ class Session {
   // Returns the time that the session, its hub and its audience use.
   Clock::time_point Now() const { return time_.Now(); }
 
-  // Returns a new revision, larger than all before. It is taken when an update arrives, before its
-  // scene is complete, so that the update that arrived last wins. Show or Drop must follow.
+  // Takes and returns a new revision, larger than all earlier ones. A revision is taken when an
+  // update arrives, before its scene is complete. So the update that arrived last wins. Show or
+  // Drop must follow.
   std::uint64_t TakeRevision(IncompleteUpdate update = {});
-  // Takes a revision for a change to revision `expected`. ABORTED if a newer revision was taken or
-  // shown. Drops pending revisions that are no longer valid first.
+  // Takes a revision for an update that was based on revision `expected`. First drops pending
+  // revisions that are no longer valid. ABORTED if a newer revision was taken or shown.
   absl::StatusOr<std::uint64_t> TakeRevisionAfter(std::uint64_t expected,
                                                   IncompleteUpdate update = {});
   // Drops a revision whose scene will not be shown.
   void Drop(std::uint64_t revision);
-  // Replaces the newest scene unless that has a newer revision. `domain` is the domain of its storm
-  // (storm_store/storm_store.h), if known. Returns false if the revision was dropped, because later
-  // changes were made without it.
+  // Replaces the newest scene unless the newest scene has a higher revision. `domain` identifies
+  // the domain of the scene's storm (storm_store::DomainOf), if known. Returns false if the
+  // revision was dropped because its sender lost control, so that later changes were made without
+  // it.
   bool Show(std::uint64_t revision, scene::Scene scene, std::string serialized = "",
             const std::optional<std::string>& domain = std::nullopt);
   std::optional<NewestScene> Newest() const;
-  // Returns the scene of the newest valid update, complete or not. None before the first update.
+  // Returns the scene of the newest valid update, whether it is complete or not. Returns none
+  // before the first update.
   std::optional<SerializedScene> NewestTaken();
 
-  // Shows the scene of a record, with a larger revision than any client has seen.
+  // Shows the scene of a saved record, with a revision that is larger than any that a client has
+  // seen.
   void ShowRestored(const SessionRecord& record, scene::Scene scene, std::string serialized,
                     const std::optional<std::string>& domain);
 
   // Ends all viewers' streams with `why`.
   void Close(const absl::Status& why);
-  // Returns true if the session was closed or has expired, but not if only the server stops.
+  // Returns true if the session was closed or has expired. Returns false if it ends only because
+  // the server stops.
   bool HasEnded() const;
 
   void Touch();
   Clock::time_point last_used() const;
   bool IsWatched() const;
-  // Returns the time of the last use, which is now while there are viewers.
+  // Returns the time of the last use. While there are viewers, it is the current time.
   Clock::time_point UsedUntil() const;
 
   SessionVersion Version() const;
@@ -129,7 +134,7 @@ class Session {
  private:
   friend class OwnView;
 
-  // Drops pending revisions that are no longer valid.
+  // Drops pending revisions whose senders have lost control.
   void DropOverruled();
 
   const std::string id_;
@@ -142,7 +147,8 @@ class Session {
   Audience audience_;
   mutable std::mutex mutex_;
   std::uint64_t revision_count_ = 0;
-  std::map<std::uint64_t, IncompleteUpdate> taken_;  // by revision; neither shown nor dropped yet
+  // By revision; taken, but neither shown nor dropped yet.
+  std::map<std::uint64_t, IncompleteUpdate> taken_;
   std::optional<NewestScene> newest_;
   ChangeRhythm rhythm_;
   Clock::time_point last_used_ = time_.Now();
@@ -178,10 +184,11 @@ class OwnView {
 struct SessionsOptions {
   std::size_t max_sessions = 64;
   std::size_t max_sessions_per_owner = 32;
-  Clock::duration idle_timeout = std::chrono::minutes(15);  // without viewers
-  // Timeout with viewers that neither acknowledge nor send anything.
+  // Expires without viewers after this time.
+  Clock::duration idle_timeout = std::chrono::minutes(15);
+  // A session with viewers expires after this time if none of them acknowledges or sends anything.
   Clock::duration watched_idle_timeout = std::chrono::hours(1);
-  // Maximum time, by the system's clock, since the last use of a stored session. Older sessions are
+  // Maximum time since the last use of a stored session, by the system's clock. Older sessions are
   // not restored.
   std::chrono::hours max_absence = std::chrono::hours(24 * 30);
   RosterTimeouts roster_timeouts;
@@ -189,7 +196,7 @@ struct SessionsOptions {
   const base::TimeSource* time = &base::SteadyTime();  // must outlive the sessions
 };
 
-// A session, and the role that the key gives.
+// A session, and the role of people who join with the key that was searched for.
 struct FoundSession {
   std::shared_ptr<Session> session;
   Role role = Role::kViewer;
@@ -199,12 +206,14 @@ class Sessions {
  public:
   Sessions(const SessionsOptions& options, const SessionSignals& signals);
 
-  // Creates a session. RESOURCE_EXHAUSTED if there are too many in all or for that owner;
-  // UNAVAILABLE after RefuseNew and CloseAll. The limit per owner does not apply to an empty owner.
+  // Creates a session. RESOURCE_EXHAUSTED if there are too many sessions in all, or too many of
+  // that owner. UNAVAILABLE after RefuseNew or CloseAll. The limit per owner does not apply to an
+  // empty owner.
   absl::StatusOr<std::shared_ptr<Session>> Create(const Rules& rules = {},
                                                   const std::string& owner = "");
-  // Restores the session of a record from another run, as if all people had just left. The server's
-  // downtime does not count as idle time because people could not come back then.
+  // Restores the session of a record that another server run saved, as if all its people had just
+  // left. The time during which the server was down does not count as idle time, because people
+  // could not come back then.
   std::shared_ptr<Session> Restore(const SessionRecord& record, scene::Scene scene,
                                    std::string serialized,
                                    const std::optional<std::string>& domain = std::nullopt);
@@ -222,17 +231,18 @@ class Sessions {
   // Ends all sessions with `why`. Afterwards no session can be created or found.
   void CloseAll(const absl::Status& why);
 
-  // Opens a view of the session's scene from its own camera, for the identity `owner`. It is drawn
-  // as long as the caller holds it.
+  // Opens a view of the session's scene from the given camera, for the identity `owner`. The view
+  // is drawn as long as the caller holds the result.
   std::shared_ptr<OwnView> OpenView(const std::shared_ptr<Session>& session,
                                     const scene::Camera& camera, const std::string& owner);
 
-  // Replaces the roster timeouts of all present and later sessions, also for waits that have begun.
+  // Replaces the roster timeouts of all existing and later sessions, also for people who are
+  // already waiting.
   void SetRosterTimeouts(const RosterTimeouts& timeouts);
 
   // Returns the sessions that have not expired, ordered by id.
   std::vector<std::shared_ptr<Session>> All();
-  // Returns the same with the own views: everything that may be drawn.
+  // Returns the sessions of All and the sessions that draw own views: everything that may be drawn.
   std::vector<std::shared_ptr<Session>> AllDrawn();
 
   std::size_t max_sessions() const { return options_.max_sessions; }
@@ -250,8 +260,9 @@ class Sessions {
   const SessionSignals signals_;
   std::mutex mutex_;
   RosterTimeouts roster_timeouts_;
-  Map sessions_;                                         // by id
-  std::map<std::string, std::string> id_by_key_;         // both keys
+  Map sessions_;  // by id
+  // Session id by presenter's key and by viewers' key.
+  std::map<std::string, std::string> id_by_key_;
   std::map<std::string, std::weak_ptr<OwnView>> views_;  // by id
   std::uint64_t view_count_ = 0;
   absl::Status closed_because_;

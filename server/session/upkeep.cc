@@ -11,11 +11,14 @@
 namespace thunderhead::session {
 namespace {
 
-// Expiring sessions do not wake the thread, so it wakes at least this often.
+// Maximum pause of the thread. Expiring sessions do not wake it, so it must wake at least this
+// often.
 constexpr std::chrono::seconds kLongestPause{1};
-// Times enter and leave memory on the store's own threads, which do not wake this one.
+// Interval of checks which times are in memory. The store's own threads load and evict times and do
+// not wake this thread.
 constexpr std::chrono::seconds kHeldTimesPause{1};
-// Sessions that are due at about the same time are handled together.
+// Minimum pause of the thread, so that sessions that are due at about the same time are handled
+// together.
 constexpr std::chrono::milliseconds kShortestPause{10};
 
 void TellOfMemory(Session& session, const storm_store::StormStore& store, Clock::time_point now) {
@@ -41,7 +44,7 @@ void Upkeep::Run() {
   Clock::time_point looked_into_memory{};
   while (!stopping_) {
     const Clock::time_point began = time.Now();
-    // The shortest pause limits the CPU load, so it uses the real clock.
+    // The minimum pause limits the CPU load, so it uses the real clock.
     const Clock::time_point pauses_until = Clock::now() + kShortestPause;
     const bool looks_into_memory = began >= looked_into_memory + kHeldTimesPause;
     if (looks_into_memory) looked_into_memory = began;
@@ -68,7 +71,8 @@ glm::dvec3 PlaceSeen(const Session& session, storm_store::StormStore& store, con
   if (fields != nullptr) {
     return scene::PlaceSeen(*newest->scene, *fields, ray.origin_m, ray.direction);
   }
-  // The origin of world coordinates is the middle of the storm's domain.
+  // Returns the point of the ray that is nearest to the middle of the domain, which is the origin
+  // of world coordinates.
   return ray.origin_m + std::max(0.0, -glm::dot(ray.origin_m, ray.direction)) * ray.direction;
 }
 

@@ -1,6 +1,6 @@
-// Runs periodic work for the people of all sessions on its own thread. It finds the places of
-// pointers, ends expired states, sends due updates and the times in memory, and wakes viewers with
-// a limited frame rate.
+// A thread that does periodic work for the people of all sessions. It computes the positions of
+// pointers, ends states whose time is over, sends due updates, and reports which times are in
+// memory. It also wakes viewers with a limited frame rate.
 #pragma once
 
 #include <atomic>

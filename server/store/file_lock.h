@@ -11,11 +11,12 @@ namespace thunderhead::store {
 
 class FileLock {
  public:
-  // Creates and locks the file, accessible only to this user. Waits briefly for a process that is
-  // just ending. FAILED_PRECONDITION if another process holds the file for longer.
+  // Creates the file at `path`, accessible only to this user, and locks it. Waits up to two
+  // seconds, in case another process that holds the lock is just ending. Returns
+  // FAILED_PRECONDITION if the other process holds the lock for longer.
   static absl::StatusOr<FileLock> Take(const std::string& path);
-  // Locks an existing folder of this user without waiting. None if the folder belongs to another
-  // user, does not exist or is locked.
+  // Locks an existing folder of this user without waiting. Returns nothing if the folder belongs to
+  // another user, does not exist or is already locked.
   static std::optional<FileLock> TryFolder(const std::string& folder);
   FileLock(FileLock&& other) noexcept;
   FileLock& operator=(FileLock&&) = delete;
@@ -24,7 +25,7 @@ class FileLock {
  private:
   explicit FileLock(int file) : file_(file) {}
 
-  int file_;  // -1: none
+  int file_;  // the locked file's descriptor, or -1 after a move
 };
 
 }  // namespace thunderhead::store

@@ -10,8 +10,8 @@ namespace thunderhead::store {
 namespace {
 
 constexpr std::size_t kWordBytes = 8;
-// Number of words of a mark without its positions (id, person, colour, number of positions), and of
-// a position.
+// The number of words of a mark without its positions (id, person, colour, number of positions),
+// and the number of words of a position.
 constexpr std::size_t kMarkWords = 6;
 constexpr std::size_t kPositionWords = 3;
 
@@ -40,7 +40,8 @@ class Reader {
 
   double Number() { return std::bit_cast<double>(Word()); }
 
-  // The components are read in order.
+  // The components are read by separate statements, because the order of evaluation of arguments is
+  // not defined.
   glm::dvec3 Vector() {
     const double x = Number();
     const double y = Number();

@@ -1,5 +1,5 @@
-// Converts marks to and from bytes, without their owner keys and domains. The bytes are
-// little-endian on every machine.
+// Converts a session's marks to and from bytes, for storage. Owner keys and domains of the marks
+// are not included. The bytes are little-endian on every machine.
 #pragma once
 
 #include <string>
@@ -11,7 +11,8 @@
 namespace thunderhead::store {
 
 std::string ToBytes(const std::vector<session::Mark>& marks);
-// DATA_LOSS if ToBytes cannot have made the bytes.
+// Returns the marks from bytes that ToBytes has made, or DATA_LOSS if ToBytes cannot have made
+// them.
 absl::StatusOr<std::vector<session::Mark>> MarksFrom(const std::string& bytes);
 
 }  // namespace thunderhead::store

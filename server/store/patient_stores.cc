@@ -17,7 +17,8 @@ using jobs::JobChange;
 using jobs::JobRecord;
 using session::SessionRecord;
 
-// Keeps an object until the process ends, because closing a store would hang as well.
+// Keeps an object until the process ends. It is used for a store whose storage hangs, because
+// closing the store would hang, too.
 void KeepForEver(std::shared_ptr<const void> object) {
   static std::mutex mutex;
   static auto& kept = *new std::vector<std::shared_ptr<const void>>;

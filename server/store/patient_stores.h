@@ -1,8 +1,8 @@
-// Stores whose storage may hang, such as a network file system that is unreachable. Each call,
-// including the one that closes the store, runs on a separate thread with the timeout of `calls`. A
-// call that times out is UNAVAILABLE with the reason STORAGE_HANGS. Until it returns, all other
-// calls of both stores fail at once in the same way. Only Load waits without a timeout; the log
-// reports the wait.
+// Wrappers that add timeouts to the stores, whose storage may hang, for example an unreachable
+// network file system. Each call, including the closing of the store, runs on a separate thread
+// with the timeout of `calls`. A call that times out returns UNAVAILABLE with the reason
+// STORAGE_HANGS. Until the hanging call returns, all other calls of both stores return the same
+// error at once. Only Load waits without a timeout; the log reports long waits.
 #pragma once
 
 #include <memory>

@@ -13,8 +13,9 @@ namespace {
 // "Thun" in ASCII. It distinguishes our files from other programs'.
 constexpr std::int64_t kApplicationId = 0x5468756e;
 
-// Step n migrates version n to n + 1. A released step never changes. Marks have a separate table
-// because sessions are saved with every movement of the camera.
+// The SQL of the migration steps. Step n migrates version n of the schema to version n + 1. A step
+// must not be changed after its release. Marks have a separate table, because a session is saved at
+// every movement of the camera, and its marks need not be written each time.
 constexpr std::array kSteps = {R"(
   CREATE TABLE sessions (
     id TEXT PRIMARY KEY NOT NULL,

@@ -1,4 +1,4 @@
-// The tables of the store's file, and the migration steps from older versions.
+// The tables of the server's state file (SQLite), and the migration steps from older versions.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace thunderhead::store {
 
-// Creates or updates the tables. FAILED_PRECONDITION, naming the file `path`, if the file has a
-// newer version or belongs to another program.
+// Creates the tables, or updates them from an older version. Returns FAILED_PRECONDITION, naming
+// the file `path`, if the file has a newer version or belongs to another program.
 absl::Status UpdateSchema(Database& database, const std::string& path);
 
 }  // namespace thunderhead::store

@@ -13,7 +13,8 @@
 namespace thunderhead::store {
 namespace {
 
-// Writes wait this long for backups, which read the file while the server runs.
+// The time in ms for which a write waits for a lock, for example of a backup that reads the file
+// while the server runs.
 constexpr int kBusyTimeoutMs = 2000;
 
 // Returns true if the disk has too little space for SQLite's own files.
@@ -75,8 +76,8 @@ absl::Status Database::Error() const {
 
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
-// Binding fails only for a parameter that the SQL does not have, or for lack of memory, which Next
-// reports.
+// The results of the bind functions are ignored. Binding fails only for a parameter that the SQL
+// does not have, or for lack of memory. Next reports a lack of memory.
 void Statement::Bind(int parameter, std::int64_t value) {
   sqlite3_bind_int64(handle_.get(), parameter, value);
 }
@@ -93,7 +94,7 @@ void Statement::Bind(int parameter, std::string_view text) {
 }
 
 void Statement::BindBlob(int parameter, std::string_view bytes) {
-  // A blob without an address would be NULL.
+  // SQLite would store NULL for a blob with a null pointer.
   const char* const data = bytes.empty() ? "" : bytes.data();
   sqlite3_bind_blob64(handle_.get(), parameter, data, bytes.size(), SQLITE_STATIC);
 }
@@ -135,7 +136,7 @@ Transaction::Transaction(Transaction&& other) noexcept
     : database_(std::exchange(other.database_, nullptr)) {}
 
 Transaction::~Transaction() {
-  // After an error SQLite may have rolled back already.
+  // The result is ignored, because SQLite may already have rolled back after an error.
   if (database_ != nullptr) (void)database_->Execute("ROLLBACK");
 }
 

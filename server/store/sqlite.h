@@ -1,4 +1,5 @@
-// Wrappers of SQLite's C interface with ownership and statuses.
+// Wrappers for SQLite's C interface, with automatic release of handles and with absl::Status for
+// errors.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace thunderhead::store {
 
 class Statement;
 
-// DATA_LOSS with instructions for the operator.
+// Returns DATA_LOSS for a damaged file, with instructions for the operator. `why` is the cause.
 absl::Status DamagedFile(const std::string& path, const std::string& why);
 
 class Database {
@@ -29,7 +30,7 @@ class Database {
   absl::StatusOr<Statement> Prepare(const std::string& sql);
   // Returns the single number that the query yields.
   absl::StatusOr<std::int64_t> Number(const std::string& sql);
-  // Returns the error of the last call: DATA_LOSS for a damaged file, else UNAVAILABLE.
+  // Returns the error of the last SQLite call: DATA_LOSS for a damaged file, else UNAVAILABLE.
   absl::Status Error() const;
 
  private:
@@ -44,7 +45,8 @@ class Database {
 };
 
 // A prepared statement. It can be used again after each Run, or after Next has returned false.
-// Parameters count from 1, columns from 0. Bound text and blobs must live until then.
+// Parameters count from 1, columns from 0. Bound texts and blobs must live until the Run ends or
+// Next has returned false.
 class Statement {
  public:
   void Bind(int parameter, std::int64_t value);
@@ -55,7 +57,7 @@ class Statement {
 
   // Runs a statement without results.
   absl::Status Run();
-  // Fetches the next row. Returns false if there is none.
+  // Fetches the next row. Returns false after the last row.
   absl::StatusOr<bool> Next();
 
   bool IsNull(int column) const;

@@ -42,11 +42,12 @@ constexpr char kLoadPictures[] =
     "drawn_ms, fetched, job_id, place, name, request, valid_time FROM job_pictures "
     "ORDER BY job_id, place";
 
-// The number of parameters and columns of a picture's state, which precede those that identify the
-// picture.
+// The number of columns (and parameters) with a picture's state. They precede the parameters that
+// identify the picture.
 constexpr int kStateColumns = 11;
 
-// The numbers in the tables, independent of the enumeration's values.
+// The number by which the tables store each state. It does not depend on the values of the
+// enumeration.
 constexpr std::array kStates = {
     std::pair{std::int64_t{0}, PictureState::kWaiting},
     std::pair{std::int64_t{0}, PictureState::kDrawing},
@@ -200,7 +201,8 @@ class OpenJobStore final : public SqliteJobStore {
       JobRecord& job = records[index_by_id.at(pictures.Bytes(kStateColumns))];
       absl::StatusOr<PictureRecord> picture = PictureOf(pictures);
       if (!picture.ok()) {
-        // The picture keeps its place because clients identify the others by their places.
+        // An unreadable picture is replaced by a failed picture and not left out, because clients
+        // identify pictures by their places.
         base::LogError(base::Annotate(picture.status(), absl::StrCat("render job ", job.id)));
         picture.emplace();
         picture->state = PictureState::kFailed;

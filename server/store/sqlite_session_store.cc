@@ -46,14 +46,15 @@ constexpr char kLoad[] =
     "FROM sessions "
     "JOIN marks ON session_id = id ORDER BY id";
 
-// Joins one text of each mark, one line per mark.
+// Joins the member `text` of all marks, one line for each mark.
 std::string LinesOf(const std::vector<session::Mark>& marks, std::string session::Mark::*text) {
   std::string lines;
   for (const session::Mark& mark : marks) absl::StrAppend(&lines, mark.*text, "\n");
   return lines;
 }
 
-// Splits the lines into the marks' texts. Marks without a line keep an empty text.
+// Sets the member `text` of each mark from its line in `lines`. Marks without a line keep an empty
+// text.
 void SetLines(std::string_view lines, std::string session::Mark::*text,
               std::vector<session::Mark>* marks) {
   for (session::Mark& mark : *marks) {

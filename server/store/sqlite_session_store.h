@@ -1,5 +1,5 @@
 // A store for sessions in a server's state file. Saved data survives the end of the process. A loss
-// of power may lose the last seconds, but never the file.
+// of power may lose the changes of the last seconds, but does not damage the file.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,8 @@ namespace thunderhead::store {
 class SqliteSessionStore : public session::SessionStore {
  public:
   static absl::StatusOr<std::unique_ptr<SqliteSessionStore>> In(std::shared_ptr<StateFile> file);
-  // Opens a file that holds nothing else. Errors as in StateFile::Open.
+  // Opens the state file at `path`, which this store alone uses. Errors are those of
+  // StateFile::Open.
   static absl::StatusOr<std::unique_ptr<SqliteSessionStore>> Open(const std::string& path);
 };
 

@@ -15,8 +15,8 @@
 namespace thunderhead::store {
 namespace {
 
-// Creates the file before SQLite does, which would use the user's default mode. SQLite's other
-// files get this file's mode.
+// Creates the file, accessible only to this user, before SQLite opens it. SQLite would create it
+// with the user's default mode. SQLite gives its other files the mode of this file.
 absl::Status CreateForThisUser(const std::string& path) {
   const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   const bool done = file >= 0 && fchmod(file, 0600) == 0;

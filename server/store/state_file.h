@@ -1,5 +1,5 @@
-// The single SQLite file of a server's state. Only this process uses it while it is open. Saved
-// data survives the end of the process.
+// The SQLite file that holds a server's state (sessions and jobs). While it is open, no other
+// process can open it. Saved data survive the end of the process.
 #pragma once
 
 #include <memory>
@@ -11,17 +11,18 @@
 
 namespace thunderhead::store {
 
-// What a loss of power may cost. The end of the process costs nothing.
+// How much saved data a loss of power may lose. The end of the process loses no saved data.
 enum class Durability {
-  kSoon,    // may lose the last seconds
-  kAtOnce,  // loses nothing; each transaction costs an fsync
+  kSoon,    // a loss of power may lose the changes of the last seconds
+  kAtOnce,  // a loss of power loses no change; each transaction costs an fsync
 };
 
 class StateFile {
  public:
   // Creates the file, accessible only to this user, or updates the tables of an older version.
-  // FAILED_PRECONDITION, naming the file and the remedy, if another process has it open, or if it
-  // has a newer version or belongs to another program. DATA_LOSS if it is damaged.
+  // Returns FAILED_PRECONDITION, with the file and instructions, in three cases: another process
+  // has opened the file, the file has a newer version, or it belongs to another program. Returns
+  // DATA_LOSS if the file is damaged.
   static absl::StatusOr<std::shared_ptr<StateFile>> Open(const std::string& path);
 
   // Opens a connection. Each thread that uses the file needs its own, which must not outlive this

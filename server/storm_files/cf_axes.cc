@@ -13,16 +13,19 @@ namespace {
 
 constexpr std::size_t kMaxCells = 100'000;
 
-// Tolerances. Coordinates are often stored as floats, and rounded when they are written.
+// Relative tolerances. They are necessary because coordinates are often rounded when they are
+// written, or stored as floats.
 constexpr double kEvenTolerance = 1e-2;
 constexpr double kLatticeTolerance = 1e-4;
 
-// Maximum number of cells for uneven layers, divided by the number of layers.
+// The maximum number of cells per layer, on average, when uneven layers are divided into even
+// cells.
 constexpr int kMaxRefinement = 16;
 
 struct Coordinate {
   std::vector<double> centres_m;  // in the file's order
-  std::vector<double> faces_m;    // one more, from bounds; empty if the file gives none
+  std::vector<double> faces_m;    // one face more than centres, from the bounds; empty if the file
+                                  // has no bounds
   std::optional<double> middle_deg;
 };
 
@@ -47,7 +50,8 @@ absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
                                                    ", 2)"));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<double> pairs, file.ReadDoubles(*name));
-  // Pairs may be in descending order on an ascending axis, and the other way round.
+  // The two bounds of a cell may be in descending order although the axis ascends, or in ascending
+  // order although it descends.
   if (cells > 1 && (pairs[0] < pairs[1]) != (pairs[0] < pairs[2])) {
     for (std::size_t i = 0; i < cells; ++i) std::swap(pairs[2 * i], pairs[2 * i + 1]);
   }
@@ -63,8 +67,8 @@ absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
   return faces;
 }
 
-// Returns whether a coordinate is a longitude or latitude by its name, because its units may be
-// missing.
+// Returns whether the name of a coordinate is that of a longitude or latitude. The name is used
+// because the units may be missing.
 bool IsAngle(const CfDescription& coordinate) {
   const std::string name = absl::AsciiStrToLower(
       coordinate.standard_name.empty() ? coordinate.name : coordinate.standard_name);
@@ -92,7 +96,7 @@ absl::StatusOr<double> MetresPerUnit(const netcdf::NetcdfFile& file,
           : "'; m, km or degrees are needed"));
 }
 
-// Returns 1, or -1 for depths.
+// Returns 1 for a coordinate that increases upwards, or -1 for a depth, which increases downwards.
 absl::StatusOr<double> UpwardSign(const netcdf::NetcdfFile& file, const CfDescription& coordinate) {
   const std::string positive = absl::AsciiStrToLower(coordinate.positive);
   if (positive.empty() || positive == "up") return 1.0;
@@ -159,7 +163,7 @@ bool IsEven(const std::vector<double>& rising) {
 }
 
 struct Faces {
-  std::vector<double> faces_m;  // empty if there are none
+  std::vector<double> faces_m;  // empty if no faces fit
   double max_change = 1.0;      // largest ratio of thickness between neighbouring cells
 };
 
@@ -181,9 +185,9 @@ Faces FacesFrom(double low_m, const std::vector<double>& centres_m) {
   return faces;
 }
 
-// Returns the faces of two or more cells around `centres_m`. If possible, these are the cells'
-// exact centres, and the cells start at the ground. Otherwise faces are half-way between
-// neighbours.
+// Returns the faces of the cells around two or more `centres_m`. If possible, the cells start at
+// the ground and `centres_m` are exactly their centres. Otherwise each face is half-way between two
+// neighbouring centres.
 std::vector<double> FacesAround(const std::vector<double>& centres_m) {
   const double even_low_m = 1.5 * centres_m[0] - 0.5 * centres_m[1];
   std::vector<double> faces_m;
@@ -207,8 +211,8 @@ std::vector<double> FacesAround(const std::vector<double>& centres_m) {
   return faces_m;
 }
 
-// Returns the faces of a single cell without bounds. It is assumed to begin at 0, like a layer on
-// the ground.
+// Returns the faces of an axis's only cell, if it has no bounds. The cell is assumed to begin at 0,
+// like a layer on the ground.
 absl::StatusOr<std::vector<double>> FacesOfOne(const netcdf::NetcdfFile& file,
                                                const std::string& dimension, CfDirection direction,
                                                double centre_m, double size_without_bounds_m) {
@@ -236,8 +240,8 @@ double Thinnest_m(const std::vector<double>& faces_m) {
   return thinnest_m;
 }
 
-// Returns the least number of cells per thinnest layer such that all layers' faces are faces of
-// cells. Returns 0 if there is none.
+// Returns the smallest number of cells in the thinnest layer with which every face of a layer is
+// also a face of a cell. Returns 0 if there is no such number.
 int CommonDivisor(const std::vector<double>& faces_m, int max_cells) {
   const double thinnest_m = Thinnest_m(faces_m);
   const double depth_m = faces_m.back() - faces_m.front();

@@ -31,7 +31,8 @@ class CfRecordReader final : public RecordReader {
   const CfMetadata metadata_;
 };
 
-// Returns a text that is the same for all files of one run: the variables and their layers.
+// Returns StormFile::run: a text with the names of the variables and their layers, which is the
+// same for all files of one run.
 std::string RunOf(const CfMetadata& metadata) {
   std::string run;
   for (const CfField& field : metadata.fields) absl::StrAppend(&run, field.variable.name, " ");
@@ -72,8 +73,9 @@ class CfFormat final : public StormFormat {
     if (x.middle_deg.has_value() && y.middle_deg.has_value()) {
       file.longitude_deg = x.middle_deg;
       file.latitude_deg = y.middle_deg;
-      // The reader converts degrees to metres evenly, with the scale at the middle. Degrees of a
-      // rotated grid are not places on Earth.
+      // A projection exists only for degrees of longitude and latitude. The reader converts degrees
+      // to metres with one scale, that at the middle of the domain. Degrees of a rotated grid are
+      // not places on Earth.
       const CfDescription described = DescribeCf(*unknown.netcdf, x.dimension);
       if (!absl::StartsWith(described.standard_name, "grid_")) {
         file.projection = absl::StrFormat(

@@ -80,7 +80,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
   for (const CfDescription& variable : variables) {
     const std::optional<CfQuantity> quantity = QuantityOf(variable);
     if (!quantity.has_value()) continue;
-    // Column totals and similar variables may have the same names.
+    // Variables without a height axis, such as column totals, may have the same names.
     THUNDERHEAD_ASSIGN_OR_RETURN(const auto shape, file.Shape(variable.name));
     if (shape.size() < 3) continue;
     THUNDERHEAD_RETURN_IF_ERROR(CheckQuantityUnits(file, variable, *quantity));
@@ -158,7 +158,8 @@ absl::Status ReadAxes(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   };
   const bool single_y = file.DimensionLength(names[static_cast<std::size_t>(first.y)]) == 1U;
   CfSizes sizes{kMetresPerDegree, 0.0};
-  // A slice that is one cell wide is assumed to be as wide as its other cells.
+  // If the domain is only one cell wide along one horizontal axis, that width is assumed to be the
+  // cell size along the other axis.
   if (single_y && read(first.x, CfDirection::kX, sizes, &x).ok()) sizes.single_cell_m = x.spacing_m;
   THUNDERHEAD_RETURN_IF_ERROR(read(first.y, CfDirection::kY, sizes, &y));
   const double latitude_deg = y.middle_deg.value_or(0.0);
@@ -173,7 +174,7 @@ absl::Status ReadAxes(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   return absl::OkStatus();
 }
 
-// Checks that the variable is on the same axes as the first variable.
+// Checks that the variable has the same x, y and z dimensions as the first field.
 absl::Status CheckSameAxes(const netcdf::NetcdfFile& file, const CfVariable& variable,
                            const CfMetadata& metadata) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto names, file.Dimensions(variable.name));
@@ -189,8 +190,8 @@ absl::Status CheckSameAxes(const netcdf::NetcdfFile& file, const CfVariable& var
   return absl::OkStatus();
 }
 
-// Returns the dimensions of a variable of wind or turbulent energy. An error says why it cannot be
-// used.
+// Returns the dimensions of a variable of wind or turbulent energy. An error says why the variable
+// cannot be used.
 absl::StatusOr<CfVariable> ArrangeWind(const netcdf::NetcdfFile& file,
                                        const CfDescription& variable, const CfWind& wind,
                                        const CfMetadata& metadata) {
@@ -261,8 +262,8 @@ absl::Status CheckCalendar(const netcdf::NetcdfFile& file, const std::string& na
       "count from a later date, or set the attribute calendar to 'proleptic_gregorian'"));
 }
 
-// Returns the units of the time coordinate. Returns nothing if it has none and there is only one
-// time, which needs none.
+// Returns the units of the time coordinate. Returns nothing if the coordinate has no units and
+// there is only one time, for which no units are needed.
 absl::StatusOr<std::optional<TimeUnits>> ReadTimeUnits(const netcdf::NetcdfFile& file,
                                                        const std::string& name,
                                                        std::size_t records) {
@@ -321,7 +322,8 @@ absl::Status ReadCfTimes(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   return CheckCalendar(file, name, *units->origin, metadata->times);
 }
 
-// Finds the ground's height. It is optional, so a height that cannot be read is left out.
+// Finds the variable with the height of the ground. The height is optional, so a variable that
+// cannot be read is ignored.
 std::optional<CfSurface> FindSurface(const netcdf::NetcdfFile& file,
                                      const std::vector<CfDescription>& variables,
                                      const CfMetadata& metadata) {

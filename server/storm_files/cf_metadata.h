@@ -18,7 +18,8 @@ namespace thunderhead::storm_files {
 // A variable on x, y and z, in any order.
 struct CfVariable {
   std::string name;
-  // The index of each axis among the variable's dimensions. `time` is -1 if there is no such axis.
+  // The index of each axis among the variable's dimensions. `time` is -1 if the variable has no
+  // time axis.
   int x = -1;
   int y = -1;
   int z = -1;
@@ -41,10 +42,10 @@ struct CfWindField {
   WindVariable wind;
 };
 
-// The height of the ground on y, x.
+// The variable with the height of the ground, which has the dimensions y and x.
 struct CfSurface {
   std::string variable;
-  double metres = 1.0;  // metres in one unit of the variable
+  double metres = 1.0;  // length in metres of one unit of the variable
 };
 
 // The radius of the sphere on which degrees are converted to metres.
@@ -53,13 +54,15 @@ inline constexpr double kCfEarthRadius_m = 6.371e6;
 struct CfMetadata {
   std::string path;
   std::array<CfAxis, 3> axes;     // x, y, z
-  std::vector<absl::Time> times;  // at least one; year 1 if the file gives none
-  std::vector<CfField> fields;    // in the order of physics::kHydrometeors, or the extinction alone
-  std::vector<CfAirField> air;    // only the variables that mixing ratios need
+  std::vector<absl::Time> times;  // at least one; in year 1 if the file gives no dates
+  std::vector<CfField> fields;    // the hydrometeors in the order of physics::kHydrometeors, or
+                                  // only the extinction
+  std::vector<CfAirField> air;    // only the variables that are needed to convert mixing ratios to
+                                  // mass per volume
   // Turbulent energy, and either all three components of the wind or none.
   std::vector<CfWindField> wind;
   std::optional<CfSurface> surface;
-  std::string source;  // the file's title, else its source
+  std::string source;  // the file's title, or else its `source` attribute
 };
 
 // Returns whether the file has a variable whose name or standard name is that of a quantity that

@@ -110,7 +110,8 @@ void ApplyUnits(const std::string& units, CfQuantity* quantity) {
   const bool extinction = quantity->quantity == volume::Quantity::kExtinction;
   const std::string plain = PlainUnits(units);
   if (plain.empty()) {
-    // Extinction is 1/m unless the file says otherwise. An amount of water may be per kg or per m3.
+    // Without units, extinction is assumed to be in 1/m. The unit of an amount of water stays
+    // unknown, because it may be per kg or per m3.
     quantity->known_units = extinction;
     return;
   }

@@ -1,5 +1,5 @@
-// Recognises the quantity of a CF variable by its standard name, name and units, and the direction
-// of a dimension. These functions only look up names and do not depend on files.
+// Recognises which quantity a CF variable holds, by its standard name, name and units, and which
+// direction a dimension has. These functions only compare names and do not read files.
 #pragma once
 
 #include <optional>
@@ -20,16 +20,18 @@ struct CfDescription {
 };
 
 // Returns units in lower case without blanks, stars, carets, dots, brackets and underscores: "kg
-// m**-3" becomes "kgm-3". "Mg" keeps its capital, because one "Mg" is a thousand million "mg".
+// m**-3" becomes "kgm-3". "Mg" (megagram) keeps its capital letter, so that it differs from "mg"
+// (milligram).
 std::string PlainUnits(std::string_view units);
 
-// A variable that can be drawn. Values times `scale` are in the quantity's unit.
+// The quantity of a variable that can be drawn. The variable's values times `scale` are in the
+// quantity's unit.
 struct CfQuantity {
   physics::Hydrometeor hydrometeor = physics::Hydrometeor::kCloud;
   volume::Quantity quantity = volume::Quantity::kMixingRatio;
   double scale = 1.0;
-  bool of_moist_air = false;  // a mixing ratio that refers to moist, not dry air
-  bool known_units = true;    // false: recognised by name, but in units that cannot be converted
+  bool of_moist_air = false;  // true for a mixing ratio per mass of moist air instead of dry air
+  bool known_units = true;    // false if the name is recognised but the units cannot be converted
 };
 
 // Returns nothing if the variable is neither a hydrometeor nor extinction.
@@ -42,7 +44,7 @@ struct CfAir {
   AirVariable variable = AirVariable::kDensity;
   double scale = 1.0;
   double offset = 0.0;
-  bool of_moist_air = false;  // vapour as specific humidity
+  bool of_moist_air = false;  // true if vapour is given as specific humidity
   bool known_units = true;
 };
 
@@ -53,7 +55,7 @@ enum class WindVariable { kEastward, kNorthward, kUpward, kTurbulentEnergy };
 
 struct CfWind {
   WindVariable variable = WindVariable::kEastward;
-  bool known_units = true;  // false: not in m s-1 or m2 s-2
+  bool known_units = true;  // false if the units are not m s-1 (wind) or m2 s-2 (energy)
 };
 
 std::optional<CfWind> WindVariableOf(const CfDescription& variable);
@@ -64,7 +66,8 @@ enum class CfDirection { kX, kY, kZ, kTime };
 // or name.
 std::optional<CfDirection> DirectionOf(const CfDescription& coordinate);
 
-// Returns the unit in metres, or nothing if it is not a length. An empty unit means metres.
+// Returns the length in metres of one unit, or nothing if `units` is not a unit of length. An empty
+// text means metres.
 std::optional<double> MetresIn(std::string_view units);
 
 // Returns whether the units are degrees along x (of longitude) or y (of latitude), or degrees

@@ -21,7 +21,8 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// Values below kMinAmount are codes for "missing". Air never holds more than kMaxAmount.
+// The plausible range of mixing ratios in kg/kg. Smaller values are codes for "missing", and air
+// never holds more than kMaxAmount.
 constexpr float kMinAmount = -0.5F;
 constexpr float kMaxAmount = 0.5F;
 
@@ -72,8 +73,8 @@ class CfTimeReader {
   std::vector<std::pair<AirVariable, std::vector<float>>> air_;
 };
 
-// Returns the values of the record in the file's own layers, x fastest, then northwards, then
-// upwards.
+// Returns the values of the record in the file's own layers. x runs fastest, then y (northwards),
+// then height (upwards).
 absl::StatusOr<std::vector<float>> CfTimeReader::ReadLayers(const CfVariable& variable) const {
   const auto rank = static_cast<std::size_t>(variable.dimensions);
   std::vector<std::size_t> start(rank, 0);
@@ -282,8 +283,8 @@ absl::Status CfTimeReader::ReadMotion(volume::HydrometeorFields* fields) const {
   return absl::OkStatus();
 }
 
-// Returns the mean density. Fields of one file that refer to moist and to dry air share the density
-// of the first field.
+// Returns block means of the air density that mixing ratios refer to. There is only one result for
+// all fields: `moist` is that of the first field, even if other fields differ.
 volume::AirDensity CfTimeReader::MeanDensity(bool moist) const {
   const CfAxis& axis = metadata_.axes[2];
   const std::size_t columns = grid_.Offset(0, 0, 1);

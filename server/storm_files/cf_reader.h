@@ -1,6 +1,6 @@
 // Reads one time of a CF file into HydrometeorFields. Dimensions may be in any order, and axes in
-// any direction. Uneven layers are averaged onto even cells, and mixing ratios are multiplied by
-// the air's density. This code does not depend on the cache.
+// any direction. Layers of uneven thickness are averaged onto cells of equal thickness, and mixing
+// ratios are multiplied by the air's density. This code does not depend on the cache of storms.
 #pragma once
 
 #include <cstddef>

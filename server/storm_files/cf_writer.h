@@ -1,6 +1,6 @@
 // Writes a field on a regular grid as a CF netCDF storm file. Reading it back gives the same
 // values. The file is written under a temporary name and then renamed, so that a reader never sees
-// half a file.
+// an incomplete file.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@ struct CfCloud {
       volume::Quantity::kMassConcentration;  // cloud water (kg/m3), or extinction (1/m)
   std::vector<float> values;                 // grid.CellCount() values, x fastest
   std::string title;
-  std::string source;   // the program that made it
-  std::string comment;  // its parameters
+  std::string source;   // name of the program that made the cloud
+  std::string comment;  // parameters with which the cloud was made
 };
 
 // Writes the variable `lwc` (kg m-3) or `extinction` (m-1) on z, y, x in metres, compressed.

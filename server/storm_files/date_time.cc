@@ -12,7 +12,7 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// No place on Earth is further from UTC.
+// The largest offset from UTC of any time zone on Earth, in hours.
 constexpr int kMaxOffsetHours = 14;
 
 struct UnitOfTime {
@@ -110,10 +110,10 @@ std::optional<absl::Duration> TakeTimeOfDay(Scanner& text) {
   return time + absl::Seconds(*second) + absl::Seconds(text.TakeFraction());
 }
 
-// Takes the text after the sign: "6", "05", "5:30", "05:30" or "0530".
+// Takes the offset from UTC after its sign: "6", "05", "5:30", "05:30" or "0530".
 std::optional<absl::Duration> TakeOffset(Scanner& text) {
   const std::size_t digits = text.Digits();
-  if (digits == 3) return std::nullopt;  // "530" may be 5:30 or 53:0
+  if (digits == 3) return std::nullopt;  // "530" is ambiguous: 5:30 or 53:0
   std::optional<int> hours = text.TakeNumber(4);
   if (!hours.has_value()) return std::nullopt;
   std::optional<int> minutes = 0;

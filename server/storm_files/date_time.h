@@ -1,4 +1,5 @@
-// Parses dates, times of day and units of time in storm files. This code does not depend on files.
+// Parses the dates, times of day and units of time that storm files contain. This code does not
+// read files.
 #pragma once
 
 #include <optional>
@@ -9,15 +10,15 @@
 namespace thunderhead::storm_files {
 
 // Parses a date of the years 0 to 9999, with or without a time of day and an offset from UTC.
-// Examples are "2013-05-20_18:00:00", "2013-5-20 18:00:0.5 +05:30" and "2013-05-20". The calendar
-// is the proleptic Gregorian one. A date alone means midnight, and a text without an offset is in
-// UTC. Returns nothing for any other text, for hours above 23 (so for 24:00:00) and for leap
+// Examples are "2013-05-20_18:00:00", "2013-5-20 18:00:0.5 +05:30" and "2013-05-20". Dates are in
+// the proleptic Gregorian calendar. A date alone means midnight, and a text without an offset is in
+// UTC. Returns nothing for any other text, including hours above 23 (such as 24:00:00) and leap
 // seconds.
 std::optional<absl::Time> ParseDateTime(std::string_view text);
 
 struct TimeUnits {
   double seconds = 1.0;              // seconds in one unit
-  std::optional<absl::Time> origin;  // nothing for a duration without a date
+  std::optional<absl::Time> origin;  // the date after "since"; nothing if there is none
 };
 
 // Parses units such as "minutes since 2013-05-20 18:00" or "s". The units may be seconds, minutes,

@@ -11,8 +11,8 @@ namespace {
 
 constexpr float kSmallestNormal = std::numeric_limits<float>::min();
 
-// Advection undershoots zero by about 1e-13. Values below this limit are codes for "missing", such
-// as -999.
+// Advection schemes produce small negative values, of about -1e-13. Values below this limit are
+// codes for "missing", such as -999.
 constexpr float kMinMixingRatio = -0.5F;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -22,7 +22,8 @@ struct ScanRange {
   float maximum = -kInfinity;
 };
 
-// Converts one level: `values` in place, and adds mass per area to `water_path`.
+// Converts the `values` of one level in place, and adds each cell's mass per area to its column's
+// `water_path`.
 void ScanLevel(const LayerAir& air, int level, float* values, volume::FieldStatistics& statistics,
                ScanRange& range, std::vector<double>& water_path) {
   const std::size_t offset = level * air.columns;

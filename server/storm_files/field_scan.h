@@ -1,4 +1,5 @@
-// Converts a mixing ratio from a file into mass per volume of air, with statistics.
+// Converts the mixing ratios of a file into mass per volume of air, and collects statistics about
+// them.
 #pragma once
 
 #include <vector>

@@ -17,7 +17,7 @@ float DensityOf(float pressure_Pa, float potential_temperature_K, float vapour_k
   // -999.
   constexpr float kHighestPressure_Pa = 1e6F;
   constexpr float kHighestTheta_K = 1e5F;
-  constexpr float kLowestVapour = -0.5F;  // advection undershoots zero slightly
+  constexpr float kLowestVapour = -0.5F;  // advection can make values slightly negative
   const bool usable = pressure_Pa > 0.0F && pressure_Pa < kHighestPressure_Pa &&
                       potential_temperature_K > 0.0F && potential_temperature_K < kHighestTheta_K &&
                       vapour_kg_per_kg > kLowestVapour;

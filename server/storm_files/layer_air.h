@@ -1,4 +1,4 @@
-// The air of a WRF file's layers: heights and density of dry air.
+// The heights of a WRF file's layers and the density of dry air in them.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,18 @@ struct LayerAir {
   std::size_t columns = 0;
   std::vector<float> interface_height_m;         // (levels + 1) * columns; NaN where missing
   std::vector<float> dry_air_density_kg_per_m3;  // levels * columns; NaN where an input is missing
-  std::vector<float> temperature_K;              // the same size; empty if nothing depends on it
+  std::vector<float> temperature_K;              // levels * columns; empty if no field needs it
 };
 
 // Computes heights from the sum of perturbation and base geopotential (m2/s2), in place.
 // Implausible heights become NaN.
 void GeopotentialToHeight(const std::vector<float>& base, std::vector<float>& geopotential);
 
-// The state of the layers, from the file. Missing values are NaN.
+// The state of the air in each layer, as the file gives it. Missing values are NaN.
 struct LayerState {
   std::vector<float> pressure_Pa;
   std::vector<float> potential_temperature_K;
-  std::vector<float> vapour_kg_per_kg;  // empty: dry air
+  std::vector<float> vapour_kg_per_kg;  // empty if the air is dry
 };
 
 // Returns the temperature of every layer. It is meaningless where the density is NaN.

@@ -1,4 +1,4 @@
-// Finds out when the run that wrote a storm file began.
+// Determines when the model run that wrote a storm file began.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace thunderhead::storm_files {
 
-// Returns nothing if the file does not contain the start. Only WRF's files contain it so far
+// Returns nothing if the file does not contain the start. Only WRF files contain it
 // (SIMULATION_START_DATE).
 std::optional<absl::Time> RunStart(const StormFile& file);
 

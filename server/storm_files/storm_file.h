@@ -17,19 +17,20 @@
 
 namespace thunderhead::storm_files {
 
-// A function that is called before each variable with the share done so far, 0 to 1. If it returns
-// an error, the reading stops with that error. It may be empty.
+// A function that a reader calls before it reads each variable. `share` is the part of the work
+// done so far, 0 to 1. If the function returns an error, the reading stops with that error. The
+// function may be empty.
 using ReadCheckpoint = std::function<absl::Status(double share)>;
 
-// Reads the records of one file that its format has described. It holds no open file between calls,
-// and is safe to call from any thread. Errors name the file, the variable and what to do. There is
-// never a partial result.
+// Reads the records of one file that its format has described. It keeps no file open between calls,
+// and is safe to call from any thread. Errors name the file, the variable and what to do. Each
+// function returns a complete result or an error.
 class RecordReader {
  public:
   virtual ~RecordReader() = default;
 
-  // Reads record `record`. `grid` is the storm's height grid. If absent, the grid is chosen from
-  // this record. A format whose heights are the same at all times can ignore it.
+  // Reads record `record`. `grid` is the storm's height grid. If it is absent, the reader chooses a
+  // grid from this record. A format whose heights are the same at all times can ignore `grid`.
   virtual absl::StatusOr<volume::HydrometeorFields> Read(
       std::size_t record, const std::optional<VerticalGrid>& grid,
       const ReadCheckpoint& checkpoint) const = 0;
@@ -41,8 +42,8 @@ class RecordReader {
 // Maximum number of times in a file.
 inline constexpr std::size_t kMaxTimes = 1'000'000;
 
-// Returns INVALID_ARGUMENT if the file at `path` has more records than kMaxTimes. Called before
-// they are read.
+// Returns INVALID_ARGUMENT, naming the file `path`, if `records` exceeds kMaxTimes. A format calls
+// this function before it reads the file's times.
 absl::Status CheckRecords(const std::string& path, std::size_t records);
 
 struct StormFile {
@@ -52,18 +53,20 @@ struct StormFile {
   double dy_m = 0.0;
   std::vector<absl::Time> times;             // one for each record, in the file's order
   std::vector<physics::Hydrometeor> fields;  // in the order of physics::kHydrometeors
-  std::string about;                         // for people, e.g. "WRF V4.7.1, idealised"
+  std::string about;                         // short description for users, e.g. "WRF V4.7.1,
+                                             // idealised"
   int domain = 1;                            // number of the nested grid, counted from 1
-  std::string run;                           // differs between files of different runs
-  std::optional<double> latitude_deg;        // latitude of the middle
+  std::string run;                           // text that is the same for all files of one run, and
+                                             // different for other runs
+  std::optional<double> latitude_deg;        // latitude of the middle of the domain
   std::optional<double> longitude_deg;
   std::string projection;  // the grid's projection, as PROJ writes it; empty if none
   std::shared_ptr<const RecordReader> reader;
-  // A number that changes if another file replaced this one, or if it was written anew. It stays
-  // the same while the file only gets more times.
+  // A number that changes if another file replaces this file, or if the file is written anew. The
+  // number stays the same while the file only gets more times.
   std::uint64_t version = 0;
-  // Identifies the file that was described (base::FileStamp::Id), if its path is watched. Otherwise
-  // it is 0.
+  // The identity (base::FileStamp::Id) of the file that was described, if its path is watched.
+  // Otherwise 0.
   std::uint64_t id = 0;
   // The device of the file when it was described (base::FileStamp::device). 0 means unknown.
   std::uint64_t device = 0;

@@ -1,5 +1,5 @@
-// A format of storm files: how a file is recognised, described and read. The only list of formats
-// is in built_in_formats.cc.
+// The interface of a storm file format: how a file is recognised, described and read.
+// built_in_formats.cc lists all formats.
 #pragma once
 
 #include <functional>
@@ -15,18 +15,19 @@
 
 namespace thunderhead::storm_files {
 
-// A file of unknown format. It is opened once for all formats.
+// A file whose format is not known yet. It is opened once, and all formats examine the open file.
 struct UnknownFile {
   std::string path;
-  absl::StatusOr<netcdf::NetcdfFile> netcdf;  // the error says why it cannot be opened as netCDF
+  absl::StatusOr<netcdf::NetcdfFile> netcdf;  // the open file, or the error why it cannot be opened
+                                              // as netCDF
 };
 
-// How closely a file fits a format. The closest fit wins. A model's own layout wins over a
-// convention, because the model's files may also follow the convention.
+// How closely a file fits a format. The format with the closest fit is used. A model's own layout
+// wins over a convention, because the model's files may also follow the convention.
 enum class FormatFit {
   kNone,
-  kConvention,   // follows a convention shared by many programs
-  kModelLayout,  // has the layout of one model's files
+  kConvention,   // the file follows a convention that many programs share
+  kModelLayout,  // the file has the layout of one model's files
 };
 
 // A format has no state: one instance serves all files and threads.
@@ -40,8 +41,8 @@ class StormFormat {
   // Returns an example of a file for messages, e.g. "wrfout_...".
   virtual std::string_view Example() const = 0;
 
-  // Returns the name for messages, with what a file that does not fit lacks, e.g. "WRF output (it
-  // has no dimension bottom_top)".
+  // Returns the name with a requirement that a file without this format does not meet, for
+  // messages. An example is "WRF output (it has no dimension bottom_top)".
   virtual std::string_view Requirement() const = 0;
 
   // Checks the file quickly. Reads no fields and never fails.

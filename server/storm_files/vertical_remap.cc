@@ -11,8 +11,8 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// Number of columns processed together. It is a cache line of floats, so that each line is fetched
-// once.
+// The number of columns that are processed together. Their floats fill one cache line, so that each
+// cache line is fetched once.
 constexpr std::size_t kTile = 16;
 
 struct HeightRange {
@@ -31,7 +31,7 @@ HeightRange RangeOf(const std::vector<float>& interface_height_m) {
   return {low_m, high_m};
 }
 
-// Returns the smallest over levels of the mean thickness of a level's layers.
+// Returns the mean thickness over columns of the level for which this mean is smallest.
 double ThinnestLevel_m(const std::vector<float>& interface_height_m, int levels,
                        std::size_t columns) {
   double thinnest_m = std::numeric_limits<double>::infinity();
@@ -141,8 +141,8 @@ VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, in
   // With at most a quarter more cells than levels, memory stays below 1.5 times the file's
   // uncompressed size.
   const int max_cells = std::max(1, levels * 5 / 4);
-  // The layers of later times are a little higher or lower. The margin keeps the grid the same for
-  // all of them.
+  // The layers' heights vary a little between the times of a storm. Because of this margin, one
+  // grid fits all times.
   constexpr double kRoomAbove = 0.005;
   const double extent_m =
       (range.high_m - range.low_m) * (max_cells > levels ? 1.0 + kRoomAbove : 1.0);
@@ -179,7 +179,7 @@ void RemapColumn(const Layers& layers, std::size_t column, const VerticalGrid& g
     int cell = static_cast<int>(std::clamp(start, 0.0, grid.cells - 1.0));
     double from_m = layer.bottom_m;
     while (from_m < layer.top_m) {
-      // The last cell takes all that is left, so nothing is lost above the grid.
+      // The grid's last cell takes the rest of the layer, so that no mass above the grid is lost.
       const double cell_top_m = grid.low_m + (cell + 1) * grid.spacing_m;
       const bool last = cell + 1 == grid.cells || cell_top_m >= layer.top_m;
       const double to_m = last ? layer.top_m : std::max(cell_top_m, from_m);

@@ -1,4 +1,4 @@
-// Remaps terrain-following layers to a regular height grid and conserves every column's mass. A
+// Remaps terrain-following layers to a regular height grid, so that every column keeps its mass. A
 // target cell gets the integral of the layers over it. Within a layer the profile is linear, with
 // its slope limited so that no new extreme appears (van Leer 1977). This code is pure arithmetic
 // and does not depend on files.
@@ -23,20 +23,22 @@ struct Layers {
   const float* interface_height_m;  // (levels + 1) * stride values
   const float* concentration;       // levels * stride values, none below zero and none NaN
   int levels;
-  std::size_t stride;  // from one level of a column to its next
+  std::size_t stride;  // number of values from one level of a column to the next level
 };
 
 // Returns a grid that reaches from the lowest to the highest interface of `columns` columns, with a
-// small margin above. It is as fine as the thinnest layer, but has at most 1.25 times as many cells
-// as levels. `cells` is zero if all layers are missing.
+// small margin above. Its cells are as thin as the thinnest level (mean over columns), but there
+// are at most 1.25 times as many cells as levels. VerticalGrid::cells is zero if all layers are
+// missing.
 VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, int levels,
                                 std::size_t columns);
 
 // Returns `grid` extended by whole cells below and above until it contains every interface.
 VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m);
 
-// Adds the column at `column` of `layers` to `target`. The target is `grid.cells` means that start
-// at zero and are `target_stride` apart. Mass outside the grid goes into its outermost cells.
+// Adds the concentration in column `column` of `layers` to `target`, which holds one mean for each
+// of the `grid.cells` cells. These means are `target_stride` values apart and must be zero before
+// the call. Mass outside the grid goes into its outermost cells.
 void RemapColumn(const Layers& layers, std::size_t column, const VerticalGrid& grid, float* target,
                  std::size_t target_stride);
 

@@ -14,9 +14,10 @@ namespace thunderhead::storm_files {
 namespace {
 
 constexpr double kSteeringDepth_m = 6e3;
-constexpr float kEnergyOfDeformation = 0.4F;  // root of the energy over l |D|: 0.2^2 / 0.1
+constexpr float kEnergyOfDeformation = 0.4F;  // square root of the energy, divided by l |D|: 0.2^2
+                                              // / 0.1
 
-// Values at the centres of cells.
+// Values at the centres of cells, for computing derivatives.
 struct Centred {
   const std::vector<float>& values;
   glm::ivec3 cells;
@@ -32,7 +33,7 @@ struct Centred {
   }
 };
 
-// Returns the means of both faces along `axis`.
+// Returns for each cell the mean of the values on its two faces along `axis`.
 std::vector<float> MiddlesOf(const std::vector<float>& faces, const glm::ivec3& cells, int axis) {
   glm::ivec3 size = cells;
   size[axis] += 1;
@@ -74,7 +75,8 @@ float DeformationSquared(const glm::vec3& u, const glm::vec3& v, const glm::vec3
   return 2.0F * (u.x * u.x + v.y * v.y + w.z * w.z) + xy * xy + xz * xz + yz * yz;
 }
 
-// Returns the mean height of the mass of cloud water, or of all frozen hydrometeors.
+// Returns the mean height, weighted by mass, of all frozen hydrometeors (if `frozen`) or of cloud
+// water.
 std::optional<double> MeanHeight_m(const volume::HydrometeorFields& fields, bool frozen) {
   double mass = 0.0;
   double moment = 0.0;
@@ -96,7 +98,7 @@ std::optional<double> MeanHeight_m(const volume::HydrometeorFields& fields, bool
   return moment / mass;
 }
 
-// Returns the wind of the level at a height.
+// Returns the wind of the level that contains `height_m`.
 glm::dvec2 WindAt(double height_m, const std::vector<glm::dvec2>& winds,
                   const std::vector<double>& interface_height_m) {
   std::size_t level = 0;

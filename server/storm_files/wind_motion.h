@@ -17,8 +17,8 @@ struct StaggeredWind {
   double dx_m = 0.0;
   double dy_m = 0.0;
   std::vector<float> u_m_per_s;  // (x + 1) * y * z values, on the cells' western and eastern faces
-  std::vector<float> v_m_per_s;  // x * (y + 1) * z, on southern and northern ones
-  std::vector<float> w_m_per_s;  // x * y * (z + 1), on lower and upper ones
+  std::vector<float> v_m_per_s;  // x * (y + 1) * z values, on the southern and northern faces
+  std::vector<float> w_m_per_s;  // x * y * (z + 1) values, on the lower and upper faces
 };
 
 struct Wind {
@@ -34,22 +34,24 @@ struct Wind {
 
 Wind WindInCells(const StaggeredWind& wind, const std::vector<float>& interface_height_m);
 
-// Returns the turbulent kinetic energy (m2/s2) of each cell that subgrid eddies have in equilibrium
-// with the deformation |D| of the resolved wind. It is (0.4 l |D|)^2, where l is the cube root of
-// the cell's volume. It follows from Smagorinsky's eddy viscosity (0.2 l)^2 |D| and Deardorff's 0.1
-// l e^(1/2) (Smagorinsky 1963, Deardorff 1980). It is 0 where an input is missing.
+// Returns the turbulent kinetic energy (m2/s2) of the subgrid eddies in each cell. The eddies are
+// assumed to be in equilibrium with the deformation |D| of the resolved wind. The energy is (0.4 l
+// |D|)^2, where l is the cube root of the cell's volume. This formula follows from Smagorinsky's
+// eddy viscosity (0.2 l)^2 |D| and Deardorff's 0.1 l e^(1/2) (Smagorinsky 1963, Deardorff 1980).
+// The energy is 0 where an input is missing.
 std::vector<float> EnergyOfDeformation(const Wind& wind);
 
-// Returns the means of the interfaces below and above each layer, from `levels` + 1 interfaces of
-// `columns` columns.
+// Returns for each layer the mean of the values at its lower and upper interface. `at_interfaces`
+// has `levels` + 1 values for each of `columns` columns.
 std::vector<float> LayerMeans(const std::vector<float>& at_interfaces, int levels,
                               std::size_t columns);
 
-// Returns the mean of each of `levels` levels without missing values, or NaN where all are missing.
+// Returns the mean of the values of each level, leaving out missing values. The mean is NaN for a
+// level whose values are all missing.
 std::vector<double> LevelMeans(const std::vector<float>& values, int levels);
 
-// Returns the mean wind over all of `u_m_per_s` and `v_m_per_s` at each level, or 0 where all are
-// missing.
+// Returns the mean wind of each level, from the components `u_m_per_s` and `v_m_per_s`. The mean is
+// 0 for a level whose values are all missing.
 std::vector<glm::dvec2> MeanWinds(const std::vector<float>& u_m_per_s,
                                   const std::vector<float>& v_m_per_s, int levels);
 
@@ -59,8 +61,10 @@ std::vector<glm::dvec2> MeanWinds(const std::vector<float>& u_m_per_s,
 glm::dvec2 SteeringWind_m_per_s(const std::vector<glm::dvec2>& winds,
                                 const std::vector<double>& interface_height_m);
 
-// Returns the wind at the mean height of the fields' ice minus the wind at that of their cloud
-// water. `winds` are those of levels between `interface_height_m`. Returns 0 unless there are both.
+// Returns the wind difference between two heights of the fields. The heights are the mean height of
+// frozen hydrometeors and, subtracted, the mean height of cloud water. `winds` has one value for
+// each level, and `interface_height_m` one height more. Returns 0 if the fields have no ice or no
+// cloud water.
 glm::dvec2 Shear_m_per_s(const volume::HydrometeorFields& fields,
                          const std::vector<glm::dvec2>& winds,
                          const std::vector<double>& interface_height_m);

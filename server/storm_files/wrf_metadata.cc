@@ -25,7 +25,7 @@ using physics::Hydrometeor;
 constexpr std::array<std::string_view, physics::kHydrometeorCount> kHydrometeorVariables = {
     "QCLOUD", "QRAIN", "QICE", "QSNOW", "QGRAUP", "QHAIL"};
 
-// Accepted spellings of a unit, after removing blanks, stars, carets, dots and brackets.
+// The accepted spellings of a unit, without blanks, stars, carets, dots and brackets.
 struct Unit {
   std::string_view name;
   std::array<std::string_view, 4> spellings;
@@ -136,8 +136,8 @@ absl::Status ReadGrid(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
   return absl::OkStatus();
 }
 
-// Parses a time. A time of the model has a time of day to the second. A row that is only partly
-// written is shorter.
+// Parses a row of Times. Returns nothing for a row that is shorter than a time with seconds,
+// because WRF has only partly written such a row.
 std::optional<absl::Time> ParseWrfTime(const std::string& text) {
   constexpr std::size_t kWhole = std::string_view("2013-05-20_20:00:00").size();
   if (absl::StripAsciiWhitespace(text).size() < kWhole) return std::nullopt;
@@ -164,7 +164,7 @@ absl::Status NoTimes(const netcdf::NetcdfFile& file) {
                    "again when it has finished"));
 }
 
-// Returns the units of XTIME. They are minutes since the start of the run unless the file says
+// Returns the units of XTIME. The units are minutes since the start of the run unless the file says
 // otherwise.
 absl::StatusOr<TimeUnits> ReadXtimeUnits(const netcdf::NetcdfFile& file) {
   const std::string text = file.TextOrEmpty("XTIME", "units");
@@ -184,7 +184,7 @@ absl::StatusOr<TimeUnits> ReadXtimeUnits(const netcdf::NetcdfFile& file) {
   return TimeUnits{units->seconds, start};
 }
 
-// Returns times from XTIME, for files whose Times were left out.
+// Returns the times from the variable XTIME, for files without the variable Times.
 absl::StatusOr<std::vector<absl::Time>> TimesFromXtime(const netcdf::NetcdfFile& file) {
   TimeUnits units;
   if (file.HasVariable("XTIME")) {
@@ -321,8 +321,8 @@ absl::Status CheckVariables(const netcdf::NetcdfFile& file, WrfMetadata& metadat
       "; write at least one to the model's history output"));
 }
 
-// Returns the mean over the cells around the middle of the domain. Longitudes are unwrapped around
-// the first of them.
+// Returns the mean of `variable` over the cells around the middle of the domain. The values can be
+// longitudes, so each is first brought to within 180 degrees of the first value.
 absl::StatusOr<double> Middle(const netcdf::NetcdfFile& file, const std::string& variable,
                               const WrfMetadata& metadata) {
   const auto nx = static_cast<std::size_t>(metadata.cells.x);
@@ -341,7 +341,7 @@ absl::StatusOr<double> Middle(const netcdf::NetcdfFile& file, const std::string&
 }
 
 // Returns the projection of the grid as PROJ writes it, on WRF's sphere. Returns an empty text if
-// it is missing or is not in metres (a grid of degrees).
+// the projection is missing, or if the grid is in degrees instead of metres.
 std::string ProjectionOf(const netcdf::NetcdfFile& file) {
   const auto number = [&](const char* name) { return file.NumberAttribute("", name); };
   const std::optional<double> first_deg = number("TRUELAT1");
@@ -385,7 +385,8 @@ absl::Status ReadPlace(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
   return absl::OkStatus();
 }
 
-// Returns WRF's table of classes by its name, or else by its number of classes.
+// Returns the land-use scheme by the name of its table of classes, or else by the number of
+// classes.
 std::optional<physics::LandUseScheme> LandUseSchemeOf(const netcdf::NetcdfFile& file) {
   const std::string name = file.TextAttribute("", "MMINLU").value_or("");
   if (absl::StrContains(name, "MODI")) return physics::LandUseScheme::kModis;
@@ -396,8 +397,8 @@ std::optional<physics::LandUseScheme> LandUseSchemeOf(const netcdf::NetcdfFile& 
   return std::nullopt;
 }
 
-// Finds the land cover of a run with a place. Skips classes of an unknown table, and variables of
-// unexpected shape or units.
+// Finds the land-cover variables of a run with a place on Earth. Skips land use of an unknown
+// scheme, and variables of unexpected shape or units.
 WrfLand FindLand(const netcdf::NetcdfFile& file, const WrfMetadata& metadata) {
   WrfLand land;
   if (metadata.idealised || !metadata.latitude_deg.has_value()) return land;

@@ -20,15 +20,15 @@
 
 namespace thunderhead::storm_files {
 
-// Names of the variables of the land cover. A name is empty if the file lacks the variable.
+// The names of the land-cover variables. A name is empty if the file lacks the variable.
 struct WrfLand {
   physics::LandUseScheme scheme = physics::LandUseScheme::kUsgs;
   std::string land_use;
   std::string mask;  // XLAND (2 is water) or LANDMASK (0 is water)
   std::string albedo;
-  std::string green;       // percent
-  std::string snow_share;  // share of the cell
-  std::string snow_depth;  // in m, in place of the share
+  std::string green;       // variable in percent
+  std::string snow_share;  // variable with the snow-covered share of a cell
+  std::string snow_depth;  // variable with the depth in m, used if there is no share
 };
 
 struct WrfMetadata {
@@ -38,8 +38,8 @@ struct WrfMetadata {
   double dy_m = 0.0;
   std::vector<absl::Time> times;             // one for each record, in the file's order
   std::vector<physics::Hydrometeor> fields;  // in the order of physics::kHydrometeors
-  // The variable of each field's particle sizes, indexed by physics::IndexOf. It has no name if
-  // there is no such variable.
+  // The variable of each field's particle sizes, indexed by physics::IndexOf. Its name is empty if
+  // the file has no such variable.
   std::array<volume::SizeVariable, physics::kHydrometeorCount> sizes;
   physics::Microphysics microphysics = physics::Microphysics::kUnknown;
   // The variable of turbulent kinetic energy, without a name if there is none. Boundary layer
@@ -50,17 +50,17 @@ struct WrfMetadata {
     bool doubled = false;
   };
   Energy energy;
-  bool has_wind = false;  // U, V and W
+  bool has_wind = false;  // true if the file has U, V and W
   bool has_vapour = false;
   bool has_terrain = false;
-  WrfLand land;                        // without names for an idealised run
+  WrfLand land;                        // all names are empty for an idealised run
   std::string model;                   // "WRF V4.7.1"
-  bool idealised = false;              // no place on Earth
+  bool idealised = false;              // true if the run has no place on Earth
   int domain = 1;                      // GRID_ID, counted from 1
-  std::string simulation_start;        // as in the file; differs between runs
-  std::optional<double> latitude_deg;  // latitude of the middle
+  std::string simulation_start;        // SIMULATION_START_DATE as in the file; differs between runs
+  std::optional<double> latitude_deg;  // latitude of the middle of the domain
   std::optional<double> longitude_deg;
-  std::string projection;  // as PROJ writes it; empty if it has none
+  std::string projection;  // as a PROJ string; empty if the grid has no projection
 };
 
 // Returns WRF's name of a hydrometeor's mixing ratio, e.g. "QCLOUD".
@@ -70,7 +70,7 @@ std::string_view WrfVariableOf(physics::Hydrometeor hydrometeor);
 // to do.
 absl::StatusOr<WrfMetadata> ReadWrfMetadata(const std::string& path);
 
-// Does the same for an open file.
+// Does the same for a file that is already open.
 absl::StatusOr<WrfMetadata> ReadWrfMetadata(const netcdf::NetcdfFile& file);
 
 }  // namespace thunderhead::storm_files

@@ -21,9 +21,11 @@ namespace {
 
 using physics::Hydrometeor;
 
-constexpr float kBaseTheta_K = 300.0F;  // WRF's T is potential temperature less this
+constexpr float kBaseTheta_K = 300.0F;  // WRF's variable T is the potential temperature minus this
+                                        // value
 
-// Air never carries half its mass in condensate. A file with such values is in g/kg.
+// The largest mixing ratio in kg/kg that is accepted. Air never carries half its mass in
+// condensate, so larger values are in g/kg.
 constexpr float kMaxMixingRatio = 0.5F;
 
 // Snow of this depth hides short plants.
@@ -35,8 +37,8 @@ struct RemappedField {
   std::vector<float> buffer;  // returned for the next variable to reuse
 };
 
-// Reads one record. Variables are read on the calling thread, one at a time. Another thread remaps
-// the previous variable meanwhile, because unpacking (netCDF) and remapping take about equally
+// Reads one record. Variables are read on the calling thread, one at a time. At the same time
+// another thread remaps the previous variable, because reading and remapping take about equally
 // long.
 class TimeReader {
  public:
@@ -149,7 +151,7 @@ absl::StatusOr<LayerState> TimeReader::ReadState() {
   return state;
 }
 
-// Reads the terrain. Missing heights are taken from the bottom of the lowest layer.
+// Reads the terrain. Where the height is missing, the bottom of the lowest layer replaces it.
 absl::Status TimeReader::ReadTerrain(volume::HydrometeorFields& result) {
   std::vector<float>& terrain = result.terrain_height_m;
   terrain.assign(air_.columns, std::nanf(""));
@@ -164,7 +166,7 @@ absl::Status TimeReader::ReadTerrain(volume::HydrometeorFields& result) {
   return absl::OkStatus();
 }
 
-// Reads the land cover of this time only, because snow changes.
+// Reads the land cover for this record, because snow cover changes with time.
 absl::Status TimeReader::ReadLand(volume::HydrometeorFields& result) {
   const WrfLand& names = metadata_.land;
   if (names.land_use.empty()) return absl::OkStatus();
@@ -234,7 +236,7 @@ absl::StatusOr<RemappedField> TimeReader::Remap(Hydrometeor hydrometeor, std::ve
   return remapped;
 }
 
-// Returns the origin of a field's sizes, still without sizes.
+// Returns the sizes of a field with only their origin and its name set.
 volume::ParticleSizes TimeReader::OriginOf(Hydrometeor hydrometeor) const {
   volume::ParticleSizes sizes;
   const volume::SizeVariable& variable = metadata_.sizes[physics::IndexOf(hydrometeor)];
@@ -271,7 +273,8 @@ absl::Status TimeReader::Take(std::future<absl::StatusOr<RemappedField>>& pendin
   return absl::OkStatus();
 }
 
-// Returns whether the scheme's distribution of snow is needed.
+// Returns whether the sizes of snow come from the scheme's distribution, which depends on
+// temperature.
 bool TimeReader::NeedsTemperature() const {
   return physics::HasDistribution(metadata_.microphysics, Hydrometeor::kSnow) &&
          std::ranges::find(metadata_.fields, Hydrometeor::kSnow) != metadata_.fields.end();
@@ -341,7 +344,7 @@ absl::StatusOr<StaggeredWind> TimeReader::ReadWind() {
   return wind;
 }
 
-// Returns turbulent kinetic energy in layers, m2/s2.
+// Returns the turbulent kinetic energy of each layer, in m2/s2.
 absl::StatusOr<std::vector<float>> TimeReader::ReadEnergy() {
   const WrfMetadata::Energy& variable = metadata_.energy;
   const int levels = air_.levels + (variable.at_interfaces ? 1 : 0);
@@ -397,7 +400,7 @@ absl::Status TimeReader::ReadMotion(volume::HydrometeorFields& result) {
   return absl::OkStatus();
 }
 
-// Removes the empty cells among those that were added above the storm's grid.
+// Removes those cells above the storm's grid that hold no condensate.
 void TrimTop(const VerticalGrid& storm_grid, volume::HydrometeorFields& fields) {
   volume::RegularGrid& grid = fields.grid;
   const double storm_top = (storm_grid.High_m() - grid.low_corner_m.z) / grid.spacing_m.z;

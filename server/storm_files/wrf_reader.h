@@ -1,6 +1,7 @@
-// Reads one time of a WRF output file into HydrometeorFields. Heights and dry-air density come from
-// the file's own state. Each hydrometeor's mixing ratio is multiplied by that density and remapped
-// to a regular height grid. This code does not depend on series of files or on the cache.
+// Reads one time of a WRF output file into HydrometeorFields. Heights and the density of dry air
+// are computed from the file's state of the air. Each hydrometeor's mixing ratio is multiplied by
+// that density and remapped to a regular height grid. This code does not depend on series of files
+// or on the cache of storms.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +16,8 @@
 namespace thunderhead::storm_files {
 
 // Reads record `record` of the file that `metadata` describes. `grid` is the storm's height grid.
-// If absent, the grid is chosen from this time's heights. A time whose condensate reaches beyond
-// the grid gets more cells of the same spacing. Errors name the file, the variable and what to do.
-// There is never a partial result.
+// If it is absent, the grid is chosen from the heights of this record. If condensate reaches beyond
+// the grid, cells of the same spacing are added. Errors name the file, the variable and what to do.
 absl::StatusOr<volume::HydrometeorFields> ReadWrfTime(const WrfMetadata& metadata,
                                                       std::size_t record,
                                                       const std::optional<VerticalGrid>& grid,

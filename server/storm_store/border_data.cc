@@ -19,7 +19,7 @@
 namespace thunderhead::storm_store {
 namespace {
 
-// One data set, and the tolerance with which it was simplified from the finest one.
+// One of the data sets, and the tolerance in m with which its lines were simplified.
 struct Detail {
   char letter;
   double tolerance_m;
@@ -27,19 +27,20 @@ struct Detail {
 constexpr std::array kDetails = {Detail{'f', 40.0}, Detail{'h', 200.0}, Detail{'i', 1000.0},
                                  Detail{'l', 5000.0}, Detail{'c', 25'000.0}};
 
-constexpr int kTexels = 1024;  // along the longer side
-// Lines continue beyond the domain by its longer side, within these limits.
+constexpr int kTexels = 1024;  // number of texels along the map's longer side
+// The map extends beyond the domain by the length of the domain's longer side, within these limits.
 constexpr double kLeastMargin_m = 100e3;
 constexpr double kMostMargin_m = 200e3;
 
-// Islands and lakes of a smaller area, in texels, are left out, because their lines would fill
-// them.
+// Islands and lakes with a smaller area than this are left out, because their lines would cover
+// their whole area.
 constexpr double kLeastArea_texels = 64.0;
 
-// The data's lines are straight in degrees. Splitting them into pieces keeps them straight in
-// degrees on the map.
+// The data's lines are straight in degrees of latitude and longitude, and therefore curved on the
+// map. Lines are split into pieces of at most this length, so that the map shows the curves.
 constexpr double kLongestPiece_deg = 0.1;
-// A piece that is longer on the map goes around the Earth, from one side of the map to the other.
+// A piece that is longer than this on the map crosses the seam of the map projection and must not
+// be drawn.
 constexpr double kLongestPiece_m = 50e3;
 
 // Number of probed places along each side of the grid. The bins there and their neighbours are
@@ -53,7 +54,8 @@ std::string FileOf(const std::string& folder, const char* kind, char letter) {
   return absl::StrCat(folder, "/binned_", kind, "_", std::string(1, letter), ".nc");
 }
 
-// Squares of latitude and longitude, from the north and from Greenwich eastwards.
+// The bins of a file: squares of latitude and longitude. Rows are counted from the north pole, and
+// columns eastwards from Greenwich.
 struct Bins {
   double side_deg = 0.0;
   int columns = 0;
@@ -73,7 +75,7 @@ struct Bins {
   }
 };
 
-// Returns the bins that hold a part of the grid, and their neighbours.
+// Returns the indices of the bins that overlap the grid, and of their neighbours.
 std::vector<int> BinsUnder(const Bins& bins, const volume::MapProjection& projection,
                            const volume::BorderGrid& grid) {
   std::vector<bool> wanted(static_cast<std::size_t>(bins.columns) *
@@ -219,8 +221,9 @@ class BinnedFile {
     return Range{static_cast<std::size_t>(first), static_cast<std::size_t>(first + count)};
   }
 
-  // Converts 1/65535 parts of a bin's side to degrees. The files store them as signed shorts. One
-  // of these values is netCDF's code for a missing value and is read as NaN.
+  // Converts a stored coordinate, in units of 1/65535 of a bin's side, to degrees. The files store
+  // coordinates as signed shorts. One of the short values is netCDF's code for a missing value and
+  // is therefore read as NaN.
   double Degrees(float stored) const {
     const int part = std::isnan(stored) ? -32'767 : static_cast<int>(stored);
     return bins_.side_deg * static_cast<std::uint16_t>(part) / 65'535.0;
@@ -267,14 +270,16 @@ void AddLine(const std::vector<volume::EarthPlace>& points, const volume::MapPro
 absl::Status AddCoasts(const std::string& path, const volume::MapProjection& projection,
                        const volume::BorderGrid& grid, std::vector<volume::BorderLine>& lines) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const BinnedFile file, BinnedFile::Open(path));
-  // The number of points begins at bit 9, the level at bit 6. The other bits are for filling.
+  // The number of points begins at bit 9 and the level at bit 6. The lower bits are needed only for
+  // filling polygons.
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<int> points,
                                file.Integers("Embedded_npts_levels_exit_entry_for_a_segment"));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<int> polygons, file.Integers("Id_of_GSHHS_ID"));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> areas_km2,
                                file.Doubles("The_km_squared_area_of_polygons"));
   if (points.size() != file.Segments() || polygons.size() != file.Segments()) return file.Damaged();
-  constexpr int kGroundedIce = 6;  // under Antarctica's ice shelves, whose front has its own line
+  constexpr int kGroundedIce = 6;  // the grounding line under Antarctica's ice shelves; the
+                                   // shelves' front has its own line
   std::vector<int> levels;
   for (int& embedded : points) {
     levels.push_back((embedded >> 6) & 7);
@@ -299,7 +304,7 @@ absl::Status AddBorders(const std::string& path, const volume::MapProjection& pr
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<int> levels,
                                file.Integers("Hierarchial_level_of_a_segment"));
   if (points.size() != file.Segments() || levels.size() != file.Segments()) return file.Damaged();
-  constexpr int kStates = 2;  // 1: between countries; 3: at sea
+  constexpr int kStates = 2;  // level 1: borders between countries; 2: between states; 3: at sea
   return file.ForEach(BinsUnder(file.AllBins(), projection, grid), points,
                       [&](std::size_t segment, const std::vector<volume::EarthPlace>& places) {
                         if (levels[segment] > kStates) return;

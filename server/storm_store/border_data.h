@@ -1,7 +1,7 @@
-// Coasts and borders of the whole Earth from the data package GSHHG, in the binned netCDF files
-// that GMT reads (Wessel and Smith 1996, J. Geophys. Res. 101, 8741-8743). Debian's packages are
-// gmt-gshhg-low and gmt-gshhg-high. The data are read for a storm with a place on Earth. This code
-// is safe to call from any thread.
+// Reads coastlines and borders of the whole Earth from the data package GSHHG, in the binned netCDF
+// files that GMT reads (Wessel and Smith 1996, J. Geophys. Res. 101, 8741-8743). Debian's packages
+// are gmt-gshhg-low and gmt-gshhg-high. They are read only for storms whose place on Earth is
+// known. This code is safe to call from any thread.
 #pragma once
 
 #include <map>
@@ -23,26 +23,27 @@ namespace thunderhead::storm_store {
 // The folder in which Debian's packages install the files.
 inline constexpr char kBorderFolder[] = "/usr/share/gmt-gshhg";
 
-// Returns the part of the world's plane around the columns of a grid on which lines are drawn.
+// Returns the texel grid on which lines are drawn. It covers the columns of `grid` and their
+// surroundings.
 volume::BorderGrid BorderGridOf(const volume::RegularGrid& grid);
 
 class BorderData {
  public:
-  // Returns the data in that folder, or null if there are none.
+  // Returns the data in `folder`, or null if the folder contains no border data.
   static std::shared_ptr<BorderData> Find(const std::string& folder);
 
-  // Returns the lines around a storm's grid, from the coarsest data that are as fine as the map's
-  // texels. Returns null for a storm without a map projection. If the data cannot be read, returns
-  // null and logs the error. A map that is still in use is returned again.
+  // Returns the map of lines around a storm's grid, from the coarsest data set that is as fine as
+  // the map's texels. If an equal map is still in use, returns this map. Returns null for a storm
+  // without a map projection. If the data cannot be read, returns null and logs the error.
   std::shared_ptr<const volume::BorderMap> MapOf(const StormInfo& storm,
                                                  const volume::RegularGrid& grid);
 
-  // Returns the lines on that grid.
+  // Returns the coastlines and borders that cross the area of `grid`, in world metres.
   absl::StatusOr<std::vector<volume::BorderLine>> LinesOf(const volume::MapProjection& projection,
                                                           const volume::BorderGrid& grid) const;
 
  private:
-  // A map projection, its middle, and the grid's low corner and size.
+  // Identifies a map: the map projection, its middle, and the grid's low corner and size.
   using Key = std::tuple<std::string, double, double, double, double, double, double>;
 
   BorderData(std::string folder, std::string details)

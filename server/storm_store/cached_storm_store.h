@@ -1,11 +1,12 @@
 // The implementation of the store that StormStore::Open returns. It has a catalogue, a cache,
-// threads that read requested times, and a thread that reads ahead. A time is read once, however
-// many callers ask for it. Reads with a waiting caller have priority over read-ahead, and over
-// files that the catalogue examines.
+// threads that read requested times, and a thread that reads ahead. If several callers request the
+// same time, it is read once. Reads with a waiting caller have priority over read-ahead, and over
+// the catalogue's examination of files.
 //
-// Reads run one after another, because several at once would need the memory of several. Only while
-// one takes long does another read begin, of another file. A storage that hangs blocks the threads
-// that read from it, but never the last one. No caller waits beyond the deadline.
+// Reads run one after another, in order to limit the memory that they need. Only if a read takes
+// long does a read of another file begin in parallel. A storage that hangs can block some of the
+// reading threads, but never the last one. A caller waits for a hanging read no longer than
+// StormStoreOptions::read_deadline.
 #pragma once
 
 #include <array>
@@ -56,17 +57,19 @@ class CachedStormStore final : public StormStore,
   std::size_t PendingReads() const override;
   std::optional<HungRead> Hung() const override;
 
-  // Replaces the storms of the paths by those `found`, and tells the listener what has changed.
-  // Storms that were added stay. A time whose file is gone stays while its fields are in use.
+  // Replaces the storms under the searched paths by `found`, and reports the changes to the
+  // listener. Storms that were added by Add stay. A time whose file is gone stays while its fields
+  // are in use.
   void Renew(const std::vector<CataloguedStorm>& found);
 
-  // Waits until no caller waits for a read, up to a time limit.
+  // Waits, up to a time limit, until no caller is waiting for a read. The catalogue calls it before
+  // it examines a file.
   void LetReadersGoFirst();
 
-  // Keeps the store's storms up to date from now on, with the results of `scan`.
+  // Starts to keep the store's storms up to date with the results of `scan`.
   void Follow(std::unique_ptr<CatalogueScan> scan);
-  // Waits for the first search, LiveCatalogueOptions::first_search at most. Returns whether it has
-  // ended.
+  // Waits for the end of the first search, but at most for LiveCatalogueOptions::first_search.
+  // Returns whether the search has ended.
   bool AwaitFirstSearch();
   bool IsSearching() const override;
 
@@ -75,15 +78,15 @@ class CachedStormStore final : public StormStore,
   using Fields = absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>>;
   enum class Purpose { kAsked, kAhead };
 
-  // A caller's listener. It is removed when the caller stops waiting.
+  // The progress function of a waiting caller. It is removed when the caller stops waiting.
   struct Listener {
-    std::mutex mutex;  // held during a call; no lock is taken with it
+    std::mutex mutex;  // held while `progress` is called; no other lock may be taken meanwhile
     ReadProgress progress;
   };
 
-  // A thread's read in progress.
+  // The read that a reading thread is working on.
   struct Activity {
-    bool reads = false;  // false while it pauses
+    bool reads = false;  // false while the thread has no read, or its read pauses
     std::string file;
     std::uint64_t device = 0;  // device of that file
     std::chrono::steady_clock::time_point began;
@@ -91,25 +94,28 @@ class CachedStormStore final : public StormStore,
     bool told_of_hang = false;
   };
 
-  // The height grid of a storm, and the file of its first time when the grid was chosen.
+  // The height grid of a storm, with the path and version of the file that held the storm's first
+  // time when the grid was chosen.
   struct ChosenGrid {
     storm_files::VerticalGrid grid;
     std::string path;
     std::uint64_t version = 0;
   };
 
-  // A storm, and what the store keeps for it.
+  // A storm and the store's data about it.
   struct Held {
-    std::shared_ptr<const CataloguedStorm> storm;  // null: removed
-    std::vector<int> numbers;                      // one for each time, never used again
+    std::shared_ptr<const CataloguedStorm> storm;  // null if the storm was removed
+    std::vector<int> numbers;                      // TimeKey::time of each time; a number is never
+                                                   // reused
     int next_number = 0;
     bool added = false;              // added by Add, so not found under the paths
-    std::optional<ChosenGrid> grid;  // the same for all times
+    std::optional<ChosenGrid> grid;  // height grid for all times of the storm
 
     StormInfoPtr Info() const { return {storm, &storm->info}; }
   };
 
-  // A time and its source. It stays valid if the storm changes meanwhile.
+  // A time and the storm description that contains it. The description stays valid even if the
+  // store replaces it meanwhile.
   struct Place {
     TimeKey key;
     std::shared_ptr<const CataloguedStorm> storm;
@@ -120,8 +126,9 @@ class CachedStormStore final : public StormStore,
   struct PendingRead {
     Place place;
     Purpose purpose = Purpose::kAsked;
-    Activity* activity = nullptr;  // activity of the reading thread, once it has begun
-    int waiters = 0;               // callers that wait
+    Activity* activity = nullptr;  // activity of the thread that reads it; null before the read
+                                   // begins
+    int waiters = 0;               // number of waiting callers
     std::vector<std::shared_ptr<Listener>> listeners;
     std::optional<Fields> result;
   };
@@ -133,16 +140,16 @@ class CachedStormStore final : public StormStore,
   absl::StatusOr<Place> PlaceOf(std::string_view id, int time_index) const;
   std::optional<Place> PlaceOf(const TimeKey& key) const;
   std::shared_ptr<PendingRead> Begin(const Place& place, Purpose purpose);
-  // Returns the pending read of that time, or a new one. Returns an error if a new read would wait
-  // behind another read that hangs on the same storage.
+  // Returns the pending read of `place`, or queues a new read. Returns an error if the new read
+  // would have to wait for a hanging read on the same storage.
   absl::StatusOr<std::shared_ptr<PendingRead>> ReadOf(const Place& place);
-  // Returns whether that read may begin in parallel to those in progress.
+  // Returns whether `read` may begin in parallel to the reads in progress.
   bool MayBegin(const PendingRead& read) const;
-  // Takes the first read that may begin, if there is one.
+  // Removes the first queued read that may begin now from the queue and returns it, or null.
   std::shared_ptr<PendingRead> TakeDue();
-  // Returns when another read may begin although this one has not ended.
+  // Returns the time from which another read may begin in parallel to `activity`.
   std::chrono::steady_clock::time_point MayReadBesideAt(const Activity& activity) const;
-  // Reads a time on a reading thread, which passes its activity.
+  // Performs `read`. A reading thread calls it and passes its own `activity`.
   void Read(Lock& lock, PendingRead& read, Activity& activity);
   Fields ReadFile(Lock& lock, PendingRead& read, Activity& activity);
   Fields WaitFor(Lock& lock, const std::shared_ptr<PendingRead>& read,
@@ -153,14 +160,14 @@ class CachedStormStore final : public StormStore,
   base::TimeSource::Clock::time_point Now() const { return options_.time->Now(); }
   // Returns when the activity counts as hanging unless it makes progress.
   std::chrono::steady_clock::time_point HangsAt(const Activity& activity) const;
-  // Returns the hanging read that blocks `read`. That is `read` itself or, before it begins,
-  // another read on its storage.
+  // Returns the hanging read that blocks `read`, if there is one. This is `read` itself or, before
+  // `read` begins, another read on the same storage.
   std::optional<HungRead> HoldsUp(const PendingRead& read);
-  // Returns a requested read that hangs on the storage of that place.
+  // Returns a requested read that hangs on the storage of the file of `place`.
   std::optional<HungRead> HungOnStorageOf(const Place& place);
   absl::StatusOr<std::optional<storm_files::VerticalGrid>> VerticalGridOf(Lock& lock,
                                                                           const Place& place);
-  // Makes the grid the storm's, unless the storm has one.
+  // Sets the storm's height grid to `grid`, unless the storm already has a grid.
   void Choose(const Place& place, const storm_files::VerticalGrid& grid);
   void WantAfter(const Place& place);
   std::optional<Place> NextWanted();
@@ -172,9 +179,9 @@ class CachedStormStore final : public StormStore,
   // Returns the delay after which a file that has just been replaced may be described.
   std::chrono::milliseconds ReplacedRetryAfter() const;
   absl::Status Checkpoint(PendingRead& read, Activity& activity, double share);
-  // Runs queued reads until the end.
+  // Runs queued reads until the store ends. It is the function of a reading thread.
   void ReadDue(Activity& activity);
-  // Waits until no other requested read is in progress, or until the end.
+  // Waits until no other requested read is in progress, or until the store ends.
   void LetOthersEnd(Lock& lock, Activity& activity);
   void ReadAhead();
 
@@ -187,23 +194,25 @@ class CachedStormStore final : public StormStore,
   const StormStoreOptions options_;
 
   mutable std::mutex mutex_;
-  std::deque<Held> storms_;          // elements are never removed: indices stay
-  std::vector<std::size_t> order_;   // places of the listed storms
-  std::condition_variable changed_;  // a read ended, a time was wanted, a caller waits, the first
-                                     // search or the store ended
+  std::deque<Held> storms_;          // elements are never removed, so an index identifies a storm
+                                     // permanently
+  std::vector<std::size_t> order_;   // indices into storms_ of the listed storms, in the listed
+                                     // order
+  std::condition_variable changed_;  // notified when a read ends, a time is to be read ahead, a
+                                     // caller begins to wait, or the first search or the store ends
   FieldsCache cache_;
   std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;
-  std::deque<std::shared_ptr<PendingRead>> asked_;  // queued, in order
+  std::deque<std::shared_ptr<PendingRead>> asked_;  // requested reads in the queue, in order
   std::array<Activity, 4> reading_asked_;           // one per thread that reads requested times
   Activity reading_ahead_;
-  std::vector<TimeKey> wanted_;  // to be read ahead, in order
+  std::vector<TimeKey> wanted_;  // times to be read ahead, in order
   int asked_reads_ = 0;
   bool ending_ = false;
   bool searching_ = false;  // true during the first search
 
   std::mutex listening_;  // held while the listener is called; locked before mutex_
   CatalogueListener listener_;
-  bool following_ = false;  // changes are reported
+  bool following_ = false;  // true if changes are reported to listener_
 
   // These exist from Start to End.
   std::unique_ptr<LiveCatalogue> live_;

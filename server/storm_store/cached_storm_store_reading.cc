@@ -1,4 +1,4 @@
-// How the store reads the times that callers wait for, and reads ahead.
+// The part of CachedStormStore that reads requested times and reads ahead.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -24,16 +24,16 @@ namespace fs = std::filesystem;
 using std::chrono::duration;
 using std::chrono::steady_clock;
 
-// After a read has taken this long, another may begin in parallel.
+// The time after which a read takes so long that another read may begin in parallel.
 constexpr std::chrono::seconds kTakesLong{5};
 
-// How often to check whether a storage that blocked read-ahead answers again.
+// The interval at which the read-ahead thread checks whether a hanging storage responds again.
 constexpr std::chrono::milliseconds kLookAgain{500};
 
 // Retry delay for a time on a storage that hangs.
 constexpr std::chrono::seconds kRetryAfter{10};
 
-// Estimated time to read and describe a file that has settled.
+// The estimated time to describe a file, once it counts as complete.
 constexpr std::chrono::seconds kToDescribe{1};
 
 constexpr std::string_view kReplaced = "FILE_REPLACED";
@@ -44,7 +44,7 @@ std::size_t SaturatingProduct(std::size_t a, std::size_t b) {
   return a != 0 && b > kMax / a ? kMax : a * b;
 }
 
-// Memory that reading a time takes, estimated from the storm's description alone.
+// The memory in bytes for reading a time, estimated from the description of its file.
 struct ReadMemory {
   std::size_t fields = 0;
   std::size_t scratch = 0;  // needed only while reading
@@ -52,9 +52,11 @@ struct ReadMemory {
 
 ReadMemory MemoryFor(const storm_files::StormFile& file,
                      const std::optional<storm_files::VerticalGrid>& grid) {
-  // A field takes a float and half a float of size a cell. The air's motion takes two bytes.
+  // Each field takes a float and a half float (particle size) for each cell. The air's motion takes
+  // two bytes for each cell.
   const std::size_t per_cell = file.fields.size() * 6 + 2;
-  // Pressure, temperature, heights and similar arrays take a float a cell of the file each.
+  // There are about ten arrays such as pressure, temperature and heights, each with a float for
+  // each cell of the file.
   constexpr std::size_t kScratch = 10 * sizeof(float);
   const auto columns = SaturatingProduct(static_cast<std::size_t>(file.cells.x),
                                          static_cast<std::size_t>(file.cells.y));
@@ -74,8 +76,8 @@ absl::Status Hangs(const HungRead& hung) {
       {.reason = "STORAGE_HANGS", .metadata = {{"file", hung.file}}, .retry_after = kRetryAfter});
 }
 
-// Returns an error if the path now leads to another file than the one that was described, because
-// its times may differ.
+// Returns an error if the path now leads to another file than the described file, because the other
+// file may have other times.
 absl::Status CheckNotReplaced(const storm_files::StormFile& file,
                               std::chrono::milliseconds retry_after) {
   const std::optional<base::FileStamp> now = file.id != 0 ? base::StampOf(file.path) : std::nullopt;
@@ -88,15 +90,15 @@ absl::Status CheckNotReplaced(const storm_files::StormFile& file,
        .retry_after = retry_after});
 }
 
-// Returns whether a file is on the same storage as a file with that path and device. Files on one
-// device are, or files in one folder if the device is unknown.
+// Returns whether `file` is on the same storage as the file with the given `path` and `device`. It
+// is if both have the same device or, if a device is unknown, are in the same folder.
 bool AreOfOneStorage(const storm_files::StormFile& file, const std::string& path,
                      std::uint64_t device) {
   if (file.device != 0 && device != 0) return file.device == device;
   return fs::path(file.path).parent_path() == fs::path(path).parent_path();
 }
 
-// Fields with their share of the budget, which lasts as long as the fields are in use.
+// Fields and the reservation of their memory, which lasts as long as the fields are in use.
 struct CountedFields {
   volume::HydrometeorFields fields;
   base::MemoryReservation reserved;
@@ -117,7 +119,7 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> CachedStormStor
     // The read may have been a read-ahead that was cancelled just now, so try again.
     if (absl::IsCancelled(fields.status()) && !ending_) continue;
     if (base::DetailsOf(fields.status()).reason == kReplaced) {
-      // The other file may have been described while this one was being read.
+      // The catalogue may have described the new file meanwhile.
       THUNDERHEAD_ASSIGN_OR_RETURN(Place now, PlaceOf(id, time_index));
       const bool described = now.key != place.key;
       place = std::move(now);
@@ -238,7 +240,8 @@ std::optional<HungRead> CachedStormStore::NoteHang(Activity& activity) const {
 }
 
 steady_clock::time_point CachedStormStore::HangsAt(const Activity& activity) const {
-  // Waiting callers check again once the activity begins or makes progress.
+  // A thread without a read cannot hang. Waiting callers check again when a read begins or makes
+  // progress.
   if (!activity.reads) return Now() + options_.read_deadline;
   return activity.went_on + options_.read_deadline;
 }
@@ -258,7 +261,7 @@ void CachedStormStore::ReadDue(Activity& activity) {
       Read(lock, *read, activity);
       continue;
     }
-    // A queued read may begin once those in progress have taken long.
+    // A queued read may begin when the reads in progress have taken long enough.
     std::optional<steady_clock::time_point> next;
     if (!asked_.empty()) {
       for (const Activity& other : reading_asked_) {
@@ -291,7 +294,7 @@ void CachedStormStore::ReadAhead() {
       changed_.wait(lock);
       continue;
     }
-    // The next times are mostly on the storage that hangs.
+    // The times to be read ahead are probably on the storage that hangs, so reading ahead pauses.
     if (std::ranges::any_of(reading_asked_,
                             [this](const Activity& each) { return HungIn(each).has_value(); })) {
       changed_.wait_until(lock, options_.time->LookAgainAt(Now() + kLookAgain));
@@ -317,7 +320,7 @@ void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
     activity = {
         .reads = true, .file = file.path, .device = file.device, .began = Now(), .went_on = Now()};
     read.activity = &activity;
-    changed_.notify_all();  // for waiting callers: it may hang from now on
+    changed_.notify_all();  // waiting callers must check from now on whether the read hangs
     fields = ReadFile(lock, read, activity);
     activity.reads = false;
     if (activity.told_of_hang) spdlog::info("{}: its storage answers again", file.path);
@@ -385,7 +388,8 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   const bool others_read = std::ranges::count(reading_asked_, true, &Activity::reads) > 1;
   if (absl::IsResourceExhausted(fields.status()) && !base::DetailsOf(fields.status()).permanent &&
       read.purpose == Purpose::kAsked && others_read) {
-    // The other reads may hold the memory that this read needs.
+    // Other reads may use the memory that this read needs, so this read waits for their end and is
+    // tried again.
     LetOthersEnd(lock, activity);
     lock.unlock();
     fields = read_counted();
@@ -398,8 +402,9 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
 }
 
 // Returns the height grid of the storm's first time, whichever time is read first. A time's image
-// therefore does not depend on which times were viewed before. The grid stays when an earlier time
-// arrives later. Returns nothing if this is the first time itself, or if the first cannot be read.
+// therefore does not depend on which times were viewed before. If an earlier time is added to the
+// storm later, the grid stays the same. Returns nothing if `place` is the first time, or if the
+// first time cannot be read.
 absl::StatusOr<std::optional<storm_files::VerticalGrid>> CachedStormStore::VerticalGridOf(
     Lock& lock, const Place& place) {
   const std::optional<ChosenGrid>& known = storms_[place.key.storm].grid;

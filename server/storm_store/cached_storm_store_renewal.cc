@@ -1,4 +1,4 @@
-// How the store follows changes in its folders.
+// The part of CachedStormStore that follows changes in its folders.
 #include <algorithm>
 #include <chrono>
 #include <set>
@@ -12,8 +12,8 @@
 namespace thunderhead::storm_store {
 namespace {
 
-// The catalogue must not wait longer, because a storage that hangs must not stop it for other
-// storms.
+// The longest time for which LetReadersGoFirst waits. A hanging read must not stop the catalogue
+// for other storms.
 constexpr std::chrono::seconds kLongestCourtesy{10};
 
 void Log(const StormChange& change) {
@@ -95,7 +95,7 @@ void CachedStormStore::Renew(const std::vector<CataloguedStorm>& found) {
       const StormChange change = Replace(place, std::move(storm));
       if (change.before != change.after) changes.push_back(change);
     };
-    // Removes storms first, so that other storms can take their ids.
+    // Storms that are gone are removed first, so that other storms can take their ids.
     for (std::size_t place = 0; place < known.size(); ++place) {
       if (match[place].has_value()) place_of[*match[place]] = place;
       if (known[place] != nullptr && !match[place].has_value()) take(place, std::nullopt);

@@ -14,7 +14,8 @@
 namespace thunderhead::storm_store {
 namespace {
 
-// Returns whether the same file has got more times. A file with the same times was written anew.
+// Returns whether times were appended to a file since it was described. Otherwise the file was
+// written anew.
 bool GoesOn(const storm_files::StormFile& before, const storm_files::StormFile& after) {
   return after.times.size() > before.times.size() &&
          std::ranges::equal(before.times, std::span(after.times).first(before.times.size()));
@@ -94,16 +95,16 @@ void CatalogueScan::Look(const std::string& path, const Stamp& stamp, Time now, 
     const bool same_file = !fresh && known.stamp.file == stamp.file;
     const bool grows = same_file && known.stamp.size_bytes <= stamp.size_bytes;
     // If a file replaced another one in one step, the old times stay listed until the new file has
-    // been read. If the new file is still being written, it was not moved here whole, and nothing
-    // is listed until it is complete.
+    // been read. If the new file is still being written, it did not replace the old file in one
+    // step. Then no times are listed until the new file is complete.
     const bool written = same_file && known.replaces;
     if ((same_file && !grows) || written) Lose(known);
     known.replaces = !same_file && known.description.has_value();
     known.stamp = stamp;
     known.unchanged_since = now;
-    // A file that was there before the first scan may have been unchanged for long. All other files
-    // start their settling time now, so that a folder's files settle together. If the first of them
-    // settled alone, it would become a storm with a different name.
+    // A file that the first scan finds may be old enough to count as complete at once. For all
+    // other files the settling time starts now, so that new files of one folder become complete
+    // together. If one of them were complete first, it would become a storm with a different name.
     known.settled =
         fresh && scans_ == 1 &&
         now - base::UnchangedSince(stamp.changed_ns, Time::min(), now) >= options_.settle;

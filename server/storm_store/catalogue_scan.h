@@ -1,6 +1,6 @@
 // Scans the same paths repeatedly for storms, and distinguishes complete files from those that are
-// still being written. It describes a file only when the file has changed. The caller passes the
-// time. The class needs no threads except for calls with a timeout.
+// still being written. It describes a file again only when the file has changed. The caller passes
+// the current time. The class starts threads only for calls with a timeout.
 #pragma once
 
 #include <chrono>
@@ -29,15 +29,16 @@ class CatalogueScan {
     storm_files::StormFormats formats;
     LinkPolicy links = {};
     std::chrono::milliseconds settle{};
-    // A complete file that cannot be read is tried again after this time even if it has not
-    // changed, because its writer may have released a lock.
+    // The time after which an unchanged file that could not be read is tried again, because its
+    // writer may have released a lock meanwhile.
     std::chrono::milliseconds retry{};
     // A function that is called before each file is opened. It may wait.
     std::function<void()> before_file = [] {};
-    // The function that checks a path before it is searched. It may hang.
+    // A function that is called for each path before it is searched, to find out whether the path's
+    // storage responds. It may hang.
     std::function<void(const std::string& path)> look_at = LookAtFolder;
-    // Timeout of that check. After it the path's storage counts as hanging, and its storms stay as
-    // they were.
+    // The timeout of `look_at`. After it the path's storage counts as hanging, and the path's
+    // storms stay unchanged.
     std::chrono::milliseconds patience = std::chrono::seconds(10);
     // The time source for `patience`. It must outlive the scan.
     const base::TimeSource* time = &base::SteadyTime();
@@ -46,7 +47,8 @@ class CatalogueScan {
   struct Result {
     std::vector<CataloguedStorm> storms;
     std::vector<std::string> folders;   // folders that were listed
-    std::optional<Time> look_again_at;  // when a file that is being written may be complete
+    std::optional<Time> look_again_at;  // when to scan again, because a file that is being written
+                                        // may then be complete; nothing if no file is being written
     bool changed = true;                // whether anything changed since the last Scan
   };
 
@@ -56,14 +58,16 @@ class CatalogueScan {
   // Opens a folder and reads the attributes of its first entry.
   static void LookAtFolder(const std::string& path);
 
-  // Finds the storms. In the first scan a file is complete if it is older than the settling time.
-  // Files that come later must have been unchanged for that time. A file that grows keeps its old
-  // description until it is complete again. So does a file that was replaced in one step. An error,
-  // such as a folder that cannot be listed, does not mean that storms are gone.
+  // Finds the storms under the paths. In the first scan, a file counts as complete if its last
+  // change is older than Options::settle. A file that appears or changes later counts as complete
+  // when no scan has seen a change for that time. While a file grows, its old description stays
+  // valid. The same is true after another file replaced it in one step (by a rename). If Scan
+  // returns an error, such as a folder that cannot be listed, the previous storms must be kept.
   absl::StatusOr<Result> Scan(Time now);
 
  private:
-  // The identity of one state of a file.
+  // A file's identity, size and change time (its stamp). The stamp differs after each change of the
+  // file.
   struct Stamp {
     std::uint64_t file = 0;  // inode and device
     std::uint64_t size_bytes = 0;
@@ -76,11 +80,13 @@ class CatalogueScan {
     Stamp stamp;
     Time unchanged_since;
     bool settled = false;
-    std::optional<Time> tried_at;                       // when this stamp was tried
-    std::optional<storm_files::StormFile> description;  // perhaps of an earlier, shorter state
-    bool replaces = false;   // the file replaces the one that was described
+    std::optional<Time> tried_at;                       // when the file was last opened in its
+                                                        // present state
+    std::optional<storm_files::StormFile> description;  // may describe an earlier, shorter state of
+                                                        // the file
+    bool replaces = false;   // true if `description` is of another file, which this file replaced
     std::string complaint;   // the message that was logged last
-    std::uint64_t scan = 0;  // the scan that last saw the file
+    std::uint64_t scan = 0;  // number of the scan that last saw the file
   };
 
   // Returns false while the path's storage hangs.
@@ -89,7 +95,7 @@ class CatalogueScan {
   absl::StatusOr<storm_files::StormFile> Describe(const std::string& path, Time now);
   void Look(const std::string& path, const Stamp& stamp, Time now, Known& known);
   void Open(const std::string& path, Time now, Known& known);
-  void Lose(Known& known);  // drops its description
+  void Lose(Known& known);  // removes the description
   void LookAgainAt(Time time);
 
   const Options options_;

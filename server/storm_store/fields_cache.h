@@ -15,8 +15,8 @@
 
 namespace thunderhead::storm_store {
 
-// A time of a storm: the storm's place in the store, and the time's number there. The number does
-// not change when other times are added or removed.
+// Identifies a time of a storm. `storm` is the storm's index in the store, and `time` a number that
+// the store gives to the time. The number does not change when other times are added or removed.
 struct TimeKey {
   std::size_t storm = 0;
   int time = 0;
@@ -36,21 +36,22 @@ class FieldsCache {
 
   bool Holds(const TimeKey& key) const { return entries_.contains(key); }
 
-  // Caches `fields` as the most recently used. Evicts others until the budget is met or none is
-  // left that may be evicted.
+  // Caches `fields` as the most recently used. Then evicts other entries until the budget is met or
+  // all other entries are in use.
   void Insert(const TimeKey& key, std::shared_ptr<const volume::HydrometeorFields> fields);
 
-  // Caches `fields` as less recently used than the newest entry (the one in view), if both fit.
+  // Caches `fields` of a time that was read ahead, if they fit into the budget together with the
+  // most recently used entry. The latter, which is the time in view, stays the most recently used.
   void InsertAhead(const TimeKey& key, std::shared_ptr<const volume::HydrometeorFields> fields);
 
   // Returns whether the fields are also in use outside the cache.
   bool InUse(const TimeKey& key) const;
 
-  // Returns when the least recently used of the entries that are not in use was used, or nothing if
-  // there is none.
+  // Returns the time of last use of the entry that TakeOldestUnused would evict, or nothing if all
+  // entries are in use.
   std::optional<std::chrono::steady_clock::time_point> OldestUnused() const;
-  // Evicts that entry, if there is one. Returns its fields, because freeing much memory takes a
-  // while.
+  // Evicts the least recently used entry that is not in use, if there is one. Returns its fields,
+  // so that the caller can free their memory without holding a lock.
   std::shared_ptr<const volume::HydrometeorFields> TakeOldestUnused();
 
   // Evicts one time, if it is cached.

@@ -30,7 +30,8 @@ LiveCatalogue::~LiveCatalogue() {
 
 void LiveCatalogue::Running::Run() {
   Scan();
-  // Changes between the first scan and the watch have no event.
+  // The kernel reports no event for changes between the first scan and the start of watching, so
+  // another scan follows.
   bool again = WatchFolders();
   while (!stopping) {
     const Time pause_ends = time.Now() + kShortestPause;

@@ -1,6 +1,6 @@
 // Keeps a store's storms in step with its folders, on a separate thread. It scans the folders at
-// the start and after the kernel's events. It also scans when a file that was being written may be
-// complete, and at regular intervals.
+// the start, after the kernel reports an event, when a file that was being written may be complete,
+// and at regular intervals.
 #pragma once
 
 #include <atomic>
@@ -21,7 +21,7 @@ class LiveCatalogue {
   // A function that takes the result of each scan, with all storms that exist now.
   using Renew = std::function<void(const CatalogueScan::Result&)>;
 
-  // `renew` must own what it uses. `time` must outlive the thread.
+  // `renew` must own everything it uses. `time` must outlive the thread.
   LiveCatalogue(std::unique_ptr<CatalogueScan> scan, const LiveCatalogueOptions& options,
                 const base::TimeSource& time, Renew renew);
   // Waits for a scan in progress, unless it hangs.

@@ -13,7 +13,7 @@ absl::Time TimeOf(const CataloguedStorm& storm, std::size_t time) {
   return FileOf(storm, time).times[storm.sources[time].record];
 }
 
-// Inserts a time of another storm, whose file is gone.
+// Inserts time `time` of the storm `from`, whose file is gone, into `storm`, marked as deleted.
 void InsertDeleted(const CataloguedStorm& from, std::size_t time, CataloguedStorm& storm) {
   const absl::Time valid = TimeOf(from, time);
   std::size_t at = 0;

@@ -1,5 +1,6 @@
-// Matches known storms with files that are found again. Decides which storm is which, and which
-// times stay although their files are gone. These are pure functions.
+// Matches the storms that the store already knows with the storms that a new search finds. These
+// pure functions decide which found storm continues which known storm, and which times stay
+// although their files are gone.
 #pragma once
 
 #include <cstddef>
@@ -11,23 +12,25 @@
 
 namespace thunderhead::storm_store {
 
-// Returns for each of `known` the storm of `found` that continues it: the one with most of its
-// files, if any. A run of one file that becomes a series has another id, but is the same storm. A
-// null is no storm. No two storms continue as the same one.
+// Returns for each storm of `known` the index in `found` of the storm that continues it, or
+// nothing. This is the found storm that shares the most files with it. Each found storm continues
+// at most one known storm. Ids are not compared, because a run of one file gets another id when it
+// becomes a series. An element of `known` may be null.
 std::vector<std::optional<std::size_t>> MatchStorms(
     const std::vector<const CataloguedStorm*>& known, const std::vector<CataloguedStorm>& found);
 
-// Returns whether both are the same record of the same file.
+// Returns whether both times are the same record of the same file.
 bool IsSameTime(const CataloguedStorm& one, std::size_t one_time, const CataloguedStorm& other,
                 std::size_t other_time);
 
-// Returns `found` together with the times of `known` that it lacks and that are `kept`, marked as
-// deleted. Without `found`, returns only these times. Returns nothing if no time is left.
+// Returns `found` plus those times of `known` that `found` lacks and for which `kept` returns true.
+// The added times are marked as deleted. Without `found`, the result has only the added times.
+// Returns nothing if no time is left.
 std::optional<CataloguedStorm> Renewed(const CataloguedStorm& known,
                                        std::optional<CataloguedStorm> found,
                                        const std::function<bool(std::size_t time)>& kept);
 
-// Returns whether clients see no difference, and cached fields are still those of the files.
+// Returns whether the storm is unchanged for clients, and its cached fields are still up to date.
 bool IsUnchanged(const CataloguedStorm& before, const CataloguedStorm& after);
 
 }  // namespace thunderhead::storm_store

@@ -75,8 +75,9 @@ auto RunKey(const storm_files::StormFile& file) {
                          file.dy_m, file.run, file.fields);
 }
 
-// Returns whether the files belong to one run, whose files overlap at most at their ends, as after
-// a restart. Separate runs on the same grid, such as an ensemble's, share most of their times.
+// Returns whether the files belong to one run. The times of such files overlap at most at their
+// ends, for example after a restart. Separate runs on the same grid, such as an ensemble's members,
+// share most of their times.
 bool ContinueOneAnother(const std::vector<storm_files::StormFile>& files) {
   std::set<absl::Time> distinct;
   std::size_t total = 0;
@@ -103,7 +104,7 @@ struct FolderWalk {
   absl::Status first_failure = absl::OkStatus();
 };
 
-// Notes why something below the path was left out.
+// Records why the file or folder `path` is left out of the search.
 void LeaveOut(FolderWalk& walk, const fs::path& path, const absl::Status& why) {
   walk.first_failure.Update(why);
   if (walk.search.on_unlisted) {
@@ -122,7 +123,7 @@ bool IsWithinAny(const fs::path& path, const std::vector<fs::path>& folders) {
   return std::ranges::any_of(folders, [&](const fs::path& each) { return IsWithin(path, each); });
 }
 
-// Returns PERMISSION_DENIED for a symbolic link that is not followed.
+// Returns PERMISSION_DENIED for a symbolic link that the rules do not allow to be followed.
 absl::Status CheckLink(const LinkRules& rules, const fs::path& link) {
   std::error_code error;
   const fs::path folder = fs::canonical(link.parent_path(), error);
@@ -205,8 +206,8 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder,
   return storms;
 }
 
-// Searches a folder and those below it. Each is searched once, because links can make one folder
-// appear in many places.
+// Searches a folder and its subfolders. Each folder is searched only once, because links can make
+// it appear in several places.
 absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
                           std::vector<NamedStorm>& storms) {
   struct stat identity {};
@@ -240,7 +241,7 @@ absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
   return absl::OkStatus();
 }
 
-// Appends the canonical paths of those that exist.
+// Appends the canonical form of each path that exists.
 void AppendCanonical(const std::vector<std::string>& paths, std::vector<fs::path>* canonical) {
   for (const std::string& path : paths) {
     std::error_code error;

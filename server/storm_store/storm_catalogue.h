@@ -26,7 +26,7 @@ struct CataloguedStorm {
   StormInfo info;
   std::vector<storm_files::StormFile> files;
   std::vector<TimeSource> sources;  // one for each of info.times
-  std::vector<std::string> notes;   // for the log: times that several files have
+  std::vector<std::string> notes;   // messages for the log about times that several files have
 };
 
 // Returns the file that a time of the storm is in.
@@ -47,8 +47,8 @@ struct StormSearch {
   std::function<absl::StatusOr<storm_files::StormFile>(const std::string&)> describe;
   // True if a missing path and a folder without storms are not errors.
   bool may_find_nothing = false;
-  // Called with a folder or link below a path that is left out, and the reason. If empty, the
-  // reason is logged.
+  // Called with a folder or link below a path that is left out, and the reason. If the function is
+  // empty, the reason is logged.
   std::function<void(const std::string&, const absl::Status&)> on_unlisted;
   // Called with every folder before it is listed. It may be empty.
   std::function<void(const std::string&)> on_folder;
@@ -57,8 +57,8 @@ struct StormSearch {
   // that the previous search found there are used again. If the function is empty, all storage
   // counts as answering.
   std::function<bool(const std::string&)> answers = nullptr;
-  // The storms that the previous search found, for `answers`. Callers who search repeatedly own it,
-  // and each search updates it.
+  // The storms that the previous search found under each path, used if `answers` returns false. The
+  // caller owns the map, and each search updates it. It may be null.
   FoundByPath* found = nullptr;
   LinkPolicy links = {};
 };
@@ -66,17 +66,17 @@ struct StormSearch {
 // Returns PERMISSION_DENIED for a folder that exists but cannot be listed.
 absl::Status CannotBeListed(const std::string& folder, const std::error_code& error);
 
-// Checks a file that was opened by `path` and is really at `place`, which has no links in it.
+// Checks a file that was opened by `path`. `place` is the file's real path, without symbolic links.
 // Returns PERMISSION_DENIED if the rules for links do not allow that place for a search of `paths`.
 absl::Status CheckPlace(const std::vector<std::string>& paths, const LinkPolicy& links,
                         const std::string& path, const std::string& place);
 
-// Describes a file by the formats. A file whose metadata exhausts the memory is an error.
+// Describes a file by the formats. Returns an error if the file's metadata exhaust the memory.
 absl::StatusOr<storm_files::StormFile> DescribeFile(const std::string& path,
                                                     const storm_files::StormFormats& formats);
 
-// Returns the storms under `paths`: those of the first path first, and those of one path in order
-// of id. The rules and errors are those of StormStore::Open.
+// Returns the storms under `paths`, in the order of the paths and by id within a path. The rules
+// and errors are those of StormStore::Open.
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const storm_files::StormFormats& formats,
                                                         const LinkPolicy& links = {});
@@ -85,7 +85,8 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
 
 void LogNotes(const std::vector<CataloguedStorm>& storms);
 
-// Groups the files by run. Files of one group have the same domain, grid, fields and start.
+// Groups the files by model run. Files of one run have the same domain, grid, fields and start of
+// the run.
 std::vector<std::vector<storm_files::StormFile>> FilesOfRuns(
     std::vector<storm_files::StormFile> files);
 

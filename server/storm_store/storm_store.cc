@@ -19,7 +19,7 @@ namespace thunderhead::storm_store {
 std::string DomainOf(const StormInfo& storm) {
   std::string domain = absl::StrFormat("%d %d %.1f %.1f", storm.file_cells.x, storm.file_cells.y,
                                        storm.dx_m, storm.dy_m);
-  // Degrees are precise to about a metre.
+  // Five decimals of a degree are precise to about a metre.
   for (const std::optional<double>& degrees : {storm.latitude_deg, storm.longitude_deg}) {
     if (degrees.has_value()) absl::StrAppendFormat(&domain, " %.5f", *degrees);
   }

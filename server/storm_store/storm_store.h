@@ -25,14 +25,14 @@
 
 namespace thunderhead::storm_store {
 
-// One of a storm's times.
+// One time (time step) of a storm.
 struct StormTime {
   std::string valid_time;  // ISO 8601, UTC, e.g. "0001-01-01T00:40:00Z"
   double elapsed_s = 0.0;  // seconds since the storm's first time
-  // The file is gone, but its fields in memory are still in use.
+  // True if the file is gone, but its fields in memory are still in use.
   bool deleted = false;
   std::string file = {};  // the path; empty for a storm without files
-  // StormFile::version of that file, or 0 for a storm without files.
+  // StormFile::version of `file`, or 0 for a storm without files.
   std::uint64_t version = 0;
 
   bool operator==(const StormTime&) const = default;
@@ -41,26 +41,28 @@ struct StormTime {
 // Description of a storm, available without reading its fields.
 struct StormInfo {
   std::string id;     // unique in a store; from the file's or folder's name
-  std::string title;  // for people, from the file's global attributes
+  std::string title;  // title for users, from the file's global attributes
   std::vector<std::string> files;
   std::vector<StormTime> times;  // in order of valid time
   glm::ivec3 file_cells{0};      // west-east, south-north, bottom-top, as in the file
   double dx_m = 0.0;
   double dy_m = 0.0;
   std::vector<physics::Hydrometeor> fields;  // fields in the file
-  std::optional<double> latitude_deg;        // latitude of the middle; none if idealised
+  std::optional<double> latitude_deg;        // latitude of the middle of the domain; nothing if
+                                             // idealised
   std::optional<double> longitude_deg;
-  std::optional<std::string> run_start;  // like valid times; nothing if the files lack it
-  // Projection of the grid, centred on that place, as PROJ writes it. It is empty if the grid has
-  // none.
+  std::optional<std::string> run_start;  // start of the model run, in the format of valid times;
+                                         // nothing if unknown
+  // The grid's map projection as a PROJ string. The domain's middle is at latitude_deg and
+  // longitude_deg. The string is empty if the grid has no projection.
   std::string projection;
 };
 
 // A description never changes. A storm that grows gets a new description.
 using StormInfoPtr = std::shared_ptr<const StormInfo>;
 
-// Returns one line that names the part of the world that the storm's model covers. It is the same
-// for each run over that part, and for idealised runs on one grid.
+// Returns one line that names the part of the world that the storm's model covers. All runs over
+// that part, and all idealised runs on equal grids, have the same line.
 std::string DomainOf(const StormInfo& storm);
 
 // A storm before and after a change of the files. `before` is null for a new storm, and `after` is
@@ -74,7 +76,7 @@ using CatalogueChange = std::vector<StormChange>;
 // A function that is called on the thread that found the change.
 using CatalogueListener = std::function<void(const CatalogueChange&)>;
 
-// A function that is called on the reading thread with the share done, 0 to 1.
+// A function that is called on the reading thread with the part of the read that is done, 0 to 1.
 using ReadProgress = std::function<void(double)>;
 
 class BorderData;
@@ -84,10 +86,11 @@ class BorderData;
 // network file system.
 struct LiveCatalogueOptions {
   std::chrono::milliseconds rescan{30'000};
-  // A file whose size or date has changed within this time is still being written.
+  // A file whose size or change time has changed within this period is assumed to be still being
+  // written.
   std::chrono::milliseconds settle{3'000};
-  // The time that Open waits for the first search. After it the search continues in the background,
-  // and its storms appear when it has ended.
+  // The longest time for which Open waits for the first search. If the search takes longer, it
+  // continues in the background, and the storms appear at its end.
   std::chrono::milliseconds first_search{std::chrono::minutes(10)};
 };
 
@@ -96,33 +99,36 @@ struct LiveCatalogueOptions {
 struct LinkPolicy {
   std::vector<std::string> allowed;  // other folders that links may lead to
   std::vector<std::string>
-      untrusted;  // folders in which others may put links, which are not followed
+      untrusted;  // folders to which other users may write; links in these folders are not followed
 };
 
-// Follows every link. It is for commands that users run on their own files, with their own rights.
+// Follows every link. Use it only for commands that users run on their own files, with their own
+// rights.
 inline LinkPolicy EveryLink() { return {.allowed = {"/"}, .untrusted = {}}; }
 
 struct StormStoreOptions {
-  // Bytes of cached times. The newest time and those in use are kept even beyond it.
+  // The maximum size in bytes of all cached times. The most recently used time and times in use are
+  // kept even if they exceed it.
   std::size_t byte_budget = std::size_t{2} << 30;
-  // The budget that counts all times in memory, cached or not. Null means that there is none.
+  // The memory budget in which all times in memory are reserved, cached or not. Null means no
+  // limit.
   std::shared_ptr<base::MemoryBudget> memory;
-  int read_ahead = 1;  // times read ahead after each Get
+  int read_ahead = 1;  // number of times to read ahead after each Get
   // A storage on which a read makes no progress for this long counts as hanging.
   std::chrono::milliseconds read_deadline{60'000};
   storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
   LinkPolicy links = {};
   // Coasts and borders for storms with a place on Earth, or null.
   std::shared_ptr<BorderData> borders;
-  // If absent, the storms are those at the start. If present, a folder without storms is not an
-  // error.
+  // If present, the store follows changes in the folders, and a folder without storms is not an
+  // error. If absent, the store keeps the storms that Open finds.
   std::optional<LiveCatalogueOptions> live;
   // The time source for deadlines, pauses and settling files. It must outlive the store, and any
   // thread of the store that hangs.
   const base::TimeSource* time = &base::SteadyTime();
 };
 
-// A read that its storage blocks.
+// A read that makes no progress because its storage hangs.
 struct HungRead {
   std::string file;
   double seconds = 0.0;      // seconds without progress so far
@@ -134,8 +140,8 @@ class StormStore {
   // Opens every storm under `paths` and reads only metadata. A file is one storm. A folder is one
   // series if its files continue one another (same grid, different times). Otherwise each of its
   // files or sub-folders is a storm. If a given path cannot be used, the error names the file, the
-  // variable and what to do. A file inside a folder that is not a storm is logged and skipped.
-  // Finding no storm at all is an error.
+  // variable and what to do. A file in a folder that cannot be read as a storm is logged and
+  // skipped. Finding no storm at all is an error.
   static absl::StatusOr<std::unique_ptr<StormStore>> Open(const std::vector<std::string>& paths,
                                                           const StormStoreOptions& options);
   virtual ~StormStore() = default;
@@ -156,10 +162,10 @@ class StormStore {
   StormInfoPtr Find(std::string_view id) const;
 
   // Returns the fields of one time, from the cache or by reading the file now (blocking).
-  // `time_index` must be one of the storm's. `progress` may be empty. Errors: NOT_FOUND (id),
-  // OUT_OF_RANGE (time), RESOURCE_EXHAUSTED (not enough memory), DEADLINE_EXCEEDED (this time's
-  // storage hangs), and those of the file's reader. If the storage is known to hang,
-  // DEADLINE_EXCEEDED is returned at once.
+  // `time_index` is an index into the storm's times. `progress` may be empty. Errors: NOT_FOUND
+  // (id), OUT_OF_RANGE (time), RESOURCE_EXHAUSTED (not enough memory), DEADLINE_EXCEEDED (the
+  // storage of this time's file hangs), and the errors of the file's reader. If the storage is
+  // already known to hang, DEADLINE_EXCEEDED is returned at once.
   virtual absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Get(
       std::string_view id, int time_index, const ReadProgress& progress) = 0;
 
@@ -171,21 +177,23 @@ class StormStore {
   // unknown id.
   virtual std::vector<int> TimesInMemory(std::string_view id) const = 0;
 
-  // Returns true until the first search of the folders has ended. Until then there may be more
-  // storms.
+  // Returns true until the first search of the folders has ended. Until then, storms may still be
+  // missing.
   virtual bool IsSearching() const { return false; }
 
   // Returns the bytes of all cached times.
   virtual std::size_t CachedBytes() const = 0;
 
-  // Returns the number of times that are being read or queued, for callers and ahead.
+  // Returns the number of times that are being read or are queued, including times to be read
+  // ahead.
   virtual std::size_t PendingReads() const { return 0; }
 
   // Returns a read that hangs now, if there is one.
   virtual std::optional<HungRead> Hung() const { return std::nullopt; }
 
   // Reports every later change that the store finds itself to `listener`. An empty listener ends
-  // the reports, after a running call has returned. Without a live catalogue there are no changes.
+  // the reports; Listen then waits for a running call to return. Without StormStoreOptions::live
+  // there are no changes.
   virtual void Listen(CatalogueListener /*kept*/) {}  // NOLINT(performance-unnecessary-value-param)
 };
 

@@ -1,5 +1,5 @@
-// The completion handler of a stream's read or write, and its buffers, as one type each. So the
-// code of Asio, Beast and OpenSSL for a read or write is compiled once per stream type, and not
+// Type-erased completion handlers and buffers for reads and writes of a stream. With these, the
+// code of Asio, Beast and OpenSSL for a read or a write is compiled once per stream type, and not
 // once per caller.
 #pragma once
 
@@ -21,14 +21,14 @@ class BytesHandler {
   using executor_type = boost::asio::any_io_executor;
   executor_type get_executor() const { return executor_; }
 
-  // The handler is called on `executor` unless it has its own executor.
+  // `handler` is called on `executor`, unless it has an associated executor.
   template <typename Handler>
   BytesHandler(Handler handler, const executor_type& executor)
       : executor_(boost::asio::get_associated_executor(handler, executor)),
         call_(std::make_unique<CallOf<Handler>>(std::move(handler))) {}
 
   void operator()(boost::system::error_code error, size_t bytes) {
-    // The handler may destroy the object that holds this one.
+    // The handler may destroy the object that holds this BytesHandler.
     const std::unique_ptr<Call> call = std::move(call_);
     call->Run(error, bytes);
   }
@@ -51,7 +51,8 @@ class BytesHandler {
   std::unique_ptr<Call> call_;
 };
 
-// The first buffers of a sequence of any type. A partial read or write needs no further buffers.
+// The first 16 buffers of a buffer sequence of any type. More are not needed, because a read or
+// write may be partial.
 template <typename Buffer>
 class FewBuffers {
  public:

@@ -1,4 +1,4 @@
-// An Asio stream over plain TCP or TLS, with one timeout for the operations that begin after it is
+// An Asio stream over plain TCP or TLS. A timeout applies to the operations that begin after it was
 // set. Used on one thread.
 #pragma once
 
@@ -21,15 +21,16 @@
 
 namespace thunderhead::streams {
 
-// The class is compiled once for each RatePolicy, Beast's hook for rate limits. A file that derives
-// from it declares it as an extern template, and one file instantiates it.
+// The class is compiled once for each RatePolicy, which is Beast's hook for rate limits. A header
+// with a class that derives from it declares this template as extern, and one source file
+// instantiates it.
 template <typename RatePolicy>
 class OptionalTls {
  public:
   // Asio requires this name.
   using executor_type = boost::asio::any_io_executor;
 
-  // Wraps a socket, or an executor on which to connect. A null `tls` means plain TCP.
+  // Wraps a socket, or creates a socket on an executor. A null `tls` means plain TCP.
   template <typename Source>
   OptionalTls(Source source, std::shared_ptr<boost::asio::ssl::context> tls)
       : context_(std::move(tls)), plain_(std::move(source)) {
@@ -60,28 +61,30 @@ class OptionalTls {
   using Plain = boost::beast::basic_stream<boost::asio::ip::tcp, executor_type, RatePolicy>;
 
   Plain& PlainStream() { return plain_; }
-  // Returns null if there is no TLS.
+  // Returns the TLS layer, or null on a plain stream.
   boost::asio::ssl::stream<Plain&>* TlsStream() {
     return tls_.has_value() ? &tls_->next_layer() : nullptr;
   }
 
-  // Works like async_write_some, but bypasses an overridden Write.
+  // Works like async_write_some, but calls Send instead of Write, which a derived class may
+  // override.
   template <typename Buffers, typename Token>
   auto async_send_some(const Buffers& buffers, Token&& token) {
     return Begin<&OptionalTls::Send>(buffers, std::forward<Token>(token));
   }
 
-  // Called by async_read_some. A stream that limits the time of its reads overrides it.
+  // Called by async_read_some. A derived class that limits the time of reads overrides it.
   virtual void Read(FewBuffers<boost::asio::mutable_buffer> into, BytesHandler handler);
   void Send(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
-  // Called by async_write_some. Sends the bytes. A stream that counts its writes overrides it.
+  // Called by async_write_some; sends the bytes. A derived class that counts its writes overrides
+  // it.
   virtual void Write(FewBuffers<boost::asio::const_buffer> from, BytesHandler handler);
 
  private:
   // A flat_stream makes one TLS record of several small buffers.
   using Tls = boost::beast::flat_stream<boost::asio::ssl::stream<Plain&>>;
 
-  // Calls `kOperation` with the handler that Asio makes from the token.
+  // Calls `kOperation` with the handler that Asio makes from the completion token.
   template <auto kOperation, typename Buffers, typename Token>
   auto Begin(const Buffers& buffers, Token&& token) {
     return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(

@@ -8,9 +8,10 @@
 
 namespace thunderhead::telemetry {
 
-// A value at the time of the request, such as the number of sessions.
+// A metric whose value is read when Prometheus requests the metrics, such as the number of
+// sessions.
 struct Gauge {
-  std::string name;  // with its unit, e.g. "thunderhead_memory_bytes"
+  std::string name;  // the metric's name, which ends with its unit, e.g. "thunderhead_memory_bytes"
   std::string help;
   double value = 0.0;
   // Most gauges have no label. Gauges of one name with different label values must be adjacent.

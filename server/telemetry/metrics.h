@@ -1,5 +1,5 @@
-// The metrics of a running server: counters and histograms that cost an atomic operation or two, in
-// one place for the whole process. This code depends only on the names of what it counts.
+// The metrics of a running server: counters and histograms for the whole process. An update costs
+// one or two atomic operations. This code does not depend on the code whose events it counts.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ class Counter {
   std::atomic<std::uint64_t> value_{0};
 };
 
-// A histogram of seconds. Each bucket reaches twice as far as the one before, from 1 ms to 16 s,
-// and the last has no upper bound.
+// A histogram of durations in seconds. The upper bounds of the buckets double from 1 ms to 16 s.
+// The last bucket has no upper bound.
 class Histogram {
  public:
   static constexpr std::size_t kBounds = 15;
@@ -35,8 +35,8 @@ class Histogram {
 
   void Observe(double seconds);
 
-  // Returns the count of one bucket, without those below it. The bucket at kBounds counts the
-  // values beyond the last bound.
+  // Returns the number of values in one bucket. The counts are not cumulative. The bucket at
+  // kBounds counts the values beyond the last bound.
   std::uint64_t Count(std::size_t bucket) const {
     return counts_[bucket].load(std::memory_order_relaxed);
   }
@@ -47,13 +47,14 @@ class Histogram {
   Counter sum_us_;
 };
 
-// One counter or histogram for each value of a label. References stay valid, so code that counts
-// often can look one up once.
+// A set of counters or histograms, one for each value of a label. References that Of returns stay
+// valid, so code that counts often can keep a reference.
 template <typename Kind>
 class Labelled {
  public:
-  // Values that are known beforehand are reported from the start, at 0. Prometheus sees no increase
-  // in a series that it has not seen before, so an alert would miss the first event.
+  // Label values in `known` are reported from the start, with a count of 0. Otherwise an alert
+  // would miss the first event, because Prometheus detects no increase in a series that begins with
+  // it.
   explicit Labelled(std::initializer_list<std::string_view> known = {}) {
     for (const std::string_view value : known) Of(value);
   }
@@ -77,18 +78,19 @@ class Labelled {
 
 // The names that operators see are in exposition.cc.
 struct Metrics {
-  Labelled<Counter> frames;    // drawn and encoded, by technique
-  Labelled<Histogram> stages;  // duration of frames' stages, by stage
-  Histogram update_to_frame;   // from a scene change to a viewer's acknowledgement
+  Labelled<Counter> frames;    // number of frames drawn and encoded, by technique
+  Labelled<Histogram> stages;  // duration of each stage of a frame, by stage
+  Histogram update_to_frame;   // time from a scene change to a viewer's acknowledgement of the
+                               // frame
   Counter frames_sent;         // frames sent to viewers
-  Counter frames_skipped;      // replaced by newer ones before they were sent
+  Counter frames_skipped;      // frames that were replaced by newer frames before they were sent
   Counter frame_bytes_sent;    // bytes of the frames sent
   Labelled<Counter> refusals;  // error responses, by reason
   Counter sessions_opened;
-  Counter session_save_failures;  // attempts to save sessions that failed
+  Counter session_save_failures;  // number of failed attempts to save sessions
   Labelled<Counter> job_pictures{"drawn", "failed", "dropped"};  // render jobs' images, by outcome
-  Counter device_losses;  // the device was reset, or could not be opened again
-  // Failures of storm files' readers, by what happened.
+  Counter device_losses;  // times that the device was reset, or could not be opened again
+  // Failures of the processes that read storm files, by kind of failure.
   Labelled<Counter> reader_failures{"time", "killed", "crashed", "nonsense"};
 };
 

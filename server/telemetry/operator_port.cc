@@ -24,7 +24,7 @@ using asio::ip::tcp;
 using boost::system::error_code;
 using Response = http::response<http::string_body>;
 
-// Beyond this number of connections the oldest is closed.
+// The maximum number of connections. For another connection, the oldest is closed.
 constexpr std::size_t kMaxConnections = 64;
 constexpr std::size_t kMaxRequestBytes = 16 << 10;
 constexpr std::chrono::milliseconds kAcceptPause{100};
@@ -58,7 +58,8 @@ Response Answer(const http::request<http::empty_body>& request, const OperatorPa
   return Text(good ? http::status::ok : http::status::service_unavailable, health.state + "\n");
 }
 
-// One request and its response, within the timeout. The object keeps itself alive until then.
+// One request and its response, within the timeout. The object keeps itself alive until the
+// response is sent or the timeout has passed.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   Connection(tcp::socket socket, const OperatorPages& pages)

@@ -36,7 +36,7 @@ void Send(const std::string& socket_path) {
   sockaddr_un address{};
   address.sun_family = AF_UNIX;
   socket_path.copy(address.sun_path, sizeof(address.sun_path) - 1);
-  // In Linux's abstract namespace, names begin with 0.
+  // A name with "@" is in Linux's abstract socket namespace, where names begin with a zero byte.
   if (address.sun_path[0] == '@') address.sun_path[0] = '\0';
   const auto bytes = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + socket_path.size());
   (void)sendto(socket.Get(), kAlive.data(), kAlive.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
@@ -50,7 +50,7 @@ absl::StatusOr<std::unique_ptr<Watchdog>> Watchdog::StartIfAsked(std::function<b
   const std::string within = Variable("WATCHDOG_USEC");
   const std::string pid = Variable("WATCHDOG_PID");
   if (socket.empty() || within.empty()) return nullptr;
-  // The variables are meant for the process that started this one.
+  // The variables are meant for another process, probably the parent, which passed them on.
   if (!pid.empty() && pid != absl::StrCat(getpid())) return nullptr;
   std::int64_t within_us = 0;
   if (!absl::SimpleAtoi(within, &within_us) || within_us < kMessagesInTime) {

@@ -1,6 +1,6 @@
-// Tells systemd that the process makes progress, if its unit has WatchdogSec. Without such a
-// message for that time, systemd restarts the process. No library is needed, because a message is a
-// datagram.
+// Reports to systemd that the process makes progress, if its unit has the option WatchdogSec. If
+// systemd receives no such message for that time, it restarts the process. A message is a datagram,
+// so no library is needed.
 #pragma once
 
 #include <chrono>
@@ -15,9 +15,9 @@ namespace thunderhead::telemetry {
 
 class Watchdog {
  public:
-  // Starts as the environment says (sd_watchdog_enabled(3)). Returns null if no supervisor waits
-  // for messages. While `alive` is true, a separate thread sends three messages in the time that
-  // systemd waits. Returns INVALID_ARGUMENT for an invalid environment.
+  // Starts a watchdog if the environment variables request one (sd_watchdog_enabled(3)), and
+  // otherwise returns null. While `alive` returns true, a separate thread sends three messages in
+  // each period of WatchdogSec. Returns INVALID_ARGUMENT if the variables are invalid.
   static absl::StatusOr<std::unique_ptr<Watchdog>> StartIfAsked(std::function<bool()> alive);
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;

@@ -9,7 +9,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// Number of sampled columns along an axis of a block.
+// The number of columns that are sampled along each axis of a block.
 constexpr int kSampledColumns = 4;
 
 }  // namespace

@@ -1,6 +1,6 @@
-// The air that a storm's mixing ratios refer to. Only masses per volume are kept cell by cell. The
-// air density by which the mixing ratios were multiplied is smooth, so block means of it recover
-// the ratios. This code does not depend on files.
+// The density of the air to which a storm's mixing ratios refer. A storm in memory stores only mass
+// per volume for each cell. Air density is smooth, so means over blocks of columns are enough to
+// compute the mixing ratios again. This code does not depend on files.
 #pragma once
 
 #include <vector>
@@ -10,16 +10,19 @@
 
 namespace thunderhead::volume {
 
-// Number of blocks along each axis. There is at most one for each column.
+// The number of blocks of columns along x and along y. A grid with fewer columns has one block for
+// each column.
 inline constexpr int kAirBlocks = 16;
 
-// Air densities on the storm's grid. They are linear between the centres of blocks.
+// Air densities as means over blocks of columns, at each level of the storm's grid. Between the
+// centres of blocks the density is interpolated linearly.
 struct AirDensity {
   glm::ivec2 blocks{0};
   std::vector<float> kg_per_m3;  // one value for each block and level, x fastest; empty if unknown
 
   bool Empty() const { return kg_per_m3.empty(); }
-  // Returns the density at the centre of column (x, y), level z. It is above 0, or 0 if Empty().
+  // Returns the density at the centre of column (x, y), level z. The density is greater than 0,
+  // except that it is 0 if Empty().
   float At(const RegularGrid& grid, int x, int y, int z) const;
 };
 
@@ -29,10 +32,12 @@ class AirDensityMeans {
  public:
   explicit AirDensityMeans(const RegularGrid& grid);
 
-  // Returns the step along each axis between the columns that need to be sampled.
+  // Returns the distance, in columns along x and y, between the columns that the caller should
+  // sample.
   glm::ivec2 Stride() const;
 
-  // Adds air of this density in column (x, y) between two heights. NaN is ignored.
+  // Adds a sample: the density of the air in column (x, y) between two heights. Samples with NaN
+  // are ignored.
   void Add(int x, int y, double bottom_m, double top_m, float density_kg_per_m3);
 
   AirDensity Means() const;

@@ -14,7 +14,8 @@ namespace {
 
 constexpr int kNone = -1;
 constexpr float kFar = std::numeric_limits<float>::max();
-// The distance of texels is computed directly up to this distance from a piece of a line.
+// Each texel up to this distance from a piece of a line is compared with that piece directly. The
+// distance transform (Spread) handles texels farther away.
 constexpr float kBeside_texels = 1.5F;
 
 // A straight piece of a line, in texels.
@@ -105,7 +106,8 @@ class Nearest {
     Try(piece_[Index(from_x, from_y)], x, y);
   }
 
-  // Lets the row's texels take pieces from the row at `y + from` and from one another.
+  // Compares the nearest piece of each texel in row `y` with the pieces of its neighbours in row `y
+  // + from` and in its own row.
   void SpreadRow(int y, int from) {
     for (int x = 0; x < texels_.x; ++x) {
       for (int side = -1; side <= 1; ++side) TryThatOf(x + side, y + from, x, y);
@@ -114,7 +116,8 @@ class Nearest {
     for (int x = texels_.x - 1; x >= 0; --x) TryThatOf(x + 1, y, x, y);
   }
 
-  // Applies Danielsson's distance transform (1980), upwards and downwards.
+  // Applies Danielsson's distance transform (1980): one sweep over the rows upwards and one
+  // downwards.
   void Spread() {
     for (int y = 0; y < texels_.y; ++y) SpreadRow(y, -1);
     for (int y = texels_.y - 1; y >= 0; --y) SpreadRow(y, 1);

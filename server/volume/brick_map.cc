@@ -26,8 +26,8 @@ std::size_t Count(const glm::ivec3& size) {
 }
 
 // Returns the number of cells along each side of a brick or block that is roughly a cube. The side
-// is `side_in_coarsest` times the longest side of a cell. It is longer if an axis would hold more
-// than kMaxAlong bricks, including one for the remainder.
+// is `side_in_coarsest` times the longest side of a cell. It is longer if an axis would otherwise
+// hold more than kMaxAlong bricks, including the brick for the remaining cells.
 glm::ivec3 CellsAcross(const RegularGrid& grid, double side_in_coarsest) {
   const glm::dvec3& spacing_m = grid.spacing_m;
   const double side_m = side_in_coarsest * std::max({spacing_m.x, spacing_m.y, spacing_m.z});
@@ -41,7 +41,8 @@ std::uint16_t TexelOf(double extinction_per_m, const ExtinctionVolume& volume) {
   return base::HalfFromFloat(static_cast<float>(extinction_per_m) / volume.extinction_per_m);
 }
 
-// Raises each cell's content to that of the largest of its `channels` values.
+// Raises each cell's content to the content (kEmpty, kThin or kThick) of the largest of its
+// `channels` values.
 template <int channels>
 void RaiseFillings(const std::vector<std::uint16_t>& texels, std::uint16_t empty,
                    std::uint16_t thin, std::vector<std::uint8_t>* fillings) {
@@ -97,7 +98,8 @@ std::vector<std::uint8_t> MaxAlong(const std::vector<std::uint8_t>& fillings, in
   return result;
 }
 
-// Does the same along all axes, from `size` to `count`. The range is reach(axis, i).
+// Applies MaxAlong along all three axes, from `size` inputs to `count` outputs. Output i along
+// `axis` is the maximum over the input range reach(axis, i).
 template <typename Reach>
 std::vector<std::uint8_t> MaxOf(const std::vector<std::uint8_t>& fillings, const glm::ivec3& size,
                                 const glm::ivec3& count, const Reach& reach) {
@@ -117,8 +119,8 @@ std::vector<std::uint8_t> FillingsOf(const BrickMap& map) {
   return fillings;
 }
 
-// Encodes the places that are not empty as x + 1024 (y + 1024 z), with `thick_bits` set for thick
-// places.
+// Returns the bricks or blocks that are not empty, each encoded as x + 1024 (y + 1024 z), with
+// `thick_bits` set if it is thick.
 std::vector<std::uint32_t> Places(const std::vector<std::uint8_t>& fillings, const glm::ivec3& size,
                                   std::uint32_t thick_bits) {
   std::vector<std::uint32_t> places;
@@ -261,7 +263,8 @@ CellBlocks CellBlocksOf(const BrickMap& map, const RegularGrid& grid) {
   if (map.content.empty()) return blocks;
   blocks.cells_per_block = CellsAcross(grid, kBlockInCoarsestCells);
   const glm::ivec3 size = (grid.cells - 1) / blocks.cells_per_block + 1;
-  // The brick that begins after a cell also reads the cell.
+  // Interpolation in the brick that begins after a cell also reads the cell, so the range includes
+  // that brick.
   const std::vector<std::uint8_t> fillings =
       MaxOf(FillingsOf(map), map.bricks, size, [&](int axis, int block) {
         const int side = blocks.cells_per_block[axis];

@@ -5,12 +5,14 @@
 
 namespace thunderhead::volume {
 
-// Returns the downsampling factor of each axis. With it, the drawn part of `fields` and its border
-// have at most `max_cells` cells along the axis. The factor is 1 where none is needed.
+// Returns the downsampling factor of each axis. After downsampling by these factors, the part of
+// `fields` with condensate and its border of empty cells have at most `max_cells` cells along each
+// axis. The factor is 1 along an axis that is short enough.
 glm::ivec3 CoarseningFor(const HydrometeorFields& fields, int max_cells);
 
-// Returns means over blocks of `factor` cells. Each field keeps its mass, and its extinction cell
-// by cell. Parts of blocks beyond the domain count as empty. Terrain and statistics are not copied.
+// Returns means over blocks of `factor` cells. Each field keeps its total mass and its total
+// extinction. The parts of blocks that lie beyond the domain count as empty. Terrain and statistics
+// are not copied.
 HydrometeorFields Coarsened(const HydrometeorFields& fields, const glm::ivec3& factor);
 
 }  // namespace thunderhead::volume

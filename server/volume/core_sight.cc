@@ -21,7 +21,7 @@ constexpr double kSkyBehind = 4.0;
 
 constexpr double kHighestBase_m = 2000.0;
 
-// The optical depth of ground in the line of sight.
+// The optical depth that is returned when the ground blocks the line of sight.
 constexpr double kOpaqueDepth = 100.0;
 
 // Maximum optical depth near the eye, towards the core, that counts as clear of cloud and rain.
@@ -136,7 +136,8 @@ double CoreSight::Hidden(const std::vector<Term>& terms, const glm::dvec3& eye_m
                          const glm::dvec3& target_m) const {
   const glm::dvec3 low_m = fields_.grid.low_corner_m;
   const glm::dvec3 high_m = fields_.grid.HighCorner_m();
-  // Beyond a face of the domain, only the cut through the storm is visible.
+  // A target outside the domain counts as hidden, because the storm is cut off at the domain's
+  // face.
   if (target_m.x < low_m.x || target_m.y < low_m.y || target_m.x > high_m.x ||
       target_m.y > high_m.y) {
     return 1.0;

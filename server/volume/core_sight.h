@@ -1,6 +1,6 @@
-// Computes how much of the base and the tower of a storm's core is hidden from an eye by condensate
-// or terrain. A scene chooses only the source of the particles' sizes; the other optics are the
-// defaults. This code does not depend on scenes.
+// Computes how much of the base and the tower of a storm's core is hidden from a camera position
+// (eye) by condensate or terrain. Particle radii come from the size source that the scene chooses;
+// all other optical properties are the defaults. This code does not depend on scenes.
 #pragma once
 
 #include <vector>
@@ -11,27 +11,30 @@
 
 namespace thunderhead::volume {
 
-// The visibility of one core. Its lengths are shares of the tower's height, so that shallow cumulus
-// is treated like a thunderstorm.
+// The visibility of one storm core. Lengths in its criteria are fractions of the tower's height, so
+// that shallow cumulus is treated like a thunderstorm.
 class CoreSight {
  public:
   // `fields` must outlive this object.
   CoreSight(const HydrometeorFields& fields, const StormCore& core,
             physics::SizeSource sizes = physics::SizeSource::kModel);
 
-  // Returns the share of the light from the tower's lowest quarter (at most 2 km) that
-  // precipitation hides from `eye_m`. Precipitation is rain, snow, graupel and hail.
+  // Returns the mean share of light from the lowest part of the tower that precipitation blocks
+  // before it reaches `eye_m`. The lowest part is a quarter of the tower's height, at most 2 km.
+  // Precipitation is rain, snow, graupel and hail.
   double HiddenBase(const glm::dvec3& eye_m) const;
 
-  // Returns the share of the light from the tower's near side that condensate blocks from `eye_m`.
+  // Returns the mean share of light from the tower's near side that condensate blocks before it
+  // reaches `eye_m`.
   double HiddenTower(const glm::dvec3& eye_m) const;
 
-  // Returns the share of light that condensate blocks from `eye_m`, of the light from the sky at an
-  // elevation above the tower, in radians. It is 1 if the eye is too far under an anvil to see the
-  // top.
+  // Returns the share of the light from the sky above the tower that condensate blocks before it
+  // reaches `eye_m`. The light arrives at an elevation angle of `elevation` radians. The result is
+  // near 1 if the eye is far under an anvil.
   double HiddenSky(const glm::dvec3& eye_m, double elevation) const;
 
-  // Returns whether neither cloud nor rain dims the start of the sight lines to base and top.
+  // Returns whether the air in front of the eye is clear: the first part of the sight lines to the
+  // tower's base and top has almost no condensate.
   bool IsClear(const glm::dvec3& eye_m) const;
 
  private:
@@ -45,8 +48,8 @@ class CoreSight {
                       const glm::dvec3& to_m) const;
   double Hidden(const std::vector<Term>& terms, const glm::dvec3& eye_m,
                 const glm::dvec3& target_m) const;
-  // Returns the point at a height above the core's ground. It is `towards_m` nearer to the eye than
-  // the core, and `across_m` to its side.
+  // Returns the point at a height above the core's ground. The point is `towards_m` nearer to the
+  // eye than the core's axis, and `across_m` to the side of the axis.
   glm::dvec3 Target(const glm::dvec3& eye_m, double towards_m, double across_m,
                     double height_m) const;
 

@@ -13,17 +13,19 @@ namespace {
 using Values = std::vector<float>;
 
 constexpr float kHalfOpaqueDepth = 4.0F;  // optical depth at which a cell is half opaque
-constexpr float kFullShare = 0.7F;        // least share of the neighbours' opacity inside
+constexpr float kFullShare = 0.7F;        // share of the neighbours' largest opacity from which a
+                                          // cell counts as inside
 constexpr float kGradientAmplitude = 0.8F;
 constexpr int kProfileSmoothings = 2;  // surfaces move by a cell either way
 // Vertical velocities (m/s) between which cloud water begins to condense, and between which ice
 // still looks like the liquid towers from which it rises.
 constexpr std::array<float, 2> kCondensing_m_per_s = {0.0F, 1.0F};
 constexpr std::array<float, 2> kIceBillows_m_per_s = {1.0F, 5.0F};
-constexpr std::array<float, 2> kIceBillowsTurbulence = {0.3F, 0.7F};  // opacities if it is unknown
+constexpr std::array<float, 2> kIceBillowsTurbulence = {0.3F, 0.7F};  // opacities, if turbulence is
+                                                                      // unknown
 constexpr int kTurbulenceReach = 2;                                   // cells
-// Detail is attenuated where the opacity is below this, along a cell or the length below, whichever
-// is longer.
+// Detail is attenuated where a cell's opacity is below kThinOpacity. The opacity is taken along the
+// cell or along kThinLength_m, whichever is longer.
 constexpr float kThinOpacity = 0.3F;
 constexpr double kThinLength_m = 200.0;
 
@@ -31,8 +33,8 @@ float Between(const std::array<float, 2>& range, float value) {
   return std::clamp((value - range[0]) / (range[1] - range[0]), 0.0F, 1.0F);
 }
 
-// Replaces each value by of(before, here, after) along one axis. At the ends the outermost value is
-// used again.
+// Replaces each value by of(before, here, after) along one axis. At both ends of the axis the
+// missing neighbour is replaced by the outermost value.
 template <typename Of>
 void Along(const glm::ivec3& cells, int axis, const Of& of, Values* values) {
   const std::array<std::size_t, 3> size = {static_cast<std::size_t>(cells.x),
@@ -79,7 +81,7 @@ double CellSize_m(const RegularGrid& grid) {
 
 float OpacityOf(float depth) { return depth / (kHalfOpaqueDepth + depth); }
 
-// Returns the opacity along a path `times` as long.
+// Returns the opacity along a path that is `times` times as long as the path of `opacity`.
 float OnLongerPath(float opacity, float times) {
   const float opaque = times * opacity;
   return opaque / (1.0F - opacity + opaque);
@@ -121,7 +123,7 @@ Opacities OpacitiesOf(const HydrometeorFields& fields, const std::vector<Extinct
   return opacities;
 }
 
-// Returns the values of the volume's cells.
+// Returns the part of `values`, given on the fields' grid, that lies on the volume's grid `grid`.
 Values Cut(const HydrometeorFields& fields, const std::vector<std::uint8_t>& values,
            const RegularGrid& grid) {
   const glm::ivec3 low(
@@ -136,8 +138,8 @@ Values Cut(const HydrometeorFields& fields, const std::vector<std::uint8_t>& val
   return cut;
 }
 
-// Estimates turbulence from contrasts: clear air is mixed in where condensate differs between
-// cells.
+// Estimates the amplitude of turbulence from the contrast of opacity between neighbouring cells. A
+// large contrast suggests that clear air is being mixed into the cloud.
 Values ContrastOf(const RegularGrid& grid, const Values& opacity, const Values& around) {
   Values contrast = opacity;
   AlongAll(
@@ -193,7 +195,8 @@ DetailControl DetailControlOf(const HydrometeorFields& fields,
   }
   const auto lengthening = static_cast<float>(std::max(kThinLength_m / CellSize_m(grid), 1.0));
   const bool measured = fields.motion.source != TurbulenceSource::kGradient;
-  // Empty cells take the amplitude of their neighbours, because detail is drawn between the two.
+  // Empty cells take the amplitude of their neighbours, because shaders interpolate the amplitude
+  // between empty and occupied cells.
   Values weight(amplitude.size());
   for (std::size_t i = 0; i < amplitude.size(); ++i) {
     const float cloud = opacities.cloud[i];

@@ -1,6 +1,6 @@
-// The model's control of detail finer than its grid, cell by cell. It says how far inside a cloud a
-// cell is, and how strong billows or fibres are there, in the form that shaders/physics/detail.glsl
-// reads. This code does not depend on scenes or GL.
+// Computes the control data for detail finer than the model's grid. The data say for each cell how
+// far inside a cloud it is and how strong its billows or fibres are. shaders/physics/detail.glsl
+// reads them. This code does not depend on scenes or GL.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,32 @@
 
 namespace thunderhead::volume {
 
-// The control of one cell, in the layout of a texel.
+// The control data of one cell, in the layout of a texture's texel.
 struct DetailTexel {
   static constexpr std::uint8_t kNoAmplitude = 128;
   static constexpr std::uint8_t kColumnOne = 128;
 
   std::uint8_t profile = 0;
-  std::uint8_t amplitude = kNoAmplitude;  // billows from 129 to 255, fibres from 127 to 1
-  std::uint8_t column = kColumnOne;       // detail_column_factor; volume/water_paths.h sets it
-  std::uint8_t occupied = 0;              // 255 if the cell holds anything
+  std::uint8_t amplitude = kNoAmplitude;  // 128 is none; billows grow from 129 to 255, fibres from
+                                          // 127 down to 1
+  std::uint8_t column = kColumnOne;       // argument of detail_column_factor; KeepWaterPaths sets
+                                          // it
+  std::uint8_t occupied = 0;              // 255 if the cell has any condensate, else 0
 };
 
 using DetailControl = std::vector<DetailTexel>;  // on the extinction's grid, x fastest
 
-// Computes the control of each cell.
+// Computes the control data of each cell of `volume`.
 //
 // The profile is a binomial mean over 125 cells. It averages a cell's opacity relative to the
-// largest opacity of its neighbours. Empty cells have a profile, too, so that the surface between
-// them is rounded and does not follow the cells.
+// largest opacity of its neighbours. Empty cells near a cloud have a profile, too, so that the
+// cloud's drawn surface is rounded and does not follow the faces of cells.
 //
 // The amplitude is that of the turbulence nearby (AirMotion), reduced where the medium is thin.
-// Billows form where cloud water condenses: where air rises, or everywhere if its motion is
-// unknown. They also form where ice is in fast updraughts or strong turbulence, or, if that is
-// unknown, where ice is opaque. Other ice has fibres, and rain has neither.
+// Cloud water has billows where air rises, because it condenses there. If the air's motion is
+// unknown, all cloud water has billows. Ice has billows in fast updraughts and in strong
+// turbulence. If updraughts and turbulence are unknown, opaque ice has billows. Other ice has
+// fibres, and rain has neither.
 DetailControl DetailControlOf(const HydrometeorFields& fields,
                               const std::vector<ExtinctionTerm>& terms,
                               const ExtinctionVolume& volume);

@@ -14,23 +14,25 @@
 namespace thunderhead::volume {
 namespace {
 
-// Starts of the point sequence in a column. Probes use other points than the sum.
+// The first indices of the point sequence in a column. Probes start at another index than sums, so
+// that they use different points.
 constexpr std::uint32_t kFirstPoint = 0;
 constexpr std::uint32_t kFirstProbe = 1U << 31U;
 
-// Maximum number of points in a cell with an error target. If a cell needs more, its column's error
-// is a little larger. A larger maximum would not make more columns keep their water path.
+// Maximum number of points in a cell with an error target. If a cell needs more points, its
+// column's error is a little larger than the target. A larger maximum would not make more columns
+// keep their water path.
 constexpr double kMostInCell = 1024.0;
 
-// A profile above which billows remove nothing.
+// The value of DetailTexel::profile above which billows remove no medium.
 constexpr std::uint8_t kInside = 250;
 
 using Lanes = std::array<float, base::kLanes>;
 
 float Total(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0F); }
 
-// Returns a point of a sequence that fills a square evenly: multiples of the powers of 1 / 1.3247,
-// modulo 1. That number's third power is one more than itself.
+// Returns a point of a sequence that fills a square evenly: multiples of 1 / 1.3247 and of its
+// square, modulo 1. The number 1.3247 solves x^3 = x + 1.
 glm::vec2 AcrossAt(std::uint32_t index) {
   constexpr std::uint32_t kStepX = 3242174889U;  // in units of 2^-32
   constexpr std::uint32_t kStepY = 2447445414U;
@@ -49,7 +51,7 @@ class PointSum {
            std::uint32_t first)
       : medium_(medium), corner_(column), channels_(channels), next_(first) {}
 
-  // Adds `count` points of the cell at a level, each with the weight.
+  // Adds `count` points in the cell at `level`, each with the weight `weight`.
   void AddCell(int level, int count, float weight) {
     for (int i = 0; i < count; ++i) {
       const float up = (static_cast<float>(i) + 0.5F) / static_cast<float>(count);
@@ -68,12 +70,13 @@ class PointSum {
     return column;
   }
 
-  // Returns the weighted values of the last eight points, all channels together. Later points wait
-  // until there are eight.
+  // Returns the weighted values of the last eight points, all channels together. Points are
+  // evaluated in groups of eight, so the most recent points may still be missing.
   const Lanes& Last() const { return last_; }
 
  private:
-  // `across` is counted from the column's corner, `z` from the volume's, in cells.
+  // `across` is the position relative to the column's corner, and `z` the height above the volume's
+  // low corner. Both are in cells.
   void Add(const glm::vec2& across, float z, float weight) {
     const std::size_t lane = count_++;
     places_.x[lane] = corner_.x + across.x;
@@ -131,7 +134,7 @@ class PointSum {
   std::array<Lanes, 9> shares_{};
 };
 
-// The medium at a cell's first points, with all channels added up.
+// Statistics of the medium at a few points of a cell, with all channels added up.
 struct Probe {
   double mean = 0.0;
   double spread = 0.0;  // standard deviation
@@ -144,8 +147,8 @@ Probe ProbeOf(const Lanes& points) {
   return {mean, std::sqrt(std::max(square / kCount - mean * mean, 0.0))};
 }
 
-// Returns the next multiple of kLanes. Different rounding on other processors therefore hardly ever
-// changes the result.
+// Rounds a number of points up to a multiple of kLanes. Small rounding differences between
+// processors therefore hardly ever change the result.
 int InLanes(double count) {
   constexpr auto kLanes = static_cast<double>(base::kLanes);
   return static_cast<int>(kLanes * std::ceil(count / kLanes));
@@ -186,10 +189,10 @@ DrawnColumn DrawnColumns::Sum(const glm::ivec2& column, const ColumnPoints& poin
   return sum.Sum();
 }
 
-// Returns the number of points in each cell. In proportion to the spread in each cell, the fewest
-// points reach an error (Neyman's allocation). The spread is measured with other points than those
-// of the sum. With the same points, both mean and spread would be too small where the points miss
-// the medium.
+// Returns the number of points for each cell, in proportion to the standard deviation in the cell.
+// This allocation reaches a given error with the fewest points (Neyman's allocation). The deviation
+// is measured at other points than those of the sum. With the same points, both the mean and the
+// deviation would be too small in a cell whose points miss the medium.
 std::vector<double> DrawnColumns::PointsByError(const glm::ivec2& column, const Levels& levels,
                                                 const ColumnPoints& points) const {
   std::vector<double> counts;
@@ -220,7 +223,7 @@ DrawnColumns::Levels DrawnColumns::LevelsOf(const glm::ivec2& column) const {
       around.end = std::max(around.end, levels.end);
     }
   }
-  // Interpolation reaches one level further.
+  // Interpolation also reads one level below and one level above the occupied levels.
   return {std::max(around.begin - 1, 0), std::min(around.end + 1, size.z)};
 }
 

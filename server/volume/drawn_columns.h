@@ -1,5 +1,5 @@
-// Computes what the columns of a medium with detail hold, from the medium at many points in each of
-// their cells. This code does not depend on scenes or GL.
+// Estimates how much medium each column holds when detail is drawn, by evaluating the medium at
+// many points in each cell. This code does not depend on scenes or GL.
 #pragma once
 
 #include <array>
@@ -14,36 +14,37 @@
 namespace thunderhead::volume {
 
 struct DrawnColumn {
-  DrawnMedium::Channels sums{};  // over the column's levels
-  // The shares of the sum of all channels that interpolation takes from the 3 x 3 columns around
-  // this one, x fastest.
+  DrawnMedium::Channels sums{};  // sum over the column's levels of each channel's mean in the cell
+  // The sum of all channels, split by the weights of bilinear interpolation among the 3 x 3 columns
+  // around this one, x fastest.
   std::array<float, 9> shares{};
 };
 
-// The number of points at which a column is evaluated.
+// The numbers of points at which a column is evaluated.
 struct ColumnPoints {
-  // Points in each cell. With an error target these are minimums.
-  int at_surface = 1;  // in cells where billows may end
+  // The number of points in each cell. If an error target is set, these numbers are minimums.
+  int at_surface = 1;  // in cells where the surface of billows may lie
   int elsewhere = 1;
 
-  // The error target, or 0 for none. With a target, cells in which the medium varies get more
-  // points until the column's sum has this relative standard error. For an optical depth below 1,
-  // the target is this absolute error of the depth. A column gets at most `most` points.
+  // The target for the relative standard error of the column's sum, or 0 for no target. Cells in
+  // which the medium varies get more points to reach it. For a column whose optical depth is below
+  // 1, the target is an absolute error of the optical depth. For this purpose a column gets at most
+  // `most` points.
   double error = 0.0;
   int most = 0;
 };
 
 class DrawnColumns {
  public:
-  // All arguments must outlive this object. When a column's control changes, the columns next to it
-  // change, too.
+  // All arguments must outlive this object. A change of the control data of one column also changes
+  // the sums of its neighbours.
   DrawnColumns(const DetailControl& control, const PlacedDetail& detail,
                const ExtinctionVolume& volume);
 
   DrawnColumn Sum(const glm::ivec2& column, const ColumnPoints& points) const;
 
  private:
-  // The range of levels that may hold anything, without `end`.
+  // The range of levels that may hold medium, from `begin` to `end` - 1.
   struct Levels {
     int begin = 0;
     int end = 0;
@@ -58,7 +59,7 @@ class DrawnColumns {
   const DetailControl& control_;
   const RegularGrid& grid_;
   const std::size_t channels_;
-  const double cell_depth_;       // optical depth of a cell's height where a texel is 1
+  const double cell_depth_;       // optical depth along a cell's height for the texel value 1
   std::vector<Levels> occupied_;  // one for each column
 };
 

@@ -31,7 +31,7 @@ THUNDERHEAD_IN_LANES void RoundDown(const Floats& value, Integers<Floats>* down,
   *rest = value - (towards_zero - over);
 }
 
-// Extracts a byte of a word, counted from the lowest.
+// Extracts byte `kByte` of each word; byte 0 is the least significant.
 template <int kByte, typename Floats>
 THUNDERHEAD_IN_LANES void ByteOf(const Integers<Floats>& word, Floats* value) {
   Convert((word >> (8 * kByte)) & 255, value);
@@ -150,7 +150,8 @@ struct DrawnMedium::Lanes {
   template <int kPlaneChannels>
   THUNDERHEAD_IN_LANES static void Multiply(const DrawnMedium& medium, const ExtinctionPlane& plane,
                                             const Place& from, Floats* values) {
-    constexpr int kTogether = kPlaneChannels == 1 ? 1 : 2;  // channels in a number
+    constexpr int kTogether = kPlaneChannels == 1 ? 1 : 2;  // number of channels that one load
+                                                            // reads
     using Number = std::conditional_t<kTogether == 1, std::uint16_t, std::uint32_t>;
     for (int first = 0; first < kPlaneChannels; first += kTogether) {
       Floats low{};

@@ -1,6 +1,6 @@
-// A medium with detail, evaluated at any place like in the shaders (shaders/common/medium.glsl).
-// Unlike there, no noise is left out because it is finer than a pixel. This code does not depend on
-// scenes or GL.
+// Evaluates a medium with its detail at any place, like the shaders do
+// (shaders/common/medium.glsl). The shaders leave out noise that is finer than a pixel; this code
+// does not. This code does not depend on scenes or GL.
 #pragma once
 
 #include <array>
@@ -17,35 +17,37 @@
 
 namespace thunderhead::volume {
 
-// The detail of a volume at the volume's place in the world.
+// The parameters of the detail that is added to a volume, in world coordinates.
 struct PlacedDetail {
   struct Layer {
     const physics::DetailTile* tile = nullptr;
-    double tile_m = 0.0;        // edge
-    std::vector<float> shares;  // for each channel, the share that the layer's noise multiplies
-    glm::dvec2 drift_m{0.0};    // displacement of the noise from its place in the world
+    double tile_m = 0.0;        // length of the tile's edge in the world
+    std::vector<float> shares;  // for each channel, the share of the medium that the noise affects
+    glm::dvec2 drift_m{0.0};    // horizontal shift of the noise from its original position
   };
 
-  std::vector<Layer> layers;  // the first displaces the medium, all multiply it
-  glm::dvec3 warp_m{0.0};     // displacement at full amplitude
-  glm::dmat3 fibres{1.0};     // physics::FibresAlong
+  std::vector<Layer> layers;  // the first layer displaces the medium; every layer's noise
+                              // multiplies it
+  glm::dvec3 warp_m{0.0};     // largest displacement along each axis
+  glm::dmat3 fibres{1.0};     // result of physics::FibresAlong: rotates and stretches noise along
+                              // fibres
 };
 
 class DrawnMedium {
  public:
-  // The volume's texel values by channel. Channels that it does not have are 0.
+  // The texel values of the volume's channels. Channels that the volume does not have are 0.
   using Channels = std::array<float, kMaxChannels>;
 
-  // `control` is the result of DetailControlOf for the volume. All arguments except `detail` must
-  // outlive this object.
+  // `control` is the result of DetailControlOf for the volume. `control`, `volume` and the tiles of
+  // `detail` must outlive this object.
   DrawnMedium(const DetailControl& control, const PlacedDetail& detail,
               const ExtinctionVolume& volume);
 
-  // Returns the medium at a place, in cells from the volume's low corner. Beyond the grid the
-  // outermost cells continue.
+  // Returns the medium at a place. The place is in cells, relative to the volume's low corner.
+  // Beyond the grid, the values of the outermost cells are used.
   Channels At(const glm::vec3& in_cells) const;
 
-  // Evaluates eight places at once, in less than half of the time.
+  // Evaluates eight places in one call, which takes less than half as long as eight calls.
   struct Places {
     std::array<float, base::kLanes> x, y, z;
   };
@@ -57,8 +59,8 @@ class DrawnMedium {
 
   struct Layer {
     const std::uint8_t* texels;
-    glm::vec3 corner;  // the volume's corner, in tiles
-    glm::vec3 cell;    // a cell's size, in tiles
+    glm::vec3 corner;  // position of the volume's low corner, in units of the tile's edge
+    glm::vec3 cell;    // size of a cell, in units of the tile's edge
     Channels shares;
   };
 
@@ -70,7 +72,7 @@ class DrawnMedium {
   const DetailControl& control_;
   const ExtinctionVolume& volume_;
   std::array<std::size_t, kCorners> corners_;  // offsets of a cell's corners from the lowest one
-  glm::vec3 warp_;                             // displacement in cells
+  glm::vec3 warp_;                             // PlacedDetail::warp_m, in cells
   glm::mat3 fibres_;
   std::vector<Layer> layers_;
 };

@@ -49,7 +49,8 @@ void Include(int x, int y, int z, CellBox* box) {
   box->high = glm::max(box->high, glm::ivec3(x + 1, y + 1, z + 1));
 }
 
-// Returns the box around the cells above `negligible_per_m`, and the largest extinction in it.
+// Returns the box around all cells whose extinction is above `negligible_per_m`, and the largest
+// extinction in the box.
 Occupied FindAbove(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms,
                    float negligible_per_m) {
   const CellBox& search = fields.condensate;
@@ -72,8 +73,8 @@ Occupied FindAbove(const HydrometeorFields& fields, const std::vector<Extinction
 }
 
 Occupied FindOccupied(const HydrometeorFields& fields, const std::vector<ExtinctionTerm>& terms) {
-  // Tries the threshold of thick media first, so that only a medium that is thin everywhere is
-  // scanned again.
+  // The scan begins with the threshold for thick media, so that only a medium that is thin
+  // everywhere must be scanned again.
   Occupied found =
       FindAbove(fields, terms,
                 NegligibleExtinction_per_m(fields.grid, std::numeric_limits<float>::infinity()));
@@ -154,7 +155,8 @@ ExtinctionVolume ComputeExtinction(const HydrometeorFields& fields,
   volume.negligible_per_m = occupied.negligible_per_m;
   PlaceBox(fields.grid, occupied.cells, &volume);
   volume.maximum_per_m = occupied.maximum_per_m;
-  // Scales the largest value to just below 2^15. The smallest normal half is then 3e-9 of it.
+  // This unit scales the largest texel value to just below 2^15. The smallest normal half float is
+  // then 3e-9 times the largest value.
   volume.extinction_per_m = std::ldexp(1.0F, std::ilogb(volume.maximum_per_m) - 14);
   const glm::ivec3 low = glm::max(occupied.cells.low - 1, glm::ivec3(0));
   for (int first = 0; first < channels; first += 4) {

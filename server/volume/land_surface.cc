@@ -12,7 +12,7 @@ namespace thunderhead::volume {
 namespace {
 
 constexpr glm::vec3 kLuminance(0.2126F, 0.7152F, 0.0722F);  // ITU-R BT.709
-constexpr int kShoreCells = 2;  // how far land's colour continues below water
+constexpr int kShoreCells = 2;  // number of cells by which the land's colour extends over water
 
 float Decoded(std::uint8_t byte) { return static_cast<float>(base::LinearOfSrgbByte(byte)); }
 
@@ -69,7 +69,8 @@ LandSurface MakeLandSurface(const LandColumns& columns, const glm::ivec2& cells)
     const float water = ValueOf(columns.water, i);
     is_land[i] = std::isfinite(water) ? water <= 0.5F : !use.water;
     if (is_land[i]) {
-      // Land in a class of water is a shore or sea ice, which the class does not cover.
+      // Here the file's water variable says land, but the class says water. Such a column is a
+      // shore or sea ice, so class 0 (unknown) replaces the class.
       const physics::LandUse dry = use.water ? physics::LandUseOf(columns.scheme, 0) : use;
       colors[i] = physics::LandReflectance(
           dry, {ValueOf(columns.albedo, i), ValueOf(columns.green_percent, i),

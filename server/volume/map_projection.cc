@@ -15,7 +15,7 @@ namespace thunderhead::volume {
 namespace {
 
 constexpr double kQuarter = glm::half_pi<double>() / 2.0;
-// The latitude beyond which a cone or a cylinder cannot show a place.
+// The latitude in radians beyond which a conic or Mercator projection has no place.
 constexpr double kPole = glm::half_pi<double>() - 1e-9;
 
 using Parameters = std::map<std::string, std::string, std::less<>>;
@@ -39,7 +39,8 @@ double NumberOf(const Parameters& parameters, std::string_view name) {
   return value;
 }
 
-// Returns the tangent of half the distance to the south pole. Its logarithm is Mercator's y.
+// Returns the tangent of half the angular distance from the south pole. Its logarithm is the y
+// coordinate of the Mercator projection.
 double Stretched(double latitude) { return std::tan(kQuarter + latitude / 2.0); }
 
 double Wrapped_deg(double degrees) { return std::remainder(degrees, 360.0); }

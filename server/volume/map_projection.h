@@ -18,13 +18,13 @@ struct EarthPlace {
 
 class MapProjection {
  public:
-  // Returns the projection of a grid whose middle is at `middle`. Returns nothing for an empty
-  // text, or for a text in a form that this project does not write. It writes lcc, stere on a pole,
-  // merc and eqc, on a sphere.
+  // Returns the projection of a grid whose middle is at `middle`. `proj` is a PROJ string. Returns
+  // nothing for an empty string or an unsupported projection. Supported are lcc, stere centred on a
+  // pole, merc and eqc, all on a sphere.
   static std::optional<MapProjection> Of(std::string_view proj, const EarthPlace& middle);
 
-  // Returns the place at these metres east and north of the domain's middle, or nothing beyond the
-  // map.
+  // Returns the place at these metres east and north of the domain's middle, or nothing if they lie
+  // beyond the map.
   std::optional<EarthPlace> PlaceOf(const glm::dvec2& world_m) const;
   // Returns the metres east and north of the middle for a place, or nothing if it is not on the
   // map.
@@ -41,10 +41,11 @@ class MapProjection {
   double radius_m_ = 0.0;
   double longitude0_deg_ = 0.0;
   double latitude0_ = 0.0;  // radians
-  double cone_ = 1.0;       // n; 1 for the polar projection
-  double scale_m_ = 0.0;    // R F; polar: 2 R k0; cylinders: R cos(lat_ts)
-  double origin_m_ = 0.0;   // y of latitude0_ below the cone's tip
-  double pole_ = 1.0;       // 1 north, -1 south
+  double cone_ = 1.0;       // Snyder's cone constant n; 1 for the polar projection
+  double scale_m_ = 0.0;    // R F for a cone, 2 R k0 for the polar projection, R cos(lat_ts) for a
+                            // cylinder
+  double origin_m_ = 0.0;   // distance on the map from latitude0_ to the cone's tip
+  double pole_ = 1.0;       // 1 for the north pole, -1 for the south pole
   glm::dvec2 middle_m_{0.0};
 };
 

@@ -1,5 +1,5 @@
-// The height of the ground under a storm. Beyond the domain it is the height of the nearest point
-// of the domain's edge.
+// The height of the ground under a storm. Beyond the domain, the ground has the height of the
+// nearest point of the domain's edge.
 #pragma once
 
 #include "glm/vec2.hpp"
@@ -11,7 +11,7 @@ namespace thunderhead::volume {
 // columns.
 double TerrainHeight_m(const HydrometeorFields& fields, const glm::dvec2& place_m);
 
-// Returns the lowest ground of the domain.
+// Returns the lowest height of the ground in the domain.
 double LowestTerrain_m(const HydrometeorFields& fields);
 
 }  // namespace thunderhead::volume

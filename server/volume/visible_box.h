@@ -1,6 +1,6 @@
-// The box of a domain in which the storm is visible, for a camera to frame. A scene chooses only
-// the source of the particles' sizes; the other optics are the defaults. This code does not depend
-// on scenes.
+// The box of a domain in which the storm is visible, for a camera to frame. Particle radii come
+// from the size source that the scene chooses; all other optical properties are the defaults. This
+// code does not depend on scenes.
 #pragma once
 
 #include "volume/hydrometeor_fields.h"
@@ -12,8 +12,8 @@ struct WorldBox {
   glm::dvec3 high_m{0.0};
 };
 
-// Returns the box that leaves 0.1 % of the storm's extinction beyond each of its faces, or the
-// whole domain if there is no condensate.
+// Returns the box for which 0.1 % of the storm's total extinction lies beyond each face. Returns
+// the whole domain if there is no condensate.
 WorldBox VisibleBox(const HydrometeorFields& fields,
                     physics::SizeSource sizes = physics::SizeSource::kModel);
 

@@ -1,6 +1,6 @@
-// A cache of the factors with which columns of volumes keep their water paths. They are needed
-// again when a session returns to an earlier time, or when a medium is rebuilt after its memory was
-// given to others. This code does not depend on scenes or GL.
+// A cache of the factors that KeepWaterPaths computes. A session needs the factors again when it
+// returns to an earlier time of the storm. It also needs them when it rebuilds a medium whose
+// memory was evicted. This code does not depend on scenes or GL.
 #pragma once
 
 #include <cstddef>
@@ -20,9 +20,9 @@ class WaterPathMemo {
   // `most_bytes`.
   explicit WaterPathMemo(std::size_t most_bytes) : most_bytes_(most_bytes) {}
 
-  // Does the same as KeepWaterPaths, which it calls if the volume, control and detail are not in
-  // the cache. Only results of full effort are cached. Returns the effort with which the paths were
-  // found, which is at least `effort`.
+  // Does the same as KeepWaterPaths, but uses cached factors if the same volume, control and detail
+  // are in the cache. Otherwise it calls KeepWaterPaths. Only results of full effort are cached.
+  // Returns the effort with which the paths were found, which is at least `effort`.
   WaterPathEffort Keep(const PlacedDetail& detail, DetailControl* control, ExtinctionVolume* volume,
                        WaterPathEffort effort);
 

@@ -17,11 +17,11 @@
 namespace thunderhead::volume {
 namespace {
 
-// Smallest and largest factor in DetailTexel::column, which is a byte.
+// The smallest and the largest factor that DetailTexel::column, a byte, is used for.
 constexpr float kLeastRest = 8.0F / DetailTexel::kColumnOne;
 constexpr float kMostRest = 255.0F / DetailTexel::kColumnOne;
 
-// The numbers of points of both steps.
+// The numbers of points for the first and the second step of KeepWaterPaths.
 struct Points {
   ColumnPoints first;
   ColumnPoints second;
@@ -32,24 +32,25 @@ constexpr ColumnPoints kMore = {.at_surface = 16, .elsewhere = 4};
 constexpr ColumnPoints kMany = {.at_surface = 16, .elsewhere = 4, .error = 0.01, .most = 12000};
 constexpr Points kQuickPoints = {kTwo, kFew};
 
-// Above this number of columns that hold anything, each column gets fewer points.
+// With more occupied columns than this, each column gets fewer points.
 constexpr double kManyColumns = 2e4;
 
-// Largest factors: of a channel in one column (first step), and of a channel's total (second step).
+// The largest factor for one channel in one column (first step), and the largest factor for a
+// channel's total (second step).
 constexpr float kMostOfColumn = 4.0F;
 constexpr double kMostOfChannel = kMaxColumnFactor / kMostOfColumn;
 
-// Number of iterations in which the second step's factors are found, at first and each time after
-// detail was weakened. Detail is weakened kTimesWeaker times. More iterations do not help more
-// columns.
+// The second step finds its factors in kTurns iterations, and in kMoreTurns iterations each time
+// after detail was weakened. Detail is weakened at most kTimesWeaker times. More iterations do not
+// help more columns.
 constexpr int kTurns = 12;
 constexpr int kMoreTurns = 8;
 constexpr int kTimesWeaker = 5;
 
-// Weakening of detail in a column that lacks something in spite of the largest factor. Its detail
-// is made so weak that the column would hold kRoom times its target, because the detail of
-// neighbouring columns thins it, too. If it would hold less even without detail, its detail is
-// removed.
+// These constants control the weakening of detail in a column whose water path is too small even
+// with the largest factor. Its detail is made so weak that the column would hold kRoom times its
+// target, because the detail of neighbouring columns thins it, too. If the column would hold less
+// than that even without detail, its detail is removed.
 constexpr float kRoom = 3.0F;
 constexpr float kNegligible = 0.005F;
 
@@ -80,8 +81,9 @@ void ForEachTexel(Volume& volume, const Visit& visit) {
   }
 }
 
-// Returns the sums of columns over levels, x fastest, by channel. They are the means that linear
-// interpolation gives at the centres of a cell's quarters.
+// Returns for each column and channel the sum over levels without detail, channel fastest, then x.
+// Shaders interpolate between columns, so each sum is a mean of the interpolated values within the
+// column.
 std::vector<float> SumsWithout(const ExtinctionVolume& volume) {
   const auto channels = static_cast<std::size_t>(volume.Channels());
   const glm::ivec3& size = volume.grid.cells;
@@ -126,7 +128,7 @@ std::vector<float> SumsWith(const DrawnColumns& columns, const ExtinctionVolume&
   return sums;
 }
 
-// Returns the columns that hold anything.
+// Returns the indices of the columns that contain any medium.
 std::vector<std::size_t> FilledColumns(const std::vector<float>& without, std::size_t columns) {
   const std::size_t channels = without.size() / columns;
   std::vector<std::size_t> filled;
@@ -138,7 +140,8 @@ std::vector<std::size_t> FilledColumns(const std::vector<float>& without, std::s
   return filled;
 }
 
-// Returns the numbers of points of both steps, for this number of columns that hold anything.
+// Returns the numbers of points for both steps. `columns` is the number of columns that contain any
+// medium.
 Points PointsFor(WaterPathEffort effort, std::size_t columns) {
   if (effort == WaterPathEffort::kQuick) return kQuickPoints;
   const double share = kManyColumns / std::max(static_cast<double>(columns), kManyColumns);
@@ -152,14 +155,14 @@ Points PointsFor(WaterPathEffort effort, std::size_t columns) {
   return {with_fewer(kMore), with_fewer(kMany)};
 }
 
-// The second step. It finds factors of columns, linear between their centres, and factors of
-// channels. With both, each column keeps the sum of its channels without detail, and so does each
-// channel over all columns.
+// The second step of KeepWaterPaths. It finds a factor for each column, interpolated linearly
+// between columns, and a factor for each channel. With these factors, the sum of all channels in a
+// column, and the sum of a channel over all columns, are the same as without detail.
 class Rests {
  public:
-  // `without` holds sums by channel and column, like SumsWithout. The columns' channels have since
-  // been multiplied by `factors`. All arguments except `filled` (from FilledColumns) must outlive
-  // this object.
+  // `without` is the result of SumsWithout. After it was computed, the columns' channels were
+  // multiplied by `factors` (first step). All arguments except `filled` (from FilledColumns) must
+  // outlive this object.
   Rests(const DrawnColumns& columns, const RegularGrid& grid, const std::vector<float>& without,
         const std::vector<float>& factors, std::vector<std::size_t> filled,
         const ColumnPoints& points)
@@ -176,8 +179,9 @@ class Rests {
     Fit(kTurns);
   }
 
-  // Returns the columns in which no factor is large or small enough. Each has the share of detail's
-  // amplitude with which a factor suffices.
+  // Returns the columns in which even the largest or the smallest allowed factor does not restore
+  // the water path. For each column it also returns the share to which the amplitude of detail must
+  // be reduced.
   std::vector<WaterPaths::Weaker> ThoseToWeaken() const {
     std::vector<WaterPaths::Weaker> weaker;
     for (const std::size_t column : filled_) {
@@ -186,7 +190,8 @@ class Rests {
       if (std::abs(missing) <= kNegligible * held.wanted) continue;
       float share = 1.0F;
       if (missing < 0.0F && of_columns_[column] <= kLeastRest) {
-        // The displacement brings too much into the column. It shrinks with the amplitude.
+        // The displacement moves too much medium into the column. With a smaller amplitude the
+        // displacement is smaller.
         share = 0.5F;
       } else if (missing > 0.0F && of_columns_[column] >= kMostRest) {
         const float enough = kRoom * held.wanted;
@@ -213,11 +218,11 @@ class Rests {
   const std::vector<float>& OfChannels() const { return of_channels_; }
 
  private:
-  // What a column holds, with all channels together.
+  // The sums over a column of all channels together.
   struct Held {
     float wanted = 0.0F;
     float now = 0.0F;
-    float smooth = 0.0F;  // with the same factors, but without detail
+    float smooth = 0.0F;  // the sum with the same factors, but without detail
   };
 
   // Returns the index of column `k` of the 3 x 3 columns around a column, x fastest.
@@ -245,8 +250,8 @@ class Rests {
     return held;
   }
 
-  // Returns the mean factor of a column and its neighbours, weighted by the share that
-  // interpolation takes from each.
+  // Returns the mean of the factors of a column and its neighbours. Each factor is weighted by its
+  // share in the interpolation (DrawnColumn::shares).
   float Between(std::size_t column) const {
     float with = 0.0F;
     float before = 0.0F;
@@ -318,7 +323,8 @@ void ScaleAmplitudes(const std::vector<WaterPaths::Weaker>& columns, std::size_t
   }
 }
 
-// Carries the remainder of rounding to a byte over to the next level.
+// Stores the factor of each column in all its texels. The remainder of rounding to a byte is
+// carried over to the next level.
 void StoreColumnFactors(const std::vector<float>& factors, DetailControl* control) {
   std::vector<float> left(factors.size(), 0.0F);
   for (std::size_t i = 0; i < control->size(); ++i) {

@@ -1,5 +1,5 @@
-// Keeps the water paths of a medium's columns where detail finer than the grid is drawn. This code
-// does not depend on scenes or GL.
+// Corrects a medium so that drawn detail, which is finer than the grid, does not change the water
+// paths of its columns. This code does not depend on scenes or GL.
 #pragma once
 
 #include <cstdint>
@@ -11,23 +11,25 @@
 
 namespace thunderhead::volume {
 
-// The effort, which decides at how many points the medium is evaluated.
+// The effort of the computation. It decides at how many points the medium is evaluated.
 enum class WaterPathEffort {
-  kQuick,  // used while fields change
+  kQuick,  // fewer points; used while fields change
   kFull,
 };
 
-// The factors with which the columns of a volume keep their water paths. Columns are by x, then y.
+// The factors by which KeepWaterPaths corrects the columns of a volume. The index of a column
+// increases with x, then with y.
 struct WaterPaths {
-  // A column in which detail's amplitude is multiplied by a share.
+  // A column in which the amplitude of detail is multiplied by `share`.
   struct Weaker {
     std::uint32_t column = 0;
     float share = 1.0F;
   };
 
-  std::vector<float> by_column;  // factors of the volume's channels; those of a column are adjacent
+  std::vector<float> by_column;  // a factor for each column and channel, channel fastest
   std::vector<float> by_channel;
-  std::vector<float> drawn;                   // factors of DetailTexel::column
+  std::vector<float> drawn;                   // the factor for each column that DetailTexel::column
+                                              // stores
   std::vector<std::vector<Weaker>> weakened;  // one list for each round of weakening
 
   // Returns the volume's factors in the order of `by_column`, from 1 / kMaxColumnFactor to
@@ -42,25 +44,29 @@ struct WaterPaths {
 // the mean loss caused by detail.
 //
 // Second, it sets DetailTexel::column to a factor that makes up for the loss that remains for all
-// channels together. Shaders multiply the medium at a place by it, wherever the displacement takes
-// the medium from. These factors are linear between columns, so they are found for all columns
-// together. One more factor for each channel keeps the channel's total.
+// channels together. A shader multiplies the medium at a place by the factor of that place, not of
+// the displaced place from which the medium is read. Shaders interpolate the factors between
+// columns, so all factors are computed together. In addition, one factor for each channel keeps the
+// channel's total.
 //
-// Billows can remove nearly everything from a column, so that no such factor is large enough.
-// DetailTexel::amplitude is then weakened. `control` must be DetailControlOf the volume.
+// Billows can remove nearly all medium from a column, so that no allowed factor is large enough.
+// DetailTexel::amplitude of that column is then reduced. `control` must be the result of
+// DetailControlOf for `volume`.
 //
 // Each channel's path of the whole storm is thus kept within 1 %. The path of all channels together
-// is kept within 1 % in 99 of 100 columns. Domains of more than 20 000 columns keep it in fewer.
-// With kQuick it is kept in 6 of 10 columns, and in fewer in clouds of small puffs
+// is kept within 1 % in 99 of 100 columns. With more than 20 000 columns, the share is smaller.
+// With kQuick, the path is kept in 6 of 10 columns, and in fewer for clouds of small puffs
 // (docs/decisions/0020-detail-of-the-model.md).
 WaterPaths KeepWaterPaths(const PlacedDetail& detail, DetailControl* control,
                           ExtinctionVolume* volume,
                           WaterPathEffort effort = WaterPathEffort::kFull);
 
-// Does to the same volume and control what the call that returned `paths` did.
+// Repeats the changes of the KeepWaterPaths call that returned `paths`, on an equal volume and
+// control.
 void KeepWaterPathsAgain(const WaterPaths& paths, DetailControl* control, ExtinctionVolume* volume);
 
-// Multiplies columns by such factors, one for each of the volume's channels.
+// Multiplies the texels of each column by `factors`, which are in the order of
+// WaterPaths::by_column.
 void ScaleColumns(const std::vector<float>& factors, ExtinctionVolume* volume);
 
 inline constexpr float kMaxColumnFactor = 5.0F;

@@ -110,15 +110,15 @@ TEST_F(AirShadeTest, AirBelowAStormIsAsDarkAsTheReferenceHasIt) {
     const glm::dvec3 drawn = DrawnRow(picture, row);
     for (int color = 0; color < 3; ++color) {
       EXPECT_LT(traced[color], 0.85 * lit[color]) << row;
-      // The tolerance is for air samples 4 km apart, and for the roof's light on the air, which
-      // comes from a two-stream layer.
+      // The tolerance covers the distance of 4 km between air samples. It also covers the roof's
+      // light on the air, which the model takes from a two-stream layer.
       EXPECT_NEAR(drawn[color], traced[color], 0.04 * lit[color]) << row << ' ' << color;
     }
   }
 }
 
-// In front of a black roof only the air shines. Next to the sun most of its light is scattered by
-// haze near the eye. An earlier version subtracted more shade than the air (airlight_before) sends
+// In front of a black roof only the air sends light. Next to the sun, haze near the camera scatters
+// most of this light. An earlier version subtracted more shade than the air (airlight_before) sends
 // up to a distance. Cloud bases then were black with violet rims, in the reference too.
 TEST_F(AirShadeTest, OfAirInFrontOfAStormNoMoreIsTakenThanItHas) {
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kDiffusion);
@@ -167,7 +167,8 @@ TEST_F(AirShadeTest, AirBesideASunlitTowerHasItsLight) {
       EXPECT_GT(traced[color], 1.03 * lit[color]) << row << ' ' << color;
       EXPECT_GT(drawn[color], 1.01 * lit[color]) << row << ' ' << color;
       // The model replaces the tower's two faces by faces oriented like a sphere's. The sun strikes
-      // the real faces more squarely: 0.06 to 0.075 of the lit air are missing.
+      // the real faces more squarely: the model therefore lacks 0.06 to 0.075 of the lit air's
+      // radiance.
       EXPECT_NEAR(drawn[color], traced[color], 0.08 * lit[color]) << row << ' ' << color;
     }
   }
@@ -203,7 +204,8 @@ TEST_F(AirShadeTest, AirStandsBeforeTheStormNotBeforeTheMiddleOfItsBox) {
     return fields;
   };
   scene_.sky.turbidity = 6.0;
-  scene_.sun.azimuth_deg = 180.0;  // on the cloud, which is then brighter than the air
+  scene_.sun.azimuth_deg = 180.0;  // the sun shines on the cloud's visible side, so that the cloud
+                                   // is brighter than the air
   for (const accuracy::PlainTechnique& plain :
        {test_support::kHalfAngle, test_support::kLightVolume}) {
     test_support::SetTechnique(&scene_.rendering.technique, plain);

@@ -21,12 +21,12 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
     test_support::SetTechnique(&scene_.rendering.technique, GetParam());
     test_support::SetMode(&scene_.rendering.technique, test_support::kWithDetail);
     test_support::SetTransport(&scene_.rendering.technique,
-                               scene::Transport::kPaper);  // unscaled extinction towards the eye
+                               scene::Transport::kPaper);  // its extinction is unscaled
     scene::SetSlices(&scene_.rendering.technique, 512);
   }
 
-  // The medium as it is uploaded: extinction by cell, in units of the slab's extinction, and column
-  // factors.
+  // The medium in the form in which it is uploaded to the device: the extinction of each cell
+  // relative to the slab's, and a factor for each column.
   struct Kept {
     volume::RegularGrid grid;
     std::vector<float> factors;
@@ -102,8 +102,8 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
 
   static constexpr double kDepth = 3.0;
 
-  // Returns the amplitude as it is stored. On 200 m the slab's optical depth is 0.6, and detail is
-  // 0.435 of its turbulence, 76 of 255.
+  // Returns the stored amplitude of the detail. Over 200 m the slab's optical depth is 0.6, and the
+  // amplitude is then 0.435 of the turbulence, which is 76 of 255.
   static float Amplitude() { return -16.0F / 127.0F; }
 };
 

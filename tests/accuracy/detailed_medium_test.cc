@@ -81,8 +81,8 @@ TEST(DetailedMedium, IsWhatTheLightVolumeDraws) {
   constexpr double kPixels = kSide_px * kSide_px;
   EXPECT_GT(covered / kPixels, 0.1);
   EXPECT_LT(covered / kPixels, 0.95);
-  // The tolerance is because rays end at a transmittance of 0.005, and llvmpipe interpolates byte
-  // textures with 8 bits.
+  // The tolerance covers that rays end at a transmittance of 0.005, and that llvmpipe interpolates
+  // byte textures with 8 bits.
   EXPECT_LT(off / kPixels, 0.004);
   // Seen straight down, columns of cells contain the same amount with and without detail.
   EXPECT_GT(off_without, 5.0 * off);
@@ -124,7 +124,7 @@ TEST(DetailedMedium, DriftsWithTheWind) {
   const double soon = difference(first, cloud_at(5.0, wind));
   EXPECT_GT(soon, 0.0);
   EXPECT_LT(soon, 0.5 * difference(first, cloud_at(600.0, wind)));
-  // At this time the noise has completed its period.
+  // At this time the wind has moved the noise by a whole period.
   EXPECT_LT(difference(first, cloud_at(10795.0, wind)), 2.0 * soon);
 }
 

@@ -1,5 +1,5 @@
-// Tests of paths on the device, compared with the CPU's paths in the same scene: two estimates of
-// the same radiance.
+// Tests of paths that are traced on the graphics device. They are compared with the CPU's paths in
+// the same scene, because both estimate the same radiance.
 #include <array>
 #include <cmath>
 #include <memory>
@@ -47,7 +47,7 @@ Mean MeanOf(const std::vector<double>& values) {
   return {sum / count, std::sqrt(squares / count / (count - 1.0))};
 }
 
-// A turn that ends each piece as soon as possible and counts the pieces.
+// A device turn that ends each piece of work as soon as possible, and counts the pieces.
 class CountedTurn final : public base::DeviceTurn {
  public:
   absl::Status Take() override {

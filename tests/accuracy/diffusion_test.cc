@@ -24,8 +24,9 @@ class Diffusion : public SlabView {
 };
 
 TEST_F(Diffusion, UpwardRadianceOfDisortsThirdTest) {
-  // Published values for Henyey and Greenstein's g = 0.75, optical depth 8, sun overhead: 0.519598
-  // and 0.493302 at mu = 0.5 and 1 for an irradiance of pi.
+  // The published case has a Henyey-Greenstein phase function with g = 0.75, an optical depth of 8
+  // and the sun overhead. For an irradiance of pi the radiance is 0.519598 at mu = 0.5, and
+  // 0.493302 at mu = 1.
   const double at_half = Look(8.0, 30.0, 89.9).radiance * std::numbers::pi;
   const double at_one = Look(8.0, 89.9, 89.9).radiance * std::numbers::pi;
   // Eddington's source is linear near the surface, where the exact source bends down: a slanted ray

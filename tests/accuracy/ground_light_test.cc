@@ -87,11 +87,13 @@ class GroundLightTest : public testing::Test {
 TEST_F(GroundLightTest, AnOvercastGetsTheLightOfTheGroundInItsOwnShadow) {
   const glm::dvec3 over_black_ground = Drawn(0.0) / Traced(0.0);
   const glm::dvec3 over_snow = Drawn(0.9) / Traced(0.9);
-  // The results are red 0.77, green 0.85, blue 0.99. One share for all colours comes up (decision
-  // 48), but light that bounces between ground and a thick storm becomes redder.
+  // The ratios to the reference are 0.77 in red, 0.85 in green and 0.99 in blue. The model uses one
+  // fraction of lit ground for all colours (decision 48), but light that bounces between the ground
+  // and a thick storm becomes redder.
   const glm::dvec3 tolerance_over_snow(0.26, 0.18, 0.04);
   for (int color = 0; color < 3; ++color) {
-    // The results are 0.90 to 0.93: diffusion, at a base 40 optical depths below the sunlit top.
+    // The ratios to the reference are 0.90 to 0.93. The difference is that of the diffusion
+    // transport at a base 40 optical depths below the sunlit top.
     EXPECT_NEAR(over_black_ground[color], 1.0, 0.12) << color;
     EXPECT_NEAR(over_snow[color], 1.0, tolerance_over_snow[color]) << color;
   }

@@ -18,10 +18,10 @@ class HalfAngle : public SlabView {
   }
 };
 
-// Returns the error bound at the slab's hard faces, which cut tilted slices. A ray counts its path
-// in whole slices, with an error of up to half a slice at each face, and so does the light. The
-// slab is 1 / 2.5 of the sliced extent at the steepest tilt tested. Storms have no hard faces:
-// their extinction falls to zero linearly over a cell.
+// Returns the error bound at the slab's hard faces, which cut tilted slices. The path of a ray, and
+// that of the light, consists of whole slices, with an error of up to half a slice at each face. At
+// the steepest tilt that is tested, the slab's thickness is 1 / 2.5 of the sliced extent. Storms
+// have no hard faces: their extinction falls to zero linearly over a cell.
 double HardFaceError(int slices, double depth) { return 3.3 * (1.0 + depth / 2.0) / slices; }
 
 class SingleScattering : public HalfAngle {
@@ -110,7 +110,8 @@ TEST_F(HalfAngle, ThinSlabsKeepTheirDigitsInLightFromAllAround) {
   test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
   scene::SetSlices(&scene_.rendering.technique, 1024);
   SetPhase(physics::PhaseKind::kRayleigh, 0.0F);
-  // In single precision the opacity of a slice of 3e-7 is off by a fifth.
+  // In single precision the opacity of a slice with an optical depth of 3e-7 has an error of a
+  // fifth.
   for (const double depth : {3e-4, 1e-3}) {
     EXPECT_NEAR(Look(depth, 89.9, 89.9).radiance / depth, 1.0, 0.006 + depth) << depth;
   }
@@ -161,7 +162,7 @@ TEST_F(HalfAngle, LightSpreadsFromClearAirIntoTheCloudsEdge) {
   SetPhase(physics::PhaseKind::kHenyeyGreenstein, 0.6F);
   with_gap_ = true;
   struct Shares {
-    double within = 0.0;  // share of light farthest from the gap
+    double within = 0.0;  // fraction of the light that is left farthest from the gap
     double edge = 0.0;    // sum of the excess, in columns of texels with that light
   };
   const auto shares = [&](double depth) {
@@ -198,7 +199,7 @@ TEST_F(HalfAngle, PaperTransportIsAsPrinted) {
   test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   SetPhase(physics::PhaseKind::kCornetteShanks, 0.979F);
-  double angle_deg = 5.0;  // bisection for CP(angle) = 0.9
+  double angle_deg = 5.0;  // found by bisection, so that CP(angle) = 0.9
   for (double step = 4.0; step > 1e-6; step /= 2) {
     const double within = physics::CumulativePhase(
         physics::PhaseOf(scene_.fields[physics::IndexOf(physics::Hydrometeor::kCloud)].optics),
@@ -224,8 +225,8 @@ TEST_F(HalfAngle, ConsistentTransportDoesNotDependOnTheNumberOfSlices) {
   const double coarse = Look(10.0, 60.0, 45.0).radiance;
   scene::SetSlices(&scene_.rendering.technique, 128);
   const double fine = Look(10.0, 60.0, 45.0).radiance;
-  // The diffusion term is evaluated once per slice, which makes a second-order error, at 0.6 of a
-  // mean free path here.
+  // The diffusion term is evaluated once per slice, and here a slice is 0.6 of a mean free path
+  // thick. The error is of second order in this thickness.
   EXPECT_NEAR(coarse / fine, 1.0, 0.02);
 }
 
@@ -242,7 +243,7 @@ TEST_F(HalfAngle, ThickSlabIsWhite) {
 class OpticalDepths : public HalfAngle, public testing::WithParamInterface<double> {};
 
 TEST_P(OpticalDepths, NothingBreaks) {
-  // 40 slices need several slabs.
+  // 40 slices are drawn in several groups (slabs).
   for (const int slices : {8, 40}) {
     for (const auto mode : {test_support::kLowAlbedo, test_support::kPerFieldPhase}) {
       for (const auto transport : {scene::Transport::kPaper, scene::Transport::kConsistent}) {

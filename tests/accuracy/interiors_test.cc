@@ -1,5 +1,5 @@
-// Tests of views from inside clouds: no popping as the camera moves, nothing clipped at the eye, no
-// bands in fog.
+// Tests of views from inside clouds. The picture must not change abruptly when the camera moves, no
+// cloud may be clipped near the camera, and fog must show no bands.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -153,7 +153,7 @@ class InSlab : public SlabView {};
 TEST_F(InSlab, NothingIsClippedBeforeTheEye) {
   scene_.rendering.technique = accuracy::Plain<scene::LightVolume>().settings();
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
-  constexpr double kDepth = 40.0;  // of the slab, which is 1000 m thick
+  constexpr double kDepth = 40.0;  // optical depth of the slab, which is 1000 m thick
   for (const double height_m : {1.0, 5.0, 30.0, 100.0}) {
     scene::OrbitCamera camera;  // looks down through the slab's lower face
     camera.target_m = {0.0, 0.0, 0.0};

@@ -122,7 +122,7 @@ TEST_F(LightCorrection, SkylightOnTheGroundIsMultipliedWhereItSays) {
   auto correction = std::make_shared<renderers::LightCorrection>();
   correction->size = glm::ivec3(1);
   for (auto& texels : correction->texels) texels.assign(1, {1.0F, 0.0F, 0.0F, 0.0F});
-  correction->ground_size = {2, 1};  // twice as bright in the east
+  correction->ground_size = {2, 1};  // two texels; the eastern one is twice as bright
   correction->ground = {glm::vec4(1.0F), glm::vec4(2.0F)};
   correction->ground_low_m = {-1e4, -1e4};
   correction->ground_high_m = {1e4, 1e4};
@@ -213,7 +213,7 @@ TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
 TEST_F(LightCorrection, IsTheSameForAnyNumberOfThreads) {
   const auto one = MakeCorrector(1);
   const auto two = MakeCorrector(2);
-  // There are so many paths that some rays have two.
+  // With this many paths some rays have two paths.
   constexpr std::int64_t kPaths = 2 * kMinCorrectingPaths;
   ASSERT_TRUE(one->TraceUntil(kPaths, {}, nullptr).ok());
   ASSERT_TRUE(two->TraceUntil(kPaths, {}, nullptr).ok());
@@ -228,7 +228,8 @@ TEST_F(LightCorrection, FromTheNinthPictureOnARayHasTwoPaths) {
   for (int picture = 2; picture <= 8; ++picture) ASSERT_TRUE(corrector->Step().ok());
   const std::int64_t of_eight = corrector->Progress().paths;
   for (int picture = 9; picture <= 16; ++picture) ASSERT_TRUE(corrector->Step().ok());
-  // The later pictures are seen from other places, so the paths are not exactly twice as many.
+  // The later pictures are seen from other places, so their number of paths is only approximately
+  // twice as large.
   EXPECT_NEAR(static_cast<double>(corrector->Progress().paths - of_eight) / of_eight, 2.0, 0.3);
 }
 
@@ -302,7 +303,7 @@ TEST_F(LightCorrection, APoolReservesItsCopiesOfTheStorm) {
   other.sun.elevation_deg = 70.0;
   EXPECT_TRUE(absl::IsResourceExhausted(pool.Trace(other, fields_).status()));
   EXPECT_NE(pool.Find(scene_, fields_), nullptr);
-  // A corrector without a claim is evicted for another.
+  // Without its claim, the first corrector can be evicted to make space for another.
   claim.reset();
   EXPECT_TRUE(pool.Trace(other, fields_).ok());
   EXPECT_EQ(pool.Find(scene_, fields_), nullptr);

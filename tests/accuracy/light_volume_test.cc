@@ -26,8 +26,8 @@ class LightVolume : public SlabView {
 TEST_F(LightVolume, ReflectedLightOfALayer) {
   // With sun and eye above, the result is the integral of exp(-t (1 / sin e + 1 / sin s)) dt / sin
   // e, for any profile of extinction. The light volume's texels (94 m) are wider than the layer's
-  // cells are high (62 m). The residual is interpolation over a texel, in which a ray's optical
-  // depth is up to 20.
+  // cells are high (62 m). The remaining error comes from interpolation over a texel, in which a
+  // ray's optical depth is up to 20.
   SingleScattering();
   in_air_ = true;
   for (const double depth : {0.01, 0.5, 3.0, 20.0, 100.0}) {
@@ -68,8 +68,8 @@ TEST_F(LightVolume, TransmittanceDoesNotDependOnTheNumberOfSamples) {
 }
 
 TEST_F(LightVolume, AStepThroughHazeEndsWhereTheCloudBegins) {
-  // In thin bricks samples are a cell apart, but must not step over the beginning of a thick brick.
-  // The haze is as high as the layer, half the domain.
+  // In a thin brick (block of cells) the ray march samples once per cell, but it must not step over
+  // the beginning of a thick brick. The haze is as high as the layer, which is half of the domain.
   SingleScattering();
   in_air_ = true;
   haze_per_m_ = 2e-5;
@@ -135,8 +135,8 @@ TEST_F(LightVolume, PaperTransportDependsOnTheNumberOfSlicesAsPrinted) {
   const double fine = seen(128, test_support::kLightVolume);
   EXPECT_GT(coarse, 1.05 * fine);
   const double slicing = seen(16, test_support::kHalfAngle) / seen(128, test_support::kHalfAngle);
-  // Here a slice's own share of the light is counted at its middle; half-angle slicing counts it
-  // before the slice.
+  // The light volume counts a slice's own attenuation of the light at the middle of the slice.
+  // Half-angle slicing counts it before the slice.
   EXPECT_NEAR(coarse / fine / slicing, 1.0, 0.05);
 }
 

@@ -98,9 +98,9 @@ class MovingPictureTest : public testing::Test {
     return {scene_.output.width_px, scene_.output.height_px, std::move(mapped->rgb)};
   }
 
-  // Expects that moving pictures use few rays, even of clouds that are rough all over. At the same
-  // exposure they must be within 0.02 of FLIP. Separately metered exposures must differ by less
-  // than 0.15 of a stop.
+  // Expects that moving pictures use few rays, even if clouds are rough everywhere. At the same
+  // exposure their FLIP error must be below 0.02. The exposures that are metered separately must
+  // differ by less than 0.15 stops.
   void ExpectAlike(const std::string& what) {
     scene_.display.exposure_ev.reset();
     const frame::RgbImage at_rest = AtRest();
@@ -131,8 +131,8 @@ class MovingPictureTest : public testing::Test {
   std::unique_ptr<frame::ToneMapper> tone_mapper_;
   Fields fields_;
   scene::Scene scene_;
-  double exposure_ev_ = 0.0;  // of the last picture
-  double most_rays_ = 0.3;    // largest allowed share of rays in pixels
+  double exposure_ev_ = 0.0;  // exposure of the last picture
+  double most_rays_ = 0.3;    // largest allowed number of rays per pixel
 };
 
 TEST_F(MovingPictureTest, LooksLikeARayAPixelOnA500MetreGrid) {
@@ -158,8 +158,8 @@ TEST_F(MovingPictureTest, LooksLikeARayAPixelOfGeneratedClouds) {
   }
 }
 
-// Pixels of large pictures may differ by more. The view is from above, where differences are seen
-// most.
+// In large pictures, neighbouring pixels may differ more before additional rays are drawn. The view
+// is from above, which shows differences most.
 TEST_F(MovingPictureTest, LargePicturesLookLikeARayAPixelWithEvenFewerRays) {
   Show(OfSample("supercell-500m.nc", 2), {1280, 720});
   EXPECT_NEAR(MovingContrast(scene_), 2.2 * kMovingContrast, 0.1 * kMovingContrast);
@@ -193,7 +193,8 @@ TEST_F(MovingPictureTest, LightOfADraggedSunIsAsGood) {
   }
 }
 
-// Compares light that is updated in a part of the cells with the same light updated in all.
+// Compares light that is updated in only a part of the cells with light that is updated in all
+// cells.
 TEST_F(MovingPictureTest, LightOfASunThatMovesIsFoundInTurns) {
   Show(OfSample("supercell-500m.nc", 2), {240, 135});
   Orbit().elevation_deg = 45.0;
@@ -290,7 +291,7 @@ TEST_F(MovingPictureTest, CoarsePicturesAreThePicturesOfTheirSize) {
   }
 }
 
-// A turn that counts its uses. Each must be given back before the next.
+// A device turn that counts how often it is taken. It must be given back before it is taken again.
 class SingleTurns final : public base::DeviceTurn {
  public:
   absl::Status Take() override {
@@ -308,7 +309,8 @@ class SingleTurns final : public base::DeviceTurn {
   int taken_ = 0;
 };
 
-// The processors work on the picture before each drawing of places, and after the last.
+// The CPU works on the picture before each drawing of rays, and after the last drawing. The device
+// must be free for other work meanwhile.
 TEST_F(MovingPictureTest, OthersMayDrawWhileTheProcessorsCompleteIt) {
   Show(OfSample("supercell.nc", 1));
   scene_.output.width_px = 1600;

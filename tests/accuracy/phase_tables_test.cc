@@ -35,8 +35,8 @@ constexpr double kMarchingError = 4e-3;
 // The irradiance is so large that no half float of a picture is subnormal.
 constexpr float kIrradiance = 100.0F;
 
-// The lookup takes a value from within a texel of the right angle, at most 0.09 degrees. This cuts
-// the corners off the halos and bows of the tables.
+// The lookup takes a value within a texel, or at most 0.09 degrees, of the correct angle. This
+// smooths the sharp edges of halos and bows in the tables.
 constexpr double kTexel_rad = 0.09 * std::numbers::pi / 180.0;
 
 class PhaseTables : public testing::TestWithParam<physics::PhaseFunction> {
@@ -111,8 +111,8 @@ TEST_P(PhaseTables, SingleScatteringFollowsTheCurve) {
     for (int i = 0; i < kTablePixels; ++i) {
       const double up = std::cos(Angle_rad(i));
       const double mu = sun_elevation_deg > 0.0 ? up : -up;
-      // Light comes from above or from below. The result is the integral of exp(-t / up) exp(-depth
-      // towards the sun).
+      // The sun is above or below the slab. The radiance is the integral over t of exp(-t / up)
+      // times exp(-optical depth towards the sun).
       const double longer = std::fmax(1.0 / up - 1.0, 1e-9);
       const double seen = sun_elevation_deg > 0.0
                               ? std::exp(-depth) * -std::expm1(-depth * longer) / longer / up

@@ -170,7 +170,8 @@ TEST_F(SkyOptics, RainHasTwoBowsAndADarkBandBetween) {
     // factor of order 1. That is 0.4 degrees for such drops.
     EXPECT_NEAR(primary.angle_deg, BowAngle_deg(index, 1) - 0.4, 0.35) << color;
     EXPECT_NEAR(secondary.angle_deg, BowAngle_deg(index, 2) + 0.7, 0.6) << color;
-    // Red is outside in the primary bow and inside in the secondary.
+    // Red is the outermost colour of the primary rainbow and the innermost colour of the secondary
+    // rainbow.
     EXPECT_LT(primary.angle_deg, before_deg - 0.2);
     EXPECT_GT(secondary.angle_deg, secondary_before_deg + 0.3);
     before_deg = primary.angle_deg;
@@ -230,8 +231,8 @@ TEST_F(SkyOptics, DropsOfOneSizeHaveACoronaAndOthersAnAureole) {
   EXPECT_GT(dark.angle_deg, 5.8);
 }
 
-// Cutting the peak leaves no visible edge: the picture within the cut angle is that of the whole
-// phase function.
+// Cutting the forward peak must leave no visible edge. Within the cut angle the picture must equal
+// that of the whole phase function.
 TEST_F(SkyOptics, TheAureoleOfAThinSlabIsItsPhaseFunction) {
   for (const physics::PhaseKind kind :
        {physics::PhaseKind::kWaterDroplets, physics::PhaseKind::kIceColumns}) {
@@ -247,7 +248,8 @@ TEST_F(SkyOptics, TheAureoleOfAThinSlabIsItsPhaseFunction) {
             kDepth * std::exp(-kDepth) *
             physics::PhaseColors(phase, std::cos(glm::radians(Angle_deg(i))))[color] /
             (4.0 * std::numbers::pi);
-        // Second scattering is a fiftieth of the first, and wider.
+        // Light that is scattered twice has a fiftieth of the radiance of light that is scattered
+        // once, and spreads wider.
         EXPECT_NEAR(At(i, color) / expected, 1.0, 0.06) << angle_deg << " " << color;
       }
     }
@@ -278,8 +280,8 @@ TEST(Aureole, HoldsAllThatIsScatteredWithinThePeak) {
                (std::cos(angle(a - 1)) - std::cos(angle(a)));
       }
       const double expected = -std::expm1(-depth) - depth * std::exp(-depth);
-      // A part of the light is beyond the largest angle, and it grows with the number of
-      // scatterings.
+      // A part of the light lies beyond the table's largest angle. This part grows with the number
+      // of scatterings.
       EXPECT_NEAR(sum / expected, 1.0, 0.05) << depth;
     }
   }

@@ -1,5 +1,5 @@
-// A homogeneous slab in a narrow field of view, drawn by any renderer of a medium, for comparison
-// with closed forms.
+// A fixture that draws a homogeneous slab in a narrow field of view, for comparison with closed
+// forms. Any technique that draws a medium can be used.
 #pragma once
 
 #include <cmath>
@@ -37,10 +37,10 @@ class SlabView : public testing::Test {
   static void TearDownTestSuite() { context_.reset(); }
 
   struct Seen {
-    double radiance;       // of the middle pixel's red
-    double transmittance;  // along the middle pixel's ray
+    double radiance;       // radiance of the middle pixel in the red channel
+    double transmittance;  // transmittance along the middle pixel's ray
     std::vector<float> eye;
-    std::vector<float> light;  // from half-angle slicing
+    std::vector<float> light;  // the light buffer, only from half-angle slicing
   };
 
   // Draws scene_.rendering, looking straight at the middle of the slab from `elevation_deg`.
@@ -129,7 +129,7 @@ class SlabView : public testing::Test {
     for (scene::FieldParameters& field : scene_.fields) field.optics.phase = {kind, asymmetry};
   }
 
-  // Returns the phase function over 4 pi for the angle between the view and the sun.
+  // Returns the phase function divided by 4 pi, at the angle between the view and the sun.
   double PhaseTerm(double elevation_deg, double sun_elevation_deg) {
     const double mu = -glm::dot(scene::Direction(kViewAzimuth_deg, elevation_deg),
                                 scene::Direction(kSunAzimuth_deg, sun_elevation_deg));
@@ -141,10 +141,10 @@ class SlabView : public testing::Test {
   }
 
   scene::Scene scene_ = test_support::PlainScene();
-  bool in_air_ = false;  // a layer with soft faces instead of the slab
+  bool in_air_ = false;  // draws a layer with soft faces instead of the slab
   double width_m_ = kWidth_m;
   bool stirred_ = false;
-  bool with_gap_ = false;    // no cloud in the middle half of its width
+  bool with_gap_ = false;    // the slab has no cloud in the middle half of its width
   double haze_per_m_ = 0.0;  // extinction of the otherwise empty cells
   bool even_light_ = false;  // radiance 1 from everywhere instead of sunlight
 

@@ -33,8 +33,8 @@ TEST(SliceConvergence, PaperIsFirstOrderConsistentSecond) {
   const auto curves = MeasureSliceConvergence(scene, fields, [](double) {});
   ASSERT_TRUE(curves.ok()) << curves.status();
   ASSERT_EQ(curves->size(), 2U);
-  // Each slice of the printed form adds (1 - T)^2 too much. Twice as many slices add half as much
-  // in all.
+  // The transport as printed in the paper adds an error of (1 - T)^2 per slice. With twice as many
+  // slices, the total error is half as large.
   EXPECT_EQ(curves->front().transport.name, "paper");
   EXPECT_NEAR(curves->front().order, 1.0, 0.15);
   EXPECT_EQ(curves->back().transport.name, "consistent");

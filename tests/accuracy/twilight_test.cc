@@ -1,5 +1,6 @@
-// Tests of sunlight by height: a tall thin cloud after sunset, compared with the closed form of the
-// Earth's shadow height and with the reference. The sky is black, so all light is the sun's.
+// Tests of sunlight at different heights after sunset, on a tall thin cloud. It is compared with
+// the closed form of the height of the Earth's shadow, and with the reference. The sky is black, so
+// all light comes from the sun.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -98,7 +99,8 @@ class TwilightTest : public testing::TestWithParam<accuracy::PlainTechnique> {
 
 TEST_P(TwilightTest, TheEarthsShadowEndsWhereTheSunRises) {
   const std::vector<glm::vec3> column = Drawn();
-  // The upper edge of the disc decides. The sunlight table is linear over a step.
+  // The height of the shadow follows from the upper edge of the sun's disc. The sunlight table is
+  // linear over a step of heights, so one step is subtracted.
   const double dark_m = ShadowHeight_m(kDepression_deg - glm::degrees(physics::kSunRadius_rad)) -
                         static_cast<double>(shaders::kSunlightStep_m);
   const double brightest =

@@ -81,7 +81,7 @@ TEST_F(WideDomainTest, StormsAreBrightAsFarAsTheHorizon) {
 }
 
 TEST_F(WideDomainTest, OneRayAPixelIsNearlyAsGoodAs64) {
-  constexpr int kRays = 8;  // along each side of a pixel
+  constexpr int kRays = 8;  // number of rays along each side of a pixel
   const glm::ivec2 size_px(320, 180);
   const scene::Scene scene = SceneFrom(std::nullopt, size_px);
   const picture::LinearPicture one = Draw(scene);
@@ -106,7 +106,7 @@ TEST_F(WideDomainTest, OneRayAPixelIsNearlyAsGoodAs64) {
   const auto displayed = [&](const picture::LinearPicture& picture) {
     const auto mapped = tone_mapper.Map(frame::TextureOf(picture), shown);
     EXPECT_TRUE(mapped.ok()) << mapped.status();
-    shown.display.exposure_ev = mapped->exposure_ev;  // the same for both pictures
+    shown.display.exposure_ev = mapped->exposure_ev;  // the same exposure for both pictures
     return mapped->rgb;
   };
   const std::vector<std::uint8_t> expected = displayed(mean);
@@ -121,7 +121,7 @@ TEST_F(WideDomainTest, OneRayAPixelIsNearlyAsGoodAs64) {
     storm_values += mean.opacity[i / 3];
   }
   EXPECT_LE(std::sqrt(squares / static_cast<double>(drawn.size())), 0.02);
-  // Storms cover a small part of the picture.
+  // Only the pixels with storms are compared, because storms cover a small part of the picture.
   EXPECT_LE(std::sqrt(storm_squares / storm_values), 0.1);
 }
 

@@ -52,7 +52,7 @@ test("a session that shows the newest time goes on to a newer one when its file 
   await awaitValidTime(/02:00.*2 of 2/s);
   const whole = cloudFile(3);
   writeFileSync(fileOf(3), whole.subarray(0, whole.length / 2));
-  // A truncated file does not become a time, while a file that is written later does.
+  // A truncated file does not become a time of the storm, but a complete file that is written later does.
   writeFileSync(fileOf(0), cloudFile(0));
   await awaitValidTime(/02:00.*3 of 3/s);
   appendFileSync(fileOf(3), whole.subarray(whole.length / 2));

@@ -57,7 +57,8 @@ const noteWhenShown = (page) =>
 test("a presenter leaves: a request that nobody answers ends, and control is free later", async () => {
   const presenter = await room.visit(room.server.url);
   await until("a session", async () => presenter.url().includes("?session="));
-  // Otherwise the light of its picture, which no viewer looks at, would be traced all the time.
+  // With another quality the server would trace light for this page's picture all the time, although the test does not
+  // need it.
   await chooseQuality(presenter, "Fast");
   await setRule(presenter, "freeWhenAway", true);
   const viewer = await room.visit(presenter.url().replace(/#.*/, ""));
@@ -133,7 +134,8 @@ test("a student joins by the link and sees the same picture, but cannot change i
   await openTool(student, "light");
   await student.getByTestId("sun-dome").press("ArrowDown");
   await openTool(student, "look");
-  // Everything that the page sent before its name has now reached the teacher.
+  // The server handles a page's messages in order. When the teacher sees the new name, all earlier messages of the
+  // student's page have been handled.
   await nameThemselves(student, "Ann");
   await room.teacherSees("Ann");
   assert.equal(scenesOfStudent(), sent, "the page sends a scene");
@@ -206,7 +208,7 @@ test("the teacher says not now, and locks control", async () => {
   await teacher.getByTestId("asks-give-not").click();
   await teacher.getByTestId("asks").waitFor({ state: "detached" });
   assert.equal(await student.getByTestId("give-back").count(), 0);
-  // A second request right after the first does not reach the teacher.
+  // A second request for control right after the first one does not reach the teacher.
   await until("a button", async () => (await controlLabel(student)) === "Ask to steer");
   await room.whileWaiting({ ask_again: NEVER }, async () => {
     await student.getByTestId("ask-control").click();
@@ -216,7 +218,7 @@ test("the teacher says not now, and locks control", async () => {
   await until("a locked button", () => student.getByTestId("ask-control").isDisabled());
   await setRule(teacher, "controlLocked", false);
   await until("an unlocked button", () => student.getByTestId("ask-control").isEnabled());
-  // The teacher has received a presence since the request.
+  // The teacher's page has received a presence message since the request.
   assert.equal(await teacher.getByTestId("asks").count(), 0);
 });
 
@@ -312,7 +314,7 @@ test("the teacher's pointer is seen where it points, and goes with the tool", as
   await screenshot("26-pointer", student);
   await teacher.keyboard.press("Escape");
   await until("no pointer", async () => (await student.getByTestId("pointer").count()) === 0);
-  // Uses only the keyboard.
+  // The test uses only the keyboard here.
   await teacher.getByTestId("tool-pointer").focus();
   await teacher.keyboard.press("Enter");
   await teacher.getByTestId("mark-middle").focus();
@@ -355,8 +357,8 @@ test("a student points and draws while the teacher allows it", async () => {
   for (const page of [teacher, classmate]) await page.getByTestId("pointer").waitFor({ state: "detached" });
   await student.getByText("has not allowed viewers to point and draw").waitFor();
   await student.mouse.move(MIDDLE.x + 5, MIDDLE.y);
-  // Everything that the page sent before its name has now reached the server. A pointer of the student's would be sent
-  // together with the teacher's.
+  // The server handles a page's messages in order, so it has handled everything that the student's page sent before the
+  // name. The server would send a pointer of the student together with the teacher's pointer.
   await nameThemselves(student, "Bea");
   await room.teacherSees("Bea");
   await openTool(teacher, "marks");
@@ -501,7 +503,7 @@ test("a colleague presents by the presenter's link; of two who steer at once nob
 
   await changing(() => setNumber(colleague, "exposure", 0.3), colleague);
   await until("the colleague's change", async () => (await exposure(teacher).inputValue()) === "0.3");
-  // Both act at once: one of them gets control, and all pages agree on who.
+  // Two people act at the same time. One of them gets control, and all pages show the same person.
   await colleague.getByTestId("let-go").click();
   await teacher.getByTestId("take-control").waitFor();
   await Promise.all([teacher, colleague].map((page) => page.getByTestId("take-control").click()));

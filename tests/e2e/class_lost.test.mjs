@@ -21,10 +21,11 @@ import { canvasData, changing, grabStill, openTool, rested, setNumber, until } f
 import { difference, grabCanvas } from "./pictures.mjs";
 import { throttledLink } from "./throttled_link.mjs";
 
-// When a connection is silent for 15 s, the page checks it with two calls of 4 s each and then gives it up.
+// Step by which the test advances the page's clock. When a connection is silent for 15 s, the page checks it with two
+// calls of 4 s each, and then treats it as lost.
 const CLOCK_STEP_MS = 5000;
 
-// The longest time before the pages' next attempt to connect.
+// The longest delay in milliseconds before a page's next attempt to connect.
 const LONGEST_WAIT_MS = 8000;
 
 // Installs a clock in a page that the test can advance.
@@ -42,8 +43,8 @@ before(async () => {
 
 after(() => room.close());
 
-// Lets a student called Ada join over a separate link, which `goes` may break. Ada leaves the class in its original
-// state.
+// Lets a student called Ada join over a separate network link, which the function `goes` may break. Afterwards Ada
+// leaves, and the class is as before.
 async function withFarStudent(goes) {
   const link = await throttledLink({ port: new URL(room.server.url).port, kbitPerS: 100_000, roundTripMs: 4 });
   const far = await room.visit((await room.viewersLink()).replace(/:\d+\//, `:${link.port}/`), withClock);
@@ -62,8 +63,8 @@ async function withFarStudent(goes) {
   }
 }
 
-// When a student's failed Wi-Fi is back, the student sees what happened meanwhile, and what the student did meanwhile
-// counts.
+// When a student's failed Wi-Fi works again, the student sees what happened meanwhile. Changes that the student made
+// meanwhile take effect.
 for (const [how, fail] of Object.entries({
   "breaks": (link) => link.cut(),
   "falls silent": (link) => link.silence(),
@@ -197,14 +198,15 @@ test("the server is killed and comes back: teacher and student have their sessio
   assert.equal(student.url(), address);
   await until("a picture since then", async () => Number((await canvasData(student)).revision) > Number(revision));
   await room.inStep(student);
-  // The light is solved to a tolerance from another start, so pictures may differ slightly.
+  // The iterative solver of the light starts from other values after the restart, so pictures may differ within its
+  // tolerance.
   await until("the picture as before", async () => difference(drawn, await grabCanvas(student)) < 0.5);
   for (const page of [teacher, student]) {
     await until("the mark", async () => (await marksOn(page)) === 1);
     assert.deepEqual(await markOn(page), mark);
   }
-  // The keys keep their rights: the teacher may take control, the student may follow, and may draw by the restored
-  // rule.
+  // After the restart the keys give the same rights as before. The teacher may take control. The student may follow,
+  // and may draw because the session's rule was restored.
   assert.equal(await exposure(student).isDisabled(), true);
   await openTool(student, "marks");
   await student.getByTestId("tool-pen").waitFor();

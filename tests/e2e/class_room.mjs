@@ -8,19 +8,19 @@ import { freePort, startServer } from "./server_process.mjs";
 export const VIEWPORT = { width: 900, height: 560 };
 export const MIDDLE = { x: 620, y: 300 };
 
-// In seconds. No wait of viewers for one another expires, however slow the machine is, and viewers may ask again at
-// once.
+// Timeouts of the server in seconds. A wait of one viewer for another never expires, however slow the machine is, and a
+// viewer may ask for control again at once.
 export const NEVER = 1e6;
 const WAITS = { answer: NEVER, ask_again: 0, away: NEVER, come_back: NEVER, come_back_to_new_server: NEVER };
 
-// The factor by which notes stay longer.
+// Factor by which the page's notices stay visible longer.
 const NOTES_STAY = 20;
 
 export class ClassRoom {
-  // Errors from the pages' consoles.
+  // Errors that the pages wrote to their consoles.
   complaints = [];
 
-  // Opens the teacher's session; `prepare` as for `visit`.
+  // Starts the server and opens the teacher's session. For `prepare` see visit().
   async open(prepare) {
     this.folder = mkdtempSync(join(tmpdir(), "thunderhead-class-"));
     const timeouts = this.#writeTimeouts(WAITS);
@@ -49,7 +49,7 @@ export class ClassRoom {
     rmSync(this.folder, { recursive: true, force: true });
   }
 
-  // Runs `meanwhile` with other timeouts between viewers, in seconds: RosterTimeouts of the server.
+  // Runs `meanwhile` while the server uses other timeouts, given in seconds (RosterTimeouts in the server).
   async whileWaiting(seconds, meanwhile) {
     await this.#setTimeouts({ ...WAITS, ...seconds });
     await meanwhile();
@@ -89,7 +89,7 @@ export class ClassRoom {
         body: Buffer.concat([Buffer.from([0, 0, 0, 0, body.length]), body]),
       });
     const answer = Buffer.from(await (await call("CreateSession", Buffer.alloc(0))).arrayBuffer());
-    // The session's key is the answer's first field.
+    // The first field of the response is the session's key.
     const key = answer.subarray(7, 7 + answer[6]);
     if (answer[0] !== 0 || answer[5] !== 10) throw new Error(`no session was created: ${answer}`);
     await (await call("CloseSession", Buffer.concat([Buffer.from([10, key.length]), key]))).arrayBuffer();
@@ -121,7 +121,8 @@ export class ClassRoom {
   // Lets the teacher set a rule, and waits until the student's page knows it.
   async setRuleFor(student, name, on) {
     await setRule(this.teacher, name, on);
-    // Rules are sent together, so the student's page has this rule once it has the next.
+    // The server sends all rules together. The student's page therefore knows this rule once it knows a rule that is
+    // set later.
     const asks = student.getByTestId("ask-control");
     await setRule(this.teacher, "controlLocked", true);
     await until("a locked button", () => asks.isDisabled());
@@ -160,7 +161,8 @@ function letNotesStay(times) {
 
 export async function setRule(presenter, name, on) {
   await presenter.getByTestId("share").click();
-  // The checkbox shows the session's rule; a presence in flight may set it back for a moment.
+  // The checkbox shows the session's rule. A presence message that is still in flight may reset the checkbox for a
+  // moment.
   const rule = presenter.getByTestId(`rule-${name}`);
   if ((await rule.isChecked()) !== on) await rule.click();
   await until(`the rule ${name}`, async () => (await rule.isChecked()) === on);

@@ -1,5 +1,5 @@
-// Returns the bytes of small storm files, a ball of cloud at one time, in netCDF's classic format (CDF-1): as CF, and
-// as WRF writes a run.
+// Makes small storm files in netCDF's classic format (CDF-1). Each contains a ball of cloud at one time, either by the
+// CF conventions or as WRF writes a model run.
 const CELLS = 16;
 const SPACING_M = 500;
 const RADIUS_M = 2500;
@@ -35,7 +35,8 @@ function numbers(type, values) {
   return padded(bytes);
 }
 
-// `dimensions` are [name, length]; `variables` are [name, indices of dimensions, attributes, type, values].
+// Returns the bytes of a file. Each of `dimensions` is [name, length]. Each of `variables` is [name, indices of
+// dimensions, attributes, type, values].
 function classicFile(dimensions, texts, variables) {
   const data = variables.map(([, , , type, values]) => numbers(type, values));
   const header = (firstByte) => {
@@ -95,8 +96,8 @@ export const PLACE = { latitudeDeg: 27, longitudeDeg: 24.979 };
 const METERS_PER_DEG = 111_200;
 const PROJECTION = { MAP_PROJ: 1, TRUELAT1: 30, TRUELAT2: 60, STAND_LON: 24.979, MOAD_CEN_LAT: 27 };
 
-// Returns a file of a run. `run` and `valid` are times as WRF writes them, such as 2020-05-20_06:00:00. Without a place
-// it has no local time.
+// Returns a file of a run. `run` and `valid` are times as WRF writes them, such as 2020-05-20_06:00:00. Without
+// geographical coordinates (`hasPlace`), the storm has no local time.
 export function runFile(run, valid, radiusM, { hasPlace = false } = {}) {
   const dimensions = [
     ["Time", 1],

@@ -1,5 +1,6 @@
-// Tests of the files of deploy/ with the programs that they are for: HAProxy in front of the real server, the systemd
-// unit, Prometheus's rules, the Compose file's flags. Each needs its Debian package.
+// Tests of the files in deploy/ with the programs that use them. They cover HAProxy in front of the real server, the
+// systemd unit, Prometheus's rules, and the flags in the Compose file. Each test needs the Debian package of its
+// program.
 import assert from "node:assert/strict";
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { cpSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -106,7 +107,7 @@ describe("HAProxy", { skip: existsSync(HAPROXY) ? false : "needs Debian's haprox
   test("gRPC streams: a presenter who steers and two viewers", () => {
     const flags = ["--tls-roots", file("cert.pem"), "--viewers", "2", "--size", "320x180", "--json"];
     let least = 0;
-    // A slow machine may draw no frame for some viewer within the shortest time.
+    // On a slow machine a viewer may get no frame within the shortest duration, so the test tries longer durations.
     for (let seconds = 1; least === 0 && seconds <= 1000; seconds *= 10) {
       const load = spawnSync(BINARY, ["load", `localhost:${port}`, ...flags, "--seconds", String(seconds)], { encoding: "utf8" });
       assert.equal(load.status, 0, load.stderr);
@@ -161,7 +162,7 @@ describe("systemd", { skip: existsSync("/usr/bin/systemd-analyze") ? false : "ne
     const verify = spawnSync("systemd-analyze", ["verify", unit], { encoding: "utf8" });
     assert.equal(verify.status, 0, verify.stderr);
     assert.equal(verify.stderr.trim(), "");
-    // The result is 1.7 of 10; the rating "OK" ends at 3.
+    // The measured exposure is 1.7 of 10. The rating "OK" ends at 3.
     const security = spawnSync("systemd-analyze", ["security", "--offline=true", "--threshold=20", unit], {
       encoding: "utf8",
     });

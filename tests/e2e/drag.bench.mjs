@@ -1,6 +1,6 @@
 // Measures a drag with server and browser on this machine. It reports frames painted per second and the latency in
-// milliseconds. The latency begins with a movement of the pointer, as the browser dates it. It ends with the page's
-// frame that paints a picture which follows the movement.
+// milliseconds. The latency begins at the browser's timestamp of a pointer movement. It ends when the page paints a
+// picture that shows this movement.
 //   node drag.bench.mjs [seconds] [width] [height] [trace]
 //
 // The aims, at 960 x 540, are 20 frames/s and a median of 120 ms. With `trace` it also prints what a picture costs the
@@ -15,7 +15,7 @@ const STEP_MS = 16;
 const STEP_PX = 4;
 // The angle by which a drag over the whole window's height turns the camera.
 const TURN_DEG = 180;
-// The rounding of the azimuth that the page reports.
+// Rounding error of the azimuth that the page reports.
 const ROUNDING_DEG = 0.02;
 
 // Runs in the page. Records the pointer's movements, and the azimuth of each picture once it is painted.
@@ -68,9 +68,9 @@ async function stroke(page) {
   return { latenciesMs, frames, ms: end - begin };
 }
 
-// CPU time, which other processes do not affect. The first part is the page's main thread in all. The next two are
-// parts of it: callbacks before a frame, which draw the picture, and layer updates, which copy the canvas for the
-// compositor. The last part is decoding, on other threads.
+// The parts whose CPU time is reported; other processes do not affect CPU time. The first part is the whole main thread
+// of the page. The next two are contained in it: callbacks before a frame, which draw the picture, and layer updates,
+// which copy the canvas for the compositor. The last part is decoding on other threads.
 const PARTS = {
   "the main thread": { thread: "CrRendererMain", event: "RunTask" },
   "its callbacks before frames": { thread: "CrRendererMain", event: "FireAnimationFrame" },

@@ -74,7 +74,8 @@ const isRefined = ({ refined, ownView, agreed, revision }) =>
 
 const isWhole = (data) => isRefined(data) && fits(data);
 
-// A busy machine first draws pictures of a lower scale.
+// Returns whether the picture is a still (AVIF) at full quality. A busy machine first draws pictures with an
+// image_scale below 1.
 const isStill = (data) => isWhole(data) && data.encoding === "avif" && Number(data.scale) === 1;
 
 async function reached(what, page, holds, testId) {
@@ -93,11 +94,11 @@ export const rested = (page, testId) => reached("a refined picture", page, isRef
 // previous size.
 export const restedAndFits = (page, testId) => reached("a refined picture of the canvas's size", page, isWhole, testId);
 
-// Waits like `restedAndFits`, until a picture at full quality is shown as the still that replaces the frame's JPEG. The
-// two differ by about a level.
+// Waits like `restedAndFits`, until the picture at full quality is shown as a still, an AVIF that replaces the JPEG.
+// The pixels of the two differ by about one level of 255.
 export const restedStill = (page) => reached("a still of the canvas's size and of full quality", page, isStill);
 
-// Returns the still's pixels and the data that the page reports about it. No later frame comes between.
+// Returns the still's pixels and the data that the page reports about the still. Both belong to the same frame.
 export async function grabStill(page) {
   let data;
   let picture;
@@ -165,7 +166,7 @@ export async function holdingMovie(page, action) {
   });
   const hold = async (route) => {
     await released;
-    // The call may have been given up.
+    // The page may have cancelled the call meanwhile.
     await route.continue().catch(() => undefined);
   };
   await page.route(PICTURES_OF_MOVIE, hold);
@@ -193,8 +194,8 @@ export async function setNumber(page, name, value) {
   }, String(value));
 }
 
-// Moves the focus with the tabulator key until it is on an element of that name, or on the summary of a section of that
-// name.
+// Presses the Tab key until the focus is on the element with this test id, or on the summary of the section with this
+// test id.
 export async function tabTo(page, testId, most = 80) {
   for (let presses = 0; presses <= most; presses += 1) {
     const focused = await page.evaluate(() => {
@@ -232,7 +233,7 @@ export async function chooseQuality(page, word) {
 }
 
 const PANEL_BUTTONS = { help: "rail-help", drawer: "rail-settings" };
-// In a narrow window these controls are in a panel: the panel, and the button in it.
+// Panels whose buttons a narrow window shows only in another panel. Each entry has that panel and the button in it.
 const UNDER_OTHERS = {
   compare: ["storms", "storms-compare"],
   help: ["storms", "storms-help"],

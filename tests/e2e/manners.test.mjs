@@ -1,5 +1,5 @@
 // Tests of the page as a whole. axe-core must find no violations, and targets must be large enough for fingers. The
-// first load must be small and from one origin. Nothing may move for people who prefer no motion.
+// first load must be small and from one origin. No animation may run for people who prefer reduced motion.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { readFileSync } from "node:fs";
@@ -15,11 +15,12 @@ const TOUCH_PX = 44;
 
 let server;
 let browser;
-// The address of the page with a scene of the quality "Fast". These tests check the page, so pictures should rest soon.
+// The address of the page with a scene of the quality "Fast". These tests check the page instead of the pictures, so
+// pictures should be final soon.
 let fast;
 
 before(async () => {
-  // Each visit opens a session, and each comparison another.
+  // Each visit opens a session, and each comparison opens a second session.
   const more = ["--max-sessions-each", "64"];
   server = await startServer({ httpPort: await freePort(), grpcPort: await freePort(), more });
   browser = await launchBrowser();
@@ -59,9 +60,9 @@ async function visit(options, address = fast) {
 }
 
 // Letters lie over the picture on translucent panels. axe-core can measure their contrast if the picture is removed and
-// the page behind them is white, like the brightest cloud. (The thumbnails of saved views are removed too.) What
-// axe-core still cannot measure is a finding. The exceptions are letters in a drawing, whose background it does not
-// know, and elements that a panel covers.
+// the page behind them is white, like the brightest cloud. (The thumbnails of saved views are removed too.) An element
+// whose contrast axe-core still cannot measure counts as a violation. The exceptions are letters in a drawing, whose
+// background axe-core does not know, and elements that a panel covers.
 const isRead = ({ html, any }) => !html.startsWith("<text") && any[0]?.data?.messageKey !== "bgOverlap";
 
 async function findings(page) {
@@ -181,7 +182,8 @@ test("fingers find every button, slider and switch", async () => {
   await page.context().close();
 });
 
-// Words of the renderers, which may appear only in Look's last section and the list of settings.
+// Technical words of the rendering techniques. They may appear only in the last section of the tool Look and in the
+// list of settings.
 const JARGON = /\b(spp|slices?|diffusion|light (model|volume)|half-angle|octaves)\b/i;
 
 test("the tools use no words of the renderers but in Look's last section", async () => {
@@ -205,13 +207,14 @@ test("the tools use no words of the renderers but in Look's last section", async
 
 const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 
-// Waits for so many texts over the picture. While the picture changes size, it may have no space for some of them.
+// Waits until at least `least` texts are over the picture. While the picture changes size, it may have no space for
+// some texts.
 const written = (page, least) =>
   page.waitForFunction((count) => document.querySelectorAll("[data-testid=annotations] text").length >= count, least);
 
-// Returns texts over the picture that leave the window, bars (including names of compared pictures) that touch the
-// window's edge, and any two of these that overlap. Only the list of all settings may cover a bar, because it fills a
-// narrow window.
+// Returns a description of each unreadable part of the page. These are texts over the picture that extend beyond the
+// window, and bars (including names of compared pictures) that touch the window's edge. Texts or bars that overlap
+// count too. Only the list of all settings may cover a bar, because it fills a narrow window.
 async function unreadable(page) {
   await painted(page);
   return page.evaluate(() => {
@@ -220,7 +223,7 @@ async function unreadable(page) {
         .map((element) => ({ name: element.textContent.slice(0, 30), box: element.getBoundingClientRect(), covers: element.matches(".drawer") }))
         .filter(({ box }) => box.width > 0);
     const texts = boxes("[data-testid=annotations] text");
-    // The pill of a movie being made has a separate place on phones; elsewhere it is in the bar.
+    // The progress of a movie (.at-work) has a separate position on phones. In wide windows it is in the top bar.
     const [pill] = document.querySelectorAll(".at-work");
     const pillIsABar = pill !== undefined && getComputedStyle(pill).position === "fixed";
     const bars = boxes(`.top-bar, .time-line, .session-bar, .rail, .truth, aside, .compared-name${pillIsABar ? ", .at-work" : ""}`);
@@ -281,10 +284,10 @@ for (const [name, options] of [
     await page.getByTestId("camera-kind").getByText("From the ground", { exact: true }).click();
     await page.waitForFunction(() => document.querySelector("[data-testid=storm-canvas]").dataset.camera === "spotter");
     await openTool(page, undefined);
-    // The texts are the time and degrees.
+    // These texts are the time and the degrees along the horizon.
     await written(page, 4);
     assert.deepEqual(await unreadable(page), [], "from the ground");
-    // Fills the corners with the largest contents.
+    // Shows the largest contents in the corners of the window.
     await openTool(page, "look");
     await page.getByTestId("colours").getByText("False colours").click();
     await openTool(page, undefined);
@@ -384,7 +387,7 @@ for (const [name, options, most] of [
       return (width * height) / (canvas.width * canvas.height);
     });
     assert.ok(covered < most, `${covered} of the picture is covered`);
-    // The line about the error, where it fits, is next to the tool.
+    // If the line about the error is visible, it is next to the tool.
     const truth = page.getByTestId("truth");
     if (await truth.isVisible()) {
       const [line, panel] = await Promise.all([truth.boundingBox(), page.getByTestId("tool-panel").boundingBox()]);
@@ -426,7 +429,8 @@ test("the focus goes back to the rail when a tool or the list of settings is clo
   await page.context().close();
 });
 
-// Returns controls whose words do not fit once every word is 1.4 times as long as in English, as German words are.
+// Returns the controls whose text would not fit if every word were 1.4 times as long as in English. Words of a German
+// translation would be about this long.
 const cutWords = (page) =>
   page.evaluate(() => {
     const LONGER = 0.4;
@@ -511,7 +515,7 @@ test("the first load is small, and everything comes from the server itself", asy
   await rested(page);
   let bytes = 0;
   for (const [url, response] of files) {
-    // The page's icon is loaded outside the page, and its encoding is not reported.
+    // The browser loads the page's icon (an SVG) separately, and does not report its content encoding.
     if (!url.endsWith(".svg")) assert.equal(await response.headerValue("content-encoding"), "gzip", url);
     bytes += (await response.request().sizes()).responseBodySize;
   }

@@ -8,9 +8,9 @@ import { test } from "node:test";
 import { until } from "./driver.mjs";
 import { BINARY, ROOT, freePort, startServer } from "./server_process.mjs";
 
-// The limit for log lines of libraries (server/app/library_log).
+// Maximum number of log lines per second that libraries may write (server/app/library_log).
 const LINES_A_SECOND = 10;
-// Longer than any picture takes.
+// A drain time that is longer than any picture takes.
 const DRAIN = ["--drain-seconds", "3600"];
 
 async function start(...more) {
@@ -25,7 +25,7 @@ async function start(...more) {
   const metric = async (name) => Number(new RegExp(`^thunderhead_${name} (\\d+)`, "m").exec((await get("metrics")).text)?.[1]);
   // The server draws two pictures for itself at its start, each in a session.
   await until("the server's own pictures", async () => (await metric("sessions_opened_total")) === 2 && (await metric("sessions")) === 0);
-  // Begins a picture that takes some seconds; resolves when the server has the request.
+  // Begins a picture that takes some seconds. The promise resolves when the server has received the request.
   const beginPicture = async (file) => {
     const child = spawn(BINARY, [
       ...["render", "supercell", "-o", file, "--renderer", "light_volume", "--slices", "512"],
@@ -68,7 +68,7 @@ test("metrics, health and logs of a server that serves and then stops", async ()
     assert.match(text, line);
   }
   assert.match(text, /^thunderhead_memory_bytes [1-9]/m);
-  // A text field that is not UTF-8 makes protobuf log a complaint for each such request.
+  // Protobuf logs an error for each request with a text field that is not UTF-8.
   const wrong = Buffer.from([0, 0, 0, 0, 4, 0x0a, 2, 0xff, 0xfe]);
   for (let i = 0; i < 200; i += 1) {
     const headers = { "content-type": "application/grpc-web+proto" };

@@ -61,7 +61,7 @@ const rested = (of = page) => restedOn(of);
 const changing = (action, of = page) => changingOn(action, of);
 const screenshot = (name, of = page) => screenshotOf(name, of);
 
-// Returns the still of the scene that an action makes.
+// Runs an action that changes the scene, and returns the final picture of the new scene.
 async function stillAfter(action) {
   await changing(action);
   return still();
@@ -94,7 +94,7 @@ async function exposeAutomatically(of) {
 
 const tool = (name) => openTool(page, name);
 
-// Returns the chosen quality in the tool Look: a list of one or none.
+// Returns the name of the chosen quality in the tool Look as a list, which is empty if no quality is chosen.
 function chosenQuality(of = page) {
   return of
     .locator("[data-testid=quality-choice] input:checked")
@@ -124,8 +124,8 @@ async function pathsBeyond(least) {
   return paths;
 }
 
-// Pictures are compared under the light that these tests were written for: a higher sun behind the left shoulder. It is
-// 20 degrees to the south and 17 up.
+// The following tests compare pictures in the light of a higher sun behind the camera's left shoulder. The sun
+// therefore moves 20 degrees to the south and 17 degrees up.
 test("the arrow keys turn the sun on its dome", async () => {
   await rested();
   await tool("light");
@@ -272,7 +272,7 @@ test("a drag turns the storm, and the way back brings the first picture again", 
   assert.ok(back < change / 4, `the way back differs by ${back}, the turn by ${change}`);
 });
 
-// How long a picture takes is measured by drag.bench.mjs.
+// drag.bench.mjs measures how long a picture takes.
 test("pictures do not pile up while the storm is turned for a while", async () => {
   const start = { x: VIEWPORT.width * 0.4, y: VIEWPORT.height * 0.5 };
   await page.mouse.move(start.x, start.y);
@@ -290,8 +290,8 @@ test("pictures do not pile up while the storm is turned for a while", async () =
   });
   const pictures = Number((await canvasData()).sequence) - Number(moving.sequence);
   console.log(`pictures between the last movement and its picture: ${pictures}`);
-  // The limit adds frames in flight to a viewer, those waiting in the server and in the page, and scenes in flight to
-  // the server.
+  // The limit has four terms. They are the frames in flight to a viewer, the frames that wait in the server, those that
+  // wait in the page, and the scenes in flight to the server.
   assert.ok(pictures <= 8 + 2 + 3 + 4, `${pictures} pictures were on their way`);
   await changing(() => page.keyboard.press("Home"));
 });
@@ -490,7 +490,7 @@ test("a cumulus as a surface, and the parts of its light", async () => {
   }
   assert.match(await page.getByTestId("not-shown").innerText(), /snow/);
   await changing(() => page.getByTestId("cumulus-source").selectOption({ label: "Cauliflower" }));
-  const whole = await stillAfter(() => setNumber(page, "exposure", 0)); // the same for all parts
+  const whole = await stillAfter(() => setNumber(page, "exposure", 0)); // the same exposure for all parts
   await screenshot("10-cumulus");
   assert.ok(spread(whole).deviation > 8, "the picture is nearly uniform");
   assert.match(await page.getByTestId("not-shown").innerText(), /made from a seed/);
@@ -630,7 +630,8 @@ async function inkInTheMiddle() {
   return count;
 }
 
-// Left of the edge is the storm with the marks; right of it is a storm of another domain. The mark is in the middle.
+// Checks where marks are shown in a comparison. Left of the edge is the storm with the marks, and right of it a storm
+// of another domain, which must show no marks.
 async function comparesMarks() {
   assert.ok((await inkInTheMiddle()) > 20, "the mark is not in the middle of the window");
   await openPanel(page, "compare");

@@ -1,4 +1,5 @@
-// Measures of a picture: spread, brightness, difference from another picture.
+// Functions that measure a picture: the spread of its luminance, its brightness, and its difference from another
+// picture.
 import { PNG } from "pngjs";
 
 // Returns the canvas's pixels as PNG, without the panels over it.
@@ -71,7 +72,8 @@ function blockDifferences(a, b, side) {
   return means;
 }
 
-// Returns their mean size, 0 to 255. It compares colours, whatever the pictures' sharpness.
+// Returns the mean absolute difference of block means, 0 to 255. It compares colours independently of the pictures'
+// sharpness.
 export function blockDifference(a, b, side = 16) {
   const means = blockDifferences(a, b, side);
   return means.reduce((sum, value) => sum + Math.abs(value), 0) / means.length;

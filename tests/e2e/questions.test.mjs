@@ -63,7 +63,8 @@ before(async () => {
   await chooseQuality(page, "Fast");
   await openTool(page, undefined);
   await rested(page);
-  // Avoids the last time, which is last in both runs. This time has another index in each run.
+  // The test leaves the last time, which is the last in both runs. The previous valid time has a different index in
+  // each run.
   await changing(() => key(","), page);
 });
 
@@ -85,7 +86,7 @@ async function visit(url, prepare = async () => undefined) {
   return opened;
 }
 
-// Returns text that is visible on the screen; the text of hidden elements could be read too.
+// Returns the text of an element after checking that the element is visible, because hidden elements also have text.
 async function text(id) {
   const shown = page.getByTestId(id);
   await shown.waitFor({ state: "visible" });
@@ -225,8 +226,8 @@ function lengthOf(file) {
   return { pictures: Number(streams[0].nb_read_frames), seconds: Number(format.duration) };
 }
 
-// A movie of two hours has three pictures, an hour apart. The time a person needs ends when the server starts to work,
-// because how long its pictures take depends on the machine.
+// A movie of two hours has three pictures, an hour apart. The measured time ends when the server starts to draw,
+// because the duration of drawing depends on the machine.
 async function assertTwoHourMovie(how, ask) {
   const coming = page.waitForEvent("download");
   await holdingMovie(page, () =>
@@ -295,7 +296,7 @@ test("a link to a view outlives the session that it was made in", async () => {
   await context.close();
 });
 
-// Starts a server with a run that has a place.
+// Starts a server with a run that has geographical coordinates.
 async function startPlace() {
   const data = join(folder, "place");
   mkdirSync(data);
@@ -339,7 +340,7 @@ test("a run with a place: local time, borders on the map, latitude and longitude
     assert.ok(high > 0.5, `the border is as high as ${high} of the map`);
     await screenshot("questions-place", opened);
     assert.match(await opened.getByTestId("top-time").innerText(), /08:00Z/);
-    // The mark of the only time is where the slider's thumb is.
+    // The storm has only one time. Its tick must be at the position of the slider's thumb.
     const [ticks, tick] = await Promise.all([".ticks >> nth=0", ".tick"].map((each) => opened.locator(each).boundingBox()));
     assert.ok(Math.abs(tick.x + tick.width / 2 - ticks.x) < 2, `the tick is at ${tick.x}, the line begins at ${ticks.x}`);
     assert.match(await opened.getByTestId("local-time").innerText(), /10:00/);

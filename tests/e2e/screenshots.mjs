@@ -12,7 +12,7 @@ const SIZES = [
 ];
 const TOOLS = ["none", "map", "time", "light", "look", "fields", "probe", "marks"];
 const PANELS = ["storms", "share", "people", "keep", "compare", "help", "drawer"];
-// These are shown last, because each changes the scene.
+// Kinds of pictures. Their screenshots are taken last, because each changes the scene.
 const PICTURES = {
   spotter: (page) => cameraOf(page, "From the ground"),
   above: (page) => cameraOf(page, "From above"),

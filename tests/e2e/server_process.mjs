@@ -23,8 +23,8 @@ export function freePort() {
   });
 }
 
-// Starts the server. `state` is a folder in which sessions outlive the program; `data` is the folder of storms; `more`
-// are further flags.
+// Starts the server. `state` is the folder in which the server saves its sessions, `data` the folder of storms, and
+// `more` a list of further flags.
 export async function startServer({
   httpPort,
   grpcPort,

@@ -18,7 +18,7 @@ let browser;
 
 const file = (name) => join(folder, name);
 const audit = () => readFileSync(file("audit.log"), "utf8");
-// Waits for the line, because a thread of the server writes the audit.
+// Waits until the audit log contains the line, because a separate thread of the server writes the log.
 const audited = (line) => until(`${line} in the audit`, () => line.test(audit()));
 
 function writeTokens(lines) {

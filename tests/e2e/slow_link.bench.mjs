@@ -15,7 +15,10 @@ const REPORT_MS = 10_000;
 const SWING_PX = 300;
 const STEP_PX = 5;
 
-/** To and fro at one speed: a camera that turns ever slower would come to rest at the ends, where nothing is sent. */
+/**
+ * Returns a position that moves back and forth at constant speed. If the camera slowed down at the ends, it would come
+ * to rest there, and the server would send no moving pictures.
+ */
 function swing(step) {
   const along = (STEP_PX * step) % (4 * SWING_PX);
   return SWING_PX - Math.abs(along - 2 * SWING_PX);

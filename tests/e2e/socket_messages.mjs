@@ -1,7 +1,7 @@
-// Reads what a page sends over its WebSocket. It parses just enough of protobuf's wire format to know the kind of a
-// message.
+// Reads the messages that a page sends over its WebSocket. It parses only the part of Protobuf's wire format that gives
+// the kind of a message.
 const MESSAGE = 0x00;
-// The number of InteractRequest.update_scene.
+// Field number of InteractRequest.update_scene.
 const UPDATE_SCENE = 3;
 const VARINT = 0;
 
@@ -16,7 +16,7 @@ export function countSceneUpdates(page) {
   return () => count;
 }
 
-// Returns the numbers of a request's fields: its id, and the message.
+// Returns the field numbers of a request: the field of its id, and the field of its message.
 function fieldsOf(payload) {
   const bytes = Buffer.from(payload);
   if (bytes[0] !== MESSAGE) return [];

@@ -3,9 +3,9 @@
 import { createServer, connect } from "node:net";
 
 const SLICE_BYTES = 1460;
-// The delay of the end of a connection after its last slice.
+// Delay in milliseconds between the last bytes of a connection and its end.
 const END_MS = 5;
-// How often a silent link is checked.
+// Interval in milliseconds at which a silent link checks whether it may carry bytes again.
 const SILENCE_MS = 20;
 
 // Carries bytes in one direction: they leave at the link's speed and arrive after half its round trip. Like a router it
@@ -14,7 +14,7 @@ function carry(from, to, bytesPerMs, delayMs, link, pair) {
   const BUFFER_BYTES = 16 * 1024;
   let freeAt = 0;
   let held = 0;
-  // A queue keeps the order, which timers of different lengths do not.
+  // A queue keeps the bytes in order. Timers of different lengths would not.
   const onTheirWay = [];
   const arrive = () => {
     if (link.silent) return setTimeout(arrive, SILENCE_MS);
@@ -47,7 +47,7 @@ function carry(from, to, bytesPerMs, delayMs, link, pair) {
 // Returns the link's port and the functions that control it.
 // - cut: breaks connections and refuses new ones.
 // - silence: keeps connections, but nothing arrives.
-// - lose: like silence, and the bytes in flight never arrive, nor does the close of a connection.
+// - lose: like silence, but the bytes in flight and the closing of a connection never arrive.
 // - heal: ends these faults.
 // - close: closes the link.
 export async function throttledLink({ port, kbitPerS, roundTripMs }) {

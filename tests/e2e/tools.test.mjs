@@ -37,7 +37,8 @@ const SAMPLE = fileURLToPath(new URL("../../samples/supercell.nc", import.meta.u
 const VIEWPORT = { width: 1002, height: 620 };
 // Pictures have a quarter of the window's pixels: they cost less, and the page's layout is the same.
 const WINDOW = { viewport: VIEWPORT, deviceScaleFactor: 0.5 };
-// Longer than the time within which the page treats changes as one (client-web/src/core/history.ts).
+// Longer than the time within which the page treats several changes as one step of undo
+// (client-web/src/core/history.ts).
 const GESTURE_MS = 1000;
 const complaints = [];
 let folder;
@@ -125,7 +126,8 @@ test("where is the graupel core and how much is there, by keys alone", async () 
     return { core: said, row: await text("probe-graupel") };
   });
   assert.ok(Math.abs(maximumOf("GRAUPEL") / independentMaximum("QGRAUP") - 1) < 1e-5, "another reader finds another core");
-  // Values are converted back to mixing ratios with the mean air density of blocks: 9 % at worst (decision 47).
+  // The page converts values back to mixing ratios with the mean air density of a block of cells. The error is at most
+  // 9 % (decision 47).
   assert.ok(Math.abs(core / maximumOf("GRAUPEL") - 1) < 0.1, `the page says ${core}, the file has ${maximumOf("GRAUPEL")}`);
   const along = Number(/([\d.]+) g\/kg/.exec(row)[1]);
   assert.ok(along > 0.8 * core && along < 1.01 * core, `along the ray through the core there are ${along} of ${core} g/kg`);
@@ -237,8 +239,8 @@ test("a click on the map stands there, a drag from there looks, a double click t
   await screenshot("tools-map", page);
 });
 
-// Returns the middle of a map element in shares of the storm's domain. The map itself shows more of the world when the
-// camera is outside.
+// Returns the middle of a map element in shares of the storm's domain. The map shows more than the domain if the camera
+// is outside the domain.
 async function placeInDomain(selector) {
   const [domain, box] = await Promise.all(
     [".map-domain", selector].map((each) => page.locator(`[data-testid=inset-map] ${each}`).boundingBox()),
@@ -359,8 +361,8 @@ const flipped = ({ data, width, height }) => {
   return turned;
 };
 
-// Checks that two pictures have the same colours. Letters and scales over one of them may differ; they add as much to
-// the difference from the mirror image.
+// Checks that two pictures have the same colours. Letters and scales over one of the pictures do not matter, because
+// they add as much to the difference from the mirror image.
 function assertSameColours(picture, view, what) {
   const [apart, mirrored] = [blockDifference(picture, view), blockDifference(flipped(picture), view)];
   console.log(`${what}: ${apart.toFixed(2)} from the view, its mirror image ${mirrored.toFixed(2)}`);
@@ -431,7 +433,7 @@ test("a file that is no scene is refused where it was opened", async () => {
   assert.equal(await page.getByTestId("notices").innerText(), "");
   await page.getByTestId("keep-scene").locator("summary").click();
   await page.keyboard.press("Escape");
-  // A file dropped on the picture is refused there.
+  // A file that is dropped on the picture and refused shows its error over the picture.
   await page.evaluate(() => {
     const data = new DataTransfer();
     data.items.add(new File(["[]"], "dropped.json", { type: "application/json" }));
@@ -463,7 +465,7 @@ test("a browser without H.264 says what it puts into an MP4", async () => {
 
 test("a page without an encoder says at the button that it makes no movie", async () => {
   const other = await (await browser.newContext(WINDOW)).newPage();
-  // Pages by plain HTTP lack the VideoEncoder too.
+  // Browsers also hide VideoEncoder from pages that are loaded by plain HTTP.
   await other.addInitScript(() => delete globalThis.VideoEncoder);
   try {
     await other.goto(server.url);
@@ -511,8 +513,8 @@ async function assertIsTheMovie(download, codec = "vp9") {
 
 const rememberedMovie = () => page.evaluate(() => sessionStorage.getItem("thunderhead.movie.supercell") || undefined);
 
-// Returns the movie's codec. The panel shows a note only if an MP4 is not H.264. The panel asks the browser, and so
-// does this function.
+// Returns the movie's codec. The panel shows a note only if this browser cannot write H.264 into an MP4. This function
+// asks the browser in the same way as the panel.
 async function saidCodec(format) {
   if (format === "webm") return "vp9";
   const encodes = await page.evaluate(async (size) => {
@@ -676,7 +678,7 @@ async function assertProbesB(compared) {
   await openTool(page, undefined);
 }
 
-// Draws over B; other viewers see only A.
+// Checks that a line drawn over picture B appears at the same place of picture A, because other viewers see only A.
 async function assertPenOverBDrawsOnA(compared) {
   await openTool(page, "marks");
   await page.getByTestId("tool-pen").click();

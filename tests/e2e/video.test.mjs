@@ -8,7 +8,7 @@ import { textOfCode } from "./qr.mjs";
 import { freePort, startServer } from "./server_process.mjs";
 import { throttledLink } from "./throttled_link.mjs";
 
-// Pictures have half of the window's pixels: they cost less, and the page's layout is the same.
+// Pictures have half of the window's pixels, so that they cost less. The page's layout is the same.
 const WINDOW = { viewport: { width: 1000, height: 700 }, deviceScaleFactor: 0.7 };
 // The positions where the camera's turns begin and end.
 const [LEFT, RIGHT] = [300, 500].map((x) => ({ x, y: 350 }));
@@ -20,8 +20,8 @@ const SLOW_LINK = { kbitPerS: 500, roundTripMs: 150 };
 // The maximum mean difference over all pixels, in levels of 255. JPEG at its own quality differs by 1.2 from the
 // picture.
 const ALIKE = 2.5;
-// The tolerated share of the change that a wrong matrix or range would make. Video of low quality, whose colours are
-// paler, makes -0.26 of it; a wrong matrix or range makes 1.
+// The tolerated fraction of the change that a wrong colour matrix or range would cause. A wrong matrix or range gives
+// 1. Correct video of low quality, whose colours are paler, gives -0.26.
 const SAME_COLOURS = 0.5;
 
 let server;

@@ -41,8 +41,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using Stub = v1::ThunderheadService::Stub;
 
-// The roles that may call each rpc, in addition to operators, who may call all. An rpc that is
-// missing here fails the test.
+// The roles that may call each rpc. Operators may call every rpc and are not listed. The test fails
+// if an rpc is missing here.
 const std::map<std::string, std::set<std::string>> kMayCall = {
     {"GetServerInfo", {"viewer", "presenter", "pipeline"}},
     {"ListStorms", {"viewer", "presenter", "pipeline"}},
@@ -182,7 +182,7 @@ TEST(AccessTest, RefusalsOfAnyCallAreAudited) {
   has("AcknowledgeFrame verdict=refused reason=\"SESSION_NOT_FOUND\"");
 }
 
-// The pending requests of one viewer neither fill the queue nor take all threads.
+// The pending requests of one viewer must neither fill the queue nor occupy all threads.
 TEST(AccessTest, AViewerWhoAsksWithoutAPauseHoldsUpOnlyItself) {
   service::ServerOptions options = Patient();
   options.executor.max_waiting_each = 4;
@@ -332,7 +332,7 @@ TEST(AccessTest, RequestsAreLimited) {
   EXPECT_EQ(taken, 10) << "of two seconds";
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_TRUE(RetryOf(status).has_value());
-  // Another identity has its own limits.
+  // Another identity (token holder) has separate limits.
   EXPECT_TRUE(guarded.Call("operator", &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
   time.Advance(*RetryOf(status));
   EXPECT_TRUE(guarded.Call("viewer", &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
@@ -369,7 +369,8 @@ TEST(AccessTest, ViewersOfASessionAreLimitedAndPresentersComeIn) {
   EXPECT_TRUE(presenter.Join(created.session_id()).has_joined());
 }
 
-// Viewers count whichever of the two calls they use, and whether or not they receive pictures.
+// Viewers count towards the limit whichever call they use (WatchFrames or Interact), and whether or
+// not they receive pictures.
 TEST(AccessTest, ViewersByOldAndNewCallsAreCountedTogether) {
   service::ServerOptions options = Patient();
   options.limits.max_viewers_per_session = 2;
@@ -397,7 +398,7 @@ TEST(AccessTest, ViewersByOldAndNewCallsAreCountedTogether) {
             grpc::StatusCode::RESOURCE_EXHAUSTED);
   HandCall third(guarded.stub(), "viewer");
   EXPECT_FALSE(third.Join(created.viewer_key()).has_joined());
-  // A viewer who leaves frees a place.
+  // When a viewer leaves, another viewer may join.
   watching->TryCancel();
   watch->Finish();
   EXPECT_TRUE(WaitFor(
@@ -531,7 +532,7 @@ TEST(AccessTest, ATokenThatIsTakenAwayEndsStreamsAndTheAuditSaysSo) {
   // The server checks tokens once a second.
   time.Advance(std::chrono::seconds(2));
 
-  // Frames are sent only while something changes and a viewer takes them.
+  // The server sends frames only while the scene changes and the viewer acknowledges them.
   v1::UpdateSceneRequest update;
   update.set_session_id(session.session_id());
   *update.mutable_scene() = SmallScene();
@@ -589,7 +590,7 @@ TEST(AccessTest, AFloodOfReflectionTakesFewThreadsAndOthersGoOn) {
     calls.back()->Finish(&ends[i], nullptr);
   }
   int refused = 0;
-  // The calls that have a thread stay open.
+  // Calls that occupy a server thread stay open.
   while (refused < kCalls - 16 && await(kPatience)) ++refused;
   EXPECT_GE(refused, kCalls - 16);
   EXPECT_LE(threads(), before + 32);

@@ -1,5 +1,5 @@
-// Tests of sessions and pictures that ask for an accuracy or a speed, on a made-up table and
-// machine.
+// Tests of sessions and pictures that request an accuracy or a speed. The table of settings and the
+// machine are simulated.
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -37,8 +37,8 @@ accuracy::OfferTables Tables() {
   return tables;
 }
 
-// A fixture with a machine that takes as long as the table says. Time advances as the machine
-// draws, and where a test advances it.
+// A fixture with a fake machine whose drawing times are those of the table. The clock advances when
+// the machine draws and when a test advances it.
 class AccuracyTest : public ::testing::Test {
  protected:
   AccuracyTest() {
@@ -52,7 +52,7 @@ class AccuracyTest : public ::testing::Test {
     return options;
   }
 
-  // Waits until a shown scene has come to rest and settled.
+  // Waits until this revision was shown, and then until its frame at rest was drawn and checked.
   bool Settle(Watcher& watcher, std::uint64_t revision) {
     if (!watcher.AwaitFrame(revision, false)) return false;
     time_.Advance(std::chrono::seconds(1));
@@ -70,7 +70,7 @@ class AccuracyTest : public ::testing::Test {
     return scene;
   }
 
-  // Waits for a frame at rest with that many slices.
+  // Waits for a frame at rest of this revision with this number of slices.
   bool AwaitChecked(Watcher& watcher, std::uint64_t revision, std::uint32_t slices) {
     return Settle(watcher, revision) && watcher.Await([=](const Messages& messages) {
       return std::any_of(messages.begin(), messages.end(), [=](const auto& message) {
@@ -149,7 +149,8 @@ TEST_F(AccuracyTest, ChangesKeepTheSettingAndAnotherRequestChangesIt) {
   ASSERT_TRUE(Settle(watcher, revision));
   ASSERT_TRUE(watcher.AwaitFrame(revision, true));
   EXPECT_EQ(watcher.NewestFrame().accuracy().slices(), 100U);
-  // Without a request, the scene's own setting is drawn and the table's estimates are reported.
+  // If a scene requests no accuracy, its own setting is drawn. The report contains the table's
+  // estimates for this setting.
   v1::Scene own = SmallScene();
   own.mutable_rendering()->mutable_light_volume()->set_transport(v1::TRANSPORT_CONSISTENT);
   revision = service_.Update(id, own);
@@ -202,7 +203,7 @@ TEST_F(AccuracyTest, TheErrorIsMeasuredAtRestAndReplacesTheTables) {
   }
   EXPECT_FALSE(watcher.Messages().front().frame().accuracy().measured()) << "nobody waits for it";
   EXPECT_EQ(watcher.NewestFrame().accuracy().model_error(), 0.3F);
-  // Another camera makes another picture.
+  // With another camera the measured error no longer applies.
   v1::Scene turned = WithMaxError(0.35F);
   turned.mutable_camera()->mutable_orbit()->set_azimuth_deg(10.0F);
   const std::uint64_t revision = service_.Update(id, turned);

@@ -1,5 +1,5 @@
-// Tests of sessions while the catalogue changes: sessions that show the newest time follow it, the
-// others keep theirs, and all viewers are notified.
+// Tests of sessions while the catalogue of storms changes. Sessions that show a storm's newest time
+// change to a newer time, other sessions keep their time, and all viewers are notified.
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "service/catalogue_follower.h"

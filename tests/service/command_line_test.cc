@@ -99,7 +99,7 @@ TEST_F(CommandLineTest, VersionAndHelp) {
 TEST_F(CommandLineTest, ServeReadsItsSettingsFromAFile) {
   const std::string file = folder_.File("serve.conf");
   const auto write = [&file](const std::string& text) { std::ofstream(file) << text; };
-  // What it prints is a file that it reads, with every setting.
+  // The printed settings are a complete file that --config accepts.
   const std::string defaults = Run("serve --print-config").out;
   for (const char* const setting :
        {"max-sessions=64", "max-wrong-tokens=5", "insecure=false", "read-deadline=60", "data="}) {
@@ -136,7 +136,8 @@ TEST_F(CommandLineTest, WrongSettingsAreRefusedWithTheirFile) {
   ExpectError("serve", 64, "there are no storms to serve");
 }
 
-// The flags that most servers need, on two screens; the rest stand in the file of settings.
+// The help of `serve` lists only the flags that most servers need, on two screens. The other
+// settings are described in the settings file.
 TEST_F(CommandLineTest, HelpOfServeIsShort) {
   const std::string help = Run("serve --help").out;
   int flags = 0;
@@ -250,8 +251,8 @@ TEST_F(CommandLineTest, RenderMeasuresThePicturesError) {
   const v1::AccuracyReport& report = said.accuracy();
   EXPECT_LE(report.error_low(), report.estimated_error());
   EXPECT_LT(report.estimated_error(), report.error_high());
-  // Diffusion on the sample storm has an error of 0.1 to 0.2. The picture must not be black or of
-  // one colour.
+  // With the diffusion transport the sample storm has an error of 0.1 to 0.2. A picture that is
+  // black or of one colour would have another error.
   EXPECT_GT(report.error_high(), 0.05F);
   EXPECT_LT(report.error_low(), 0.4F);
   EXPECT_THAT(Contents(picture_), HasSubstr("thunderhead.error_low"));
@@ -301,8 +302,8 @@ TEST_F(CommandLineTest, FailedRenderNamesTheCauseAndLeavesNoFile) {
 }
 
 TEST_F(CommandLineTest, RenderWaitsForTracedLightAndPrintsTheErrorReached) {
-  // This error takes a tenth of the paths that `--quality true` alone waits for, which would take
-  // minutes.
+  // This error needs a tenth of the paths that `--quality true` alone traces. All of them would
+  // take minutes.
   const Outcome outcome = Run(render_ + " --time 1 --size 48x27 --quality true --max-error 0.09");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
@@ -385,7 +386,8 @@ TEST_F(CommandLineTest, MeasureFramesHasARowForEachNamedSetting) {
   std::set<std::string> rows;
   for (const google::protobuf::Value& row : json.fields().at("rows").list_value().values()) {
     const auto& fields = row.struct_value().fields();
-    // Rows with sparse frames also report how far moving frames are from frames drawn in full.
+    // Rows with sparse frames also report the difference between moving frames and frames that are
+    // drawn in full.
     const bool sparse = fields.contains("camera_flip");
     EXPECT_EQ(fields.contains("sun_flip"), sparse);
     EXPECT_EQ(fields.size(), sparse ? 7U : 5U);
@@ -501,7 +503,7 @@ TEST_F(CommandLineTest, AnInterruptedExportLeavesNoFile) {
   const std::string partial = vdb + ".partial";
   const std::string out = folder_.File("out");
   const std::string err = folder_.File("err");
-  // Hangs when it begins to write, until it has received the signal.
+  // The command hangs when it begins to write, until it has received the signal.
   HangAt(partial);
   const HangingStorage hanging;
   RunningProgram program(PROGRAM, {"export", kSample, "--detail", "-o", vdb}, out, err);

@@ -61,7 +61,7 @@ TEST_P(PictureDelivery, WhoTakesNothingIsCancelledAfterAWhile) {
   UntakingClient client(fake.server().Port());
   client.Call(GetParam(), Asking());
   ASSERT_TRUE(AwaitPictures(fake, 1));
-  // Drawing uses the same time.
+  // Drawing advances the same clock, so the test first waits until the picture is drawn.
   ASSERT_TRUE(WaitFor([&] { return fake.machine->Log().size() == 1; }));
   ASSERT_TRUE(WaitFor([&] { return fake.server().Load().turn_s == 0.0; }));
   EXPECT_TRUE(AwaitReset(client, time));
@@ -76,7 +76,7 @@ TEST_P(PictureDelivery, ItHasItsTime) {
   ASSERT_TRUE(AwaitPictures(fake, 1));
   ASSERT_TRUE(WaitFor([&] { return fake.machine->Log().size() == 1; }));
   time.Advance(kDelivery - std::chrono::seconds(1));
-  // Deadlines are checked throughout this period.
+  // The server checks deadlines several times during this period.
   v1::ListStormsResponse storms;
   for (int i = 0; i < 50; ++i) {
     ASSERT_TRUE(Call(fake.stub(), &v1::ThunderheadService::Stub::ListStorms,
@@ -167,8 +167,8 @@ TEST_F(ViewerDelivery, WhoTakesFramesStaysForLongerThanOneHasTime) {
   Watcher viewer(fake_.stub(), session.viewer_key());
   ASSERT_TRUE(viewer.AwaitFrame(1, false));
   for (int i = 0; i < 10; ++i) {
-    // The next frame is written once this one is known to be taken, so no frame has to wait through
-    // two advances.
+    // The server writes the next frame only when the client has read this frame. No frame therefore
+    // waits during two advances of the clock.
     time_.Advance(kDelivery / 2);
     v1::Scene scene = SmallScene();
     scene.mutable_sun()->set_azimuth_deg(static_cast<float>(i));
@@ -206,7 +206,7 @@ TEST(AnswersDelivery, ThoseThatNobodyTakesHaveALimit) {
   UntakingClient other(fake.server().Port());
   other.Call("ThunderheadService/ListStorms", "");
   EXPECT_TRUE(WaitFor([&] { return other.Refused() >= 1; })) << "of one identity, however it calls";
-  // Calls that are given up free their places.
+  // Calls that the server has ended no longer count towards the limit.
   client.Leave();
   const auto stub = v1::ThunderheadService::NewStub(grpc::CreateChannel(
       absl::StrCat("127.0.0.1:", fake.server().Port()), grpc::InsecureChannelCredentials()));

@@ -1,4 +1,5 @@
-// Tests of pictures when the device runs out of memory or is lost, on a real context.
+// Tests of pictures when the graphics device runs out of memory or is lost, with a real OpenGL
+// context.
 #include "gl/device_memory.h"
 
 #include <deque>
@@ -151,7 +152,7 @@ TEST(WatchDeviceTest, SeesNoFaultInAContextThatIsWell) {
   const auto context = test_support::OpenContext();
   ASSERT_TRUE(context.ok()) << context.status();
   EXPECT_EQ(WatchDevice()->Look(), Fault::kNone);
-  // An invalid GL call of our own is not a device fault.
+  // An invalid OpenGL call by the program itself is not a device fault.
   glEnable(GL_RGBA8);
   EXPECT_EQ(WatchDevice()->Look(), Fault::kNone);
 }

@@ -35,8 +35,8 @@ class DrainTest : public ::testing::Test {
     return status;
   }
 
-  // Waits until the server has so many pictures. gRPC releases a call some time after its client
-  // has the response.
+  // Waits until the server has `count` picture calls. gRPC releases a call some time after its
+  // client has received the response.
   bool AwaitPictures(int count) {
     return WaitFor([&] { return service_.server().Load().pictures == count; });
   }

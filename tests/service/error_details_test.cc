@@ -34,7 +34,8 @@ struct Decoded {
   std::string field;
   std::string description;
   bool bad_request = false;
-  double retry_s = -1.0;  // negative: none
+  // Delay before a retry, in seconds; negative if the error contains no delay.
+  double retry_s = -1.0;
 };
 
 Decoded Decode(const grpc::Status& refusal) {
@@ -349,7 +350,7 @@ TEST(StatusTableTest, WhatWouldBeRefusedAgainHasNoTimeToTryAgain) {
       base::WithDetails(refused, {.reason = "STORM_UNREADABLE", .permanent = true})));
   EXPECT_LT(permanent.retry_s, 0.0);
   EXPECT_EQ(permanent.reason, "STORM_UNREADABLE");
-  // This picture does not fit even in the whole budget.
+  // This picture needs more memory than the whole budget.
   const auto budget = base::MemoryBudget::Make({.bytes = 1000});
   const absl::Status too_large =
       budget->Reserve(base::MemoryUse::kDrawing, 2000, "a picture").status();

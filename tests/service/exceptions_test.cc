@@ -21,7 +21,8 @@ using Stub = v1::ThunderheadService::Stub;
 
 constexpr int kMaxStreams = 2;
 
-// Limits without a limit per second, because these tests fail many calls at once.
+// Returns limits with few streams and no limit of requests per second, because these tests make
+// many calls at once.
 access::QuotaLimits FewStreams() {
   return {.max_streams_per_identity = kMaxStreams, .requests_per_second = 0};
 }

@@ -63,7 +63,7 @@ bool Traces(const scene::Scene& scene) {
   return scene::TracedLightOf(scene.rendering.technique) != scene::TracedLight::kOff;
 }
 
-// Returns the number of balls and the time.
+// Returns the scene's number of metaballs and its time index.
 std::pair<int, int> KeyOf(const scene::Scene& scene) {
   return {std::get<scene::Metaballs>(scene.rendering.technique).count, scene.time_index};
 }
@@ -249,7 +249,7 @@ class FakeFrameSource final : public drawing::FrameSource {
   }
 
   const std::shared_ptr<FakeMachine> machine_;
-  base::DeviceTurn* const turn_;  // null: draws the picture whole
+  base::DeviceTurn* const turn_;  // if null, the picture is drawn in one piece
   const drawing::DeviceInfo info_{"software", "fake renderer", "4.5 fake"};
 };
 
@@ -461,7 +461,8 @@ std::vector<FakeMachine::Drawn> FakeMachine::Log() {
 int FakeMachine::PiecesUntil(const std::function<bool(const Drawn&)>& is) {
   int passed = 0;
   const bool drawn = WaitFor([&] {
-    // The order of these checks matters: whatever was drawn before a piece waited is in the log.
+    // The order of these two checks matters: a frame that was drawn before a piece began to wait is
+    // then already in the log.
     const bool waits = next_piece.Waiting() > 0;
     if (std::ranges::any_of(Log(), is)) return true;
     if (!waits) return false;

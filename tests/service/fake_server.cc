@@ -1,5 +1,5 @@
-// A whole server on the fakes, for measuring clients: it needs no files and no GL, and draws
-// instantly.
+// A complete server that uses the fakes, for measuring clients. It needs no files and no OpenGL,
+// and draws in no time.
 //   fake_server PORT
 #include <csignal>
 #include <cstdio>

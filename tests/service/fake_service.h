@@ -1,4 +1,5 @@
-// A server on fakes, and a viewer that collects the messages of a stream.
+// A server that uses the fakes of fake_engine.h, and a viewer that collects the messages of a
+// stream.
 #pragma once
 
 #include <grpcpp/grpcpp.h>
@@ -22,11 +23,12 @@ namespace thunderhead::testing {
 // A duration longer than any test advances its time.
 inline constexpr std::chrono::hours kYears{24 * 365 * 20};
 
-// Returns options of a server that uses `time`, which must outlive it. No timeout expires, however
-// slow the machine is and however far a test advances the time, except those that the test sets.
+// Returns options of a server that uses `time`, which must outlive the server. Timeouts that the
+// test does not change never expire, however slow the machine is and however far a test advances
+// the time.
 service::ServerOptions Patient(const base::TimeSource& time = base::SteadyTime());
 
-// A server on fakes and a stub to it.
+// A server that uses the fakes, and a gRPC stub to call it.
 class FakeService {
  public:
   explicit FakeService(service::ServerOptions options = Patient());
@@ -60,7 +62,8 @@ class Watcher {
   // Waits until `wanted` is true for the messages so far, for at most `patience`.
   bool Await(const std::function<bool(const std::vector<v1::WatchFramesResponse>&)>& wanted,
              std::chrono::seconds patience = kPatience);
-  // Waits for a frame of at least that revision, at full quality if `refined`.
+  // Waits for a frame whose scene revision is at least `revision`. If `refined` is true, the frame
+  // must also have full quality.
   bool AwaitFrame(std::uint64_t revision, bool refined);
   std::vector<v1::WatchFramesResponse> Messages();
   v1::Frame NewestFrame();

@@ -231,7 +231,8 @@ TEST_F(FluxCommand, TallBlackBoxStopsItsShadow) {
     ExpectShare("absorptance", shadow / area, edges);
   }
   Flux(path + " --photons 200000 --albedo 0 --sun-elevation 30 --sun-azimuth 270");
-  // Light that enters within tan 60 times the height of the east side leaves there.
+  // Light that enters the top at a distance of less than tan 60 degrees times the height from the
+  // east side leaves through this side.
   ExpectShare("sides", 1000.0 * std::sqrt(3.0) / 4000.0);
 }
 
@@ -248,8 +249,8 @@ TEST_F(FluxCommand, WideDomainAgreesWithPeriodic) {
   const Share absorbed = Of("absorptance");
   const Share sides = Of("sides");
   Flux(common + " --periodic");
-  // Light that left may be absorbed elsewhere, at most by the cloud's share of the area seen
-  // sideways.
+  // In the periodic domain, light that would have left may be absorbed later, at most in proportion
+  // to the cloud's fraction of the side area.
   ExpectShare("absorptance", absorbed.value, 4.0 * absorbed.standard_error + 0.05 * sides.value);
 }
 

@@ -71,7 +71,7 @@ class FullDisk : public ::testing::Test {
   const TemporaryFolder folder_;
   const std::string storms_ = folder_.File("run");
   const std::string out_ = folder_.File("out");
-  const std::string kept_ = folder_.File("kept");  // the last contents of `out_`
+  const std::string kept_ = folder_.File("kept");  // copy of the last contents of `out_`
   const std::string log_ = folder_.File("log");
   const std::string all_ = folder_.File("all");
 };

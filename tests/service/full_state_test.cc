@@ -120,7 +120,7 @@ TEST_F(FullStateTest, SessionsThatAreNotSavedSaySoUntilThereIsRoom) {
   }
   ASSERT_TRUE(last.has_durable());
   ASSERT_FALSE(last.durable()) << "the disk never was full";
-  // The session works like any other.
+  // A session that could not be saved works like any other session.
   {
     Interacting presenter(*program_->stub(), last.session_id());
     EXPECT_TRUE(presenter.AwaitFrame(last.scene_revision()));

@@ -1,5 +1,5 @@
-// Tests of clouds generated on request: they are files in the server's folder, and storms like any
-// other.
+// Tests of clouds that the server generates on request. They are files in the server's folder, and
+// are served like other storms.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

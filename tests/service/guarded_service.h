@@ -1,4 +1,4 @@
-// A service with access control, for tests of who may call what.
+// A service with access control, for tests of which role may make which call.
 #pragma once
 
 #include <grpcpp/generic/generic_stub.h>
@@ -54,7 +54,7 @@ class GuardedService {
     service_.emplace(options);
   }
 
-  // Revokes that role's token.
+  // Revokes the token of `role`.
   void TakeAwayToken(const std::string& role) {
     const std::string next = folder_.File("next");
     {

@@ -1,8 +1,8 @@
 // A library for LD_PRELOAD that makes a storage hang. Opening FILE blocks while a file FILE.hangs
-// exists. FOLDER.hangs blocks every operation on what is in the folder, also on open files. A
-// blocked call creates FILE.hung or FOLDER.hung, so that a test can detect it. The call continues
-// once that file is removed. The contents of a folder are on another device if FOLDER.mounted
-// exists.
+// exists. While FOLDER.hangs exists, every operation on a file in the folder blocks, also on files
+// that are already open. A blocked call creates FILE.hung or FOLDER.hung, so that a test can detect
+// it. The call continues once that file is removed. The contents of a folder are on another device
+// if FOLDER.mounted exists.
 //
 // The library also controls the program's monotonic clock if THUNDERHEAD_TEST_CLOCK names a file,
 // so that a slow machine is never mistaken for a storage that hangs. The clock then runs at a tenth
@@ -33,9 +33,11 @@
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-// The longest time before a wait notices that the test has advanced the clock.
+// Longest time in nanoseconds after which a waiting call notices that the test has advanced the
+// clock.
 constexpr std::int64_t kLookAgain_ns = 10'000'000;
-constexpr std::int64_t kSlowness = 10;  // of a clock that a test controls
+// Real nanoseconds per nanosecond of a clock that a test controls.
+constexpr std::int64_t kSlowness = 10;
 
 timespec TimespecOf(std::int64_t ns) { return {ns / kSecond_ns, ns % kSecond_ns}; }
 
@@ -249,7 +251,8 @@ int unlink(const char* path) noexcept {
 
 int statx(int folder, const char* path, int flags, unsigned int mask,
           struct statx* status) noexcept {
-  // The status of a file that is itself marked is still returned.
+  // A call for the status of a file blocks only if its folder is marked, not if the file itself is
+  // marked.
   if (const char* const name = path == nullptr ? nullptr : strrchr(path, '/'); name != nullptr) {
     HangIfTold(std::string(path, name).c_str());
   }

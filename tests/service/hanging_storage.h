@@ -9,7 +9,7 @@
 namespace thunderhead::testing {
 
 // A sanitizer's library must be the first library of a program, so these builds cannot preload
-// another.
+// another library.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr bool kHasHangingStorage = false;
 #else
@@ -19,8 +19,8 @@ inline constexpr bool kHasHangingStorage = true;
 // An object during whose life every program that is started loads the library.
 class HangingStorage {
  public:
-  // Sets up the preload. `clock` names the file of the program's clock; by default the program uses
-  // the machine's clock.
+  // Sets LD_PRELOAD for programs that are started. `clock` is the path of a file from which such a
+  // program reads its clock; without it the program uses the machine's clock.
   explicit HangingStorage(const std::string& clock = "") {
     setenv("LD_PRELOAD", HANGING_STORAGE, 1);
     if (!clock.empty()) setenv("THUNDERHEAD_TEST_CLOCK", clock.c_str(), 1);
@@ -33,7 +33,7 @@ class HangingStorage {
   HangingStorage& operator=(const HangingStorage&) = delete;
 };
 
-// Makes calls hang that open the file, or that use the contents of the folder.
+// Makes calls hang that open the file `path`, or that use the contents of the folder `path`.
 inline void HangAt(const std::string& path) { std::ofstream(path + ".hangs"); }
 
 // Returns whether a call hangs at `path`.

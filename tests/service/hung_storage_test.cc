@@ -130,8 +130,8 @@ class HungStorageTest : public ::testing::Test {
     return call();
   }
 
-  // Waits until the program warns that `path`, at which it hangs, does not answer. Returns for how
-  // many seconds it has not answered, and 0 if the program ends before.
+  // Waits until the program warns that the storage at `path` does not respond. Returns the number
+  // of seconds without a response that the warning reports; 0 if the program ends before.
   double AwaitWarningOf(const std::string& path) {
     const std::string said = AnswerWhereHangs(path, [&] {
       return Await(err_, fs::path(path).filename().string() +
@@ -211,10 +211,10 @@ TEST_F(HungStorageTest, OnlyItsOwnStormIsHeldUpAndTheProgramEndsWhenItIsTold) {
   Mount(folder_.File("data"));
   fs::create_directory(folder_.File("other"));
   const std::string far = folder_.File("data/tower.nc");
-  // The program draws, and so reads, the first storm as it starts.
+  // At its start the program draws the first storm, and therefore reads its file.
   WriteStorm(folder_.File("data/anvil.nc"));
   WriteStorm(far);
-  // The two files have the same time, so they form no series.
+  // The two files have the same valid time, so they are separate storms instead of one series.
   WriteStorm(folder_.File("other/plume.nc"));
   WriteStorm(folder_.File("other/wall.nc"));
   Start({folder_.File("data"), folder_.File("other")});
@@ -364,7 +364,7 @@ TEST_F(HungStorageTest, ACloudIsNotBegunWhereItsStorageHangs) {
     EXPECT_THAT(made.error_message(), HasSubstr("its storage does not answer"));
   };
   refused(AnswerWhereHangs(folder_.File("clouds"), generate));
-  // The next call does not wait again: the program's time hardly passes.
+  // The storage is known to hang, so the next call is refused without waiting.
   refused(generate());
   v1::ListStormsResponse storms;
   EXPECT_TRUE(Call(*stub_, &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
@@ -396,7 +396,7 @@ TEST_F(HungStorageTest, ACloudThatIsDeletedWhereItsStorageHangsHoldsUpNoList) {
   EXPECT_TRUE(Call(*stub_, &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());
   EXPECT_EQ(storms.storms_size(), 2);
   refused(AnswerWhereHangs(folder_.File("clouds"), [&] { return deleting.get(); }));
-  // The next call does not wait again: the program's time hardly passes.
+  // The storage is known to hang, so the next call is refused without waiting.
   refused(remove());
   storms.Clear();
   EXPECT_TRUE(Call(*stub_, &Stub::ListStorms, v1::ListStormsRequest(), &storms).ok());

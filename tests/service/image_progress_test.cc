@@ -76,8 +76,8 @@ class PictureCall {
   std::thread thread_;
 };
 
-// A fixture with a machine that traces a step when the test lets it. Time advances only where a
-// test advances it.
+// A fixture with a fake machine that traces a step only when the test lets it. The clock advances
+// only when a test advances it.
 class ImageProgressTest : public ::testing::Test {
  protected:
   ImageProgressTest() { service_.machine->tracing.Close(); }
@@ -136,7 +136,7 @@ TEST_F(ImageProgressTest, ACancelledPictureIsTracedNoFurtherAndWaitsNoMore) {
   service_.machine->tracing.Open();
   ASSERT_TRUE(WaitFor([&] { return service_.machine->traced_steps == 2; }));
   EXPECT_TRUE(service_.machine->Log().empty()) << "it was drawn";
-  // The only place is free again.
+  // The server draws only one picture at a time, and can now draw another.
   PictureCall next(service_, RequestWith(v1::TRACED_LIGHT_AWAITED));
   const grpc::Status end = next.End();
   EXPECT_TRUE(end.ok()) << end.error_message();
@@ -162,7 +162,7 @@ TEST_F(ImageProgressTest, ThePictureIsThatOfTheCallWithoutProgress) {
   v1::RenderImageResponse told = call.AllEvents().back().image();
   EXPECT_EQ(told.image(), plain.image());
   EXPECT_EQ(told.stages_size(), plain.stages_size());
-  // Everything else is the same except the times.
+  // The two responses are the same except for the measured times.
   told.clear_stages();
   plain.clear_stages();
   told.clear_accuracy();

@@ -130,8 +130,8 @@ v1::SessionRules ViewersMayMark() {
 
 using Timeouts = session::RosterTimeouts;
 
-// The value of those roster timeouts that a test is about. They do not expire before the test
-// advances the time.
+// The value of the timeouts (of requests for control, absence and the like) that a test examines.
+// They do not expire before the test advances the time.
 constexpr std::chrono::milliseconds kTimeout = std::chrono::hours(1);
 
 service::ServerOptions With(const std::vector<std::chrono::milliseconds Timeouts::*>& timeouts,
@@ -164,8 +164,8 @@ struct Class {
     });
   }
 
-  // Advances the time, and waits until the roster has ended what expires by then. Ben asks for
-  // control first and gets no answer, because the timeout of answers is kTimeout.
+  // Advances the time, and waits until the server has ended everything that has expired. To detect
+  // this, Ben first asks for control; his request expires after kTimeout.
   bool RosterSees(RunningTime& time, std::chrono::milliseconds moved) {
     ben->Send(Asks());
     if (!AsksFor(*ana, ben->viewer_id(), true)) return false;
@@ -215,7 +215,8 @@ TEST(InteractTest, AJoinerIsToldEverythingAtOnce) {
   EXPECT_TRUE(presence.rules().has_viewers_may_steer());
 }
 
-// Presence is sent at most once in 0.2 s. A joiner must not get a presence from before the join.
+// Presence messages are sent at most once in 0.2 s. A viewer who joins must not get a presence
+// message from before the join.
 TEST(InteractTest, TheFirstPresenceOfAJoinerHasTheJoiner) {
   Class group;
   std::vector<std::unique_ptr<Interacting>> people;
@@ -249,7 +250,8 @@ TEST(InteractTest, FramesAreThoseOfWatchFrames) {
   EXPECT_TRUE(watched.has_view());
 }
 
-// The fake source draws in 8 bits only, so no still images follow: at rest JPEG replaces video.
+// The fake frame source draws only 8 bits a channel, so no AVIF image follows when the scene rests.
+// JPEG then replaces video.
 TEST(InteractTest, VideoComesToWhoDecodesItOnly) {
   RunningTime time;
   Class group({}, Patient(time));
@@ -259,7 +261,7 @@ TEST(InteractTest, VideoComesToWhoDecodesItOnly) {
   Watcher old(group.service.stub(), group.created.session_id());
   ASSERT_TRUE(video.AwaitFrame(1));
   ASSERT_TRUE(jpeg.AwaitFrame(1));
-  // Keeps every scene from resting and every link from seeming slow.
+  // The clock is stopped, so that no scene counts as resting and no link as slow.
   time.Stop();
   std::uint64_t revision = 1;
   for (int i = 0; i < 20; ++i) {
@@ -350,7 +352,7 @@ TEST(InteractTest, WhoAsksTooOftenIsToldWhenToAskAgain) {
   const std::chrono::milliseconds wait = RetryAfterOf(refused.status());
   EXPECT_GT(wait, std::chrono::milliseconds(0));
   EXPECT_LE(wait, kTimeout);
-  // Another viewer may ask.
+  // Meanwhile another viewer may ask for control.
   group.ben->Send(Asks());
   EXPECT_TRUE(Class::AsksFor(*group.presenter, group.ben->viewer_id(), true));
   group.presenter->Send(Refuses(group.ana->viewer_id()));
@@ -404,7 +406,7 @@ TEST(InteractTest, FreeControlGoesToWhoAsksFirst) {
   EXPECT_TRUE(Class::SteersFor(*group.ben, group.ben->viewer_id()));
   group.ben->Send(Gives(group.ana->viewer_id()));
   ASSERT_TRUE(Class::SteersFor(*group.ben, group.ana->viewer_id()));
-  // A viewer's control goes back to the presenter.
+  // If a viewer gives control to no particular person (id 0), control returns to the presenter.
   group.ana->Send(Gives(0));
   EXPECT_TRUE(Class::SteersFor(*group.ana, group.presenter->viewer_id()));
 }
@@ -480,7 +482,7 @@ TEST(InteractTest, EverybodyIsToldWhichTimesAreInMemory) {
   RunningTime time;
   Class group({}, Patient(time));
   const auto told = [&](Interacting& person, const std::vector<std::uint32_t>& times) {
-    time.Advance(std::chrono::seconds(1));  // the server checks once a second
+    time.Advance(std::chrono::seconds(1));  // the server checks its memory once a second
     return person.Await([&](const Interacting::Messages& messages) {
       return std::ranges::any_of(messages, [&](const Response& message) {
         return message.has_times_in_memory() && message.times_in_memory().storm_id() == "anvil" &&
@@ -490,7 +492,7 @@ TEST(InteractTest, EverybodyIsToldWhichTimesAreInMemory) {
   };
   const std::uint32_t shown = group.ben->AwaitScene(1).time_index();
   EXPECT_TRUE(told(*group.ben, {shown}));
-  // Reads the time as if in advance; no scene shows it.
+  // Reads another time of the storm into memory, as read-ahead does. No scene shows this time.
   const std::uint32_t ahead = shown == 2 ? 1 : 2;
   ASSERT_TRUE(group.service.store->Get("anvil", static_cast<int>(ahead), {}).ok());
   const std::vector<std::uint32_t> both = {std::min(shown, ahead), std::max(shown, ahead)};
@@ -593,7 +595,7 @@ TEST(InteractTest, AChangeOfSomeFieldsIsTakenWhileTheSceneBeforeItWaitsForItsSto
   exposes.mutable_update_scene()->mutable_scene()->mutable_display()->set_exposure_ev(0.5F);
   exposes.mutable_update_scene()->mutable_update_mask()->add_paths("display.exposure_ev");
   const std::uint64_t follows = group.presenter->Send(exposes);
-  // Requests are read in order.
+  // The server reads requests in order, so when it has handled this one it has read the others.
   v1::InteractRequest rename;
   rename.mutable_set_name()->set_name("Read");
   group.presenter->Send(rename);
@@ -683,7 +685,7 @@ TEST(InteractTest, WhoIsRefusedAViewOfTheirOwnGoesOnFollowing) {
   ASSERT_TRUE(group.ana->AwaitFrame(1));
   ASSERT_TRUE(group.service.store->Remove("anvil").ok());
   v1::InteractRequest detach;
-  detach.mutable_detach()->mutable_camera()->mutable_spotter();  // the storm decides its place
+  detach.mutable_detach()->mutable_camera()->mutable_spotter();  // the server chooses the place
   EXPECT_EQ(group.ana->AnswerCode(group.ana->Send(detach)), grpc::StatusCode::NOT_FOUND);
   v1::InteractRequest move;
   move.mutable_move_camera()->mutable_camera()->mutable_orbit()->set_azimuth_deg(45.0F);
@@ -743,8 +745,8 @@ TEST(InteractTest, WhoComesBackBeforeTheOwnViewIsThereStays) {
   ASSERT_TRUE(group.AnaIsObeyed());
   group.service.store->reading.Open();
   ASSERT_TRUE(group.ana->AwaitFrame(2, /*own_view=*/false));
-  // Motions are accepted for the view that is pending, and refused once it is known that there will
-  // be none.
+  // Camera motions are accepted while the own view is pending, and refused once it is known that
+  // the view cannot be made.
   v1::InteractRequest move;
   move.mutable_move_camera()->mutable_camera()->mutable_orbit()->set_azimuth_deg(45.0F);
   const auto is_refused = [](const Response& message) {
@@ -974,7 +976,7 @@ TEST(InteractTest, WhoComesBackHasTheOwnMarksAgain) {
   ASSERT_TRUE(group.ben->AwaitMarks([&](const v1::Marks& marks) {
     return marks.marks_size() == 2 && drawn_by(marks, group.ana->viewer_id()) == 1;
   }));
-  // Here the connection that Ana lost still counts as hers, as it may for a while.
+  // The server still counts the connection that Ana lost as hers, as it may do for a while.
   Interacting back(group.service.stub(), group.created.viewer_key(),
                    {.name = "Ana", .participant_key = group.ana->participant_key()});
   EXPECT_EQ(back.participant_key(), group.ana->participant_key());
@@ -1018,7 +1020,7 @@ TEST(InteractTest, WhoReconnectsSteersAgain) {
   EXPECT_EQ(back.AnswerCode(back.Send(SunTo(120.0F))), grpc::StatusCode::OK);
 }
 
-// The lost client's network is gone: it receives nothing, and nothing closes its connection.
+// The client has lost its network. It receives nothing, and its connection is never closed.
 TEST(InteractTest, ALostConnectionIsReplacedByTheOneThatComesBack) {
   RunningTime time;
   Class group({}, With({&Timeouts::sign_of_life}, time));
@@ -1069,8 +1071,8 @@ TEST(InteractTest, ADuplicatedTabTakesNothingFromTheOtherOne) {
                   {.participant_key = group.presenter->participant_key()});
   ASSERT_GT(tab.viewer_id(), 0U);
   group.presenter->AwaitNewest(Response::kCheckAlive);
-  // The tab answers before the time is advanced, and what it sends later is received after that
-  // answer.
+  // The tab answers the connection check before the time is advanced. A request that it sends later
+  // arrives after this answer.
   EXPECT_EQ(group.presenter->AnswerCode(group.presenter->Send(SunTo(125.0F))),
             grpc::StatusCode::OK);
   ASSERT_TRUE(group.RosterSees(time, 2 * kTimeout));
@@ -1123,8 +1125,8 @@ TEST(InteractTest, AMarkWaitsUntilTheLastOneHasItsPlace) {
       group.ana->AwaitMarks([](const v1::Marks& marks) { return marks.marks_size() == 2; }));
 }
 
-// Only answers are queued for a slow client, so their number is limited. Beyond the limit no
-// further request is read.
+// The server queues answers for a client that does not read them, and limits their number. Beyond
+// the limit it reads no further request of this client.
 TEST(InteractTest, WhoReadsNoAnswersIsNotHeardAnyMore) {
   service::ServerOptions options = Patient();
   options.address = "127.0.0.1:0";
@@ -1146,7 +1148,7 @@ TEST(InteractTest, WhoReadsNoAnswersIsNotHeardAnyMore) {
   join.mutable_join()->set_name("Deaf");
   join.mutable_join()->mutable_window()->set_hidden(true);
   ASSERT_TRUE(call->Write(join));
-  // The answers are larger than that; the requests are smaller.
+  // All answers together are larger than this buffer, and all requests together are smaller.
   constexpr std::uint64_t kRequests = 1500;
   for (std::uint64_t i = 1; i <= kRequests; ++i) {
     v1::InteractRequest refused = Takes();

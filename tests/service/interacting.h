@@ -1,5 +1,5 @@
-// A participant of a session by Interact. It collects the messages of the call on its own thread
-// and acknowledges frames.
+// A participant of a session, who uses the call Interact. A separate thread collects the call's
+// messages and acknowledges frames.
 #pragma once
 
 #include <atomic>
@@ -23,14 +23,15 @@ struct InteractingOptions {
   std::vector<v1::Codec> codecs{};
   bool saves_bytes = false;
   std::string participant_key;
-  bool answers_checks = true;  // with Alive
-  bool is_old = false;         // supports neither incremental marks nor checks
+  bool answers_checks = true;  // if true, answers the server's connection checks with Alive
+  bool is_old = false;  // acts like an old client, which supports neither incremental marks nor
+                        // connection checks
 };
 
-// Returns the reason in a refusal's details; empty if it has none.
+// Returns the reason in a refusal's details; an empty text if the details contain no reason.
 std::string ReasonOf(const google::rpc::Status& refusal);
 std::string ReasonOf(const grpc::Status& refusal);
-// Returns the delay in a refusal's details; 0 if it has none.
+// Returns the delay before a retry in a refusal's details; 0 if the details contain no delay.
 std::chrono::milliseconds RetryAfterOf(const google::rpc::Status& refusal);
 
 class Interacting {
@@ -47,7 +48,7 @@ class Interacting {
   // Waits until `wanted` is true for the messages so far, for at most `patience`.
   bool Await(const std::function<bool(const Messages&)>& wanted,
              std::chrono::seconds patience = kPatience);
-  // Waits for a message with that part, and returns the newest such message.
+  // Waits for a message of the kind `part`, and returns the newest such message.
   v1::InteractResponse AwaitNewest(v1::InteractResponse::MessageCase part);
   // Returns the answer to the request, SceneTaken or Refused.
   v1::InteractResponse Answer(std::uint64_t request_id);
@@ -55,14 +56,14 @@ class Interacting {
   grpc::StatusCode AnswerCode(std::uint64_t request_id);
   // Waits until `wanted` is true for the newest presence.
   bool AwaitPresence(const std::function<bool(const v1::Presence&)>& wanted);
-  // Waits until the newest scene has at least that revision, and returns it.
+  // Waits until the newest scene's revision is at least `revision`, and returns this scene.
   v1::Scene AwaitScene(std::uint64_t revision);
-  // Waits for a frame of at least that revision.
+  // Waits for a frame whose scene revision is at least `revision`.
   bool AwaitFrame(std::uint64_t revision, bool own_view = false);
   Messages All();
 
-  // Waits until `wanted` is true for the newest marks. These are complete: incremental messages
-  // have been applied.
+  // Waits until `wanted` returns true for all marks of the session. Incremental messages are
+  // applied to them first.
   bool AwaitMarks(const std::function<bool(const v1::Marks&)>& wanted);
   // Returns the messages with marks as they were received.
   std::vector<v1::Marks> MarksAsTold();
@@ -71,7 +72,7 @@ class Interacting {
   std::uint64_t viewer_id();
   std::string participant_key();
 
-  void Leave();  // half-closes the call
+  void Leave();  // leaves the session by half-closing the call
   void Cancel() { context_.TryCancel(); }
   // Waits for the call to end.
   grpc::Status End();
@@ -87,7 +88,7 @@ class Interacting {
   std::mutex mutex_;
   std::condition_variable changed_;
   Messages messages_;
-  v1::Marks marks_;  // the complete marks
+  v1::Marks marks_;  // all marks, with incremental messages applied
   std::vector<v1::Marks> marks_as_told_;
   std::uint64_t request_count_ = 0;
   grpc::Status end_;

@@ -1,5 +1,5 @@
-// Tests of sessions that outlive the server, on fakes: the next server on the same store restores
-// them.
+// Tests of sessions that outlive the server. The next server with the same store restores them.
+// Store and engine are fakes.
 #include <algorithm>
 #include <future>
 #include <map>
@@ -89,7 +89,7 @@ class FakeSessionStore final : public session::SessionStore {
     return last_saved_;
   }
 
-  // Waits until `wanted` is true for the records.
+  // Waits until `wanted` returns true for the saved records.
   bool Await(const std::function<bool(const std::map<std::string, SessionRecord>&)>& wanted) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, kPatience, [&] { return wanted(records_); });
@@ -280,7 +280,7 @@ TEST_F(KeptSessionsTest, SessionsStillCountForWhoOpenedThem) {
     v1::CreateSessionResponse response;
     grpc::ClientContext context;
     context.set_deadline(std::chrono::system_clock::now() + kPatience);
-    context.AddMetadata("x-forwarded-for", address + ":4711");  // as the gateway does
+    context.AddMetadata("x-forwarded-for", address + ":4711");  // the gateway adds this header, too
     return service_->stub().CreateSession(&context, request, &response).error_code();
   };
   EXPECT_EQ(create("192.0.2.7"), grpc::StatusCode::OK);
@@ -359,7 +359,7 @@ TEST_F(KeptSessionsTest, ASessionHasAtMostSoManyMarks) {
   const v1::Refused refused = presenter.Answer(presenter.Send(DrawsDown())).refused();
   EXPECT_EQ(refused.status().code(), static_cast<int>(grpc::StatusCode::FAILED_PRECONDITION));
   EXPECT_EQ(ReasonOf(refused.status()), "TOO_MANY_MARKS");
-  // Erasing a mark allows another one.
+  // After a mark was erased, another mark may be added.
   v1::InteractRequest erase;
   erase.mutable_erase_marks()->add_mark_ids(7);
   presenter.Send(erase);
@@ -554,7 +554,8 @@ TEST_F(KeptSessionsTest, AnEndThatCannotBeSavedSaysSo) {
   EXPECT_THAT(store_->Records(), IsEmpty()) << "what could not be removed was tried again";
 }
 
-// Each call reports whether its own session was saved.
+// The end of a session is reported as saved although other sessions cannot be saved, because each
+// call reports only its own session.
 TEST_F(KeptSessionsTest, AnEndIsSavedWhereOnlyOthersCannotBe) {
   const auto closed = Create();
   store_->FailSavesWith(absl::UnavailableError("the disk is full"));

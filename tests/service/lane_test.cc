@@ -1,5 +1,5 @@
-// Tests of a lane that draws with GL while others give it turns. It must draw in pieces, and end
-// when its picture is no longer wanted.
+// Tests of a lane, a thread that draws single pictures by OpenGL in the turns that it is given. The
+// lane must draw in pieces, and must end when its picture is no longer wanted.
 #include "drawing/lane.h"
 
 #include <algorithm>
@@ -111,7 +111,8 @@ class LaneBenchmark : public LaneTest {
 
 TEST_F(LaneBenchmark, PiecesOfALargePicture) { TellPieces(SceneOf(1920, 1080, 512), {}); }
 
-// The processors complete the picture during most of its time, so the device is free for others.
+// Most of the drawing time is spent on the CPU, which completes the picture. The graphics device is
+// free for other work meanwhile.
 TEST_F(LaneBenchmark, PiecesOfALargePictureWithFewerRays) {
   TellPieces(SceneOf(1920, 1080, 256), {.sparse = true});
 }
@@ -133,7 +134,8 @@ TEST_F(LaneTest, APictureWithFewerRaysIsTheSameInPieces) {
   EXPECT_TRUE(whole->rgb == rgb_);
 }
 
-// The version with more bits is kept for a still at rest, until something else is drawn.
+// The version of the picture with more bits a channel is kept for the high-quality encoding at
+// rest, until another picture is drawn. It can be taken once.
 TEST_F(LaneTest, APictureWithFewerRaysIsThereWithMoreBitsOnce) {
   const auto source = GlFrameSources(test_support::Device())(nullptr);
   ASSERT_TRUE(source.ok()) << source.status();

@@ -25,8 +25,8 @@ constexpr char kLitSample[] = THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc";
 struct Renderer {
   std::string name;
   std::vector<std::string> flags;
-  // For a renderer that draws shapes instead of the fields: the mean difference from 1 -
-  // exp(-depth). 0: none.
+  // For a technique that draws shapes instead of the fields: the permitted mean difference of the
+  // opacity from 1 - exp(-depth). It is 0 for other techniques.
   double shape_difference = 0.0;
 
   friend void PrintTo(const Renderer& renderer, std::ostream* out) { *out << renderer.name; }
@@ -122,7 +122,7 @@ struct Transport {
   std::string name;
   std::string rendering;
   double seen_share = 1.0;
-  double tolerance = 0.01;  // of a pixel's opacity
+  double tolerance = 0.01;  // permitted difference of a pixel's opacity
 
   friend void PrintTo(const Transport& transport, std::ostream* out) { *out << transport.name; }
 };
@@ -152,7 +152,8 @@ TEST_P(TransportOpacity, IsOfTheDepthThatItSeesThrough) {
   for (std::size_t i = 0; i < picture->opacity.size(); ++i) {
     const double depth = picture->optical_depth[i];
     const double expected = 1.0 - std::exp(-GetParam().seen_share * depth);
-    // Rays end where the storm's transmittance is nearly 0.
+    // Rays end when the storm's transmittance is nearly 0, so an opacity near 1 is only
+    // approximate.
     if (expected > 0.94) {
       EXPECT_GT(picture->opacity[i], 0.93);
       continue;

@@ -1,4 +1,4 @@
-// Tests of the load generator against a server on fakes, by gRPC and by WebSocket.
+// Tests of the load generator, by gRPC and by WebSocket. The server uses fakes.
 #include "load/load.h"
 
 #include <unistd.h>
@@ -39,7 +39,7 @@ enum class By { kGrpc, kWebSocket };
 // A load that lasts until a test stops it.
 constexpr double kForEver_s = 1e6;
 
-// A slow machine makes nothing fail.
+// Times with which no test fails on a slow machine.
 constexpr LoadTimes kTimes{.warm_up_s = 0.1,
                            .sampling_s = 0.05,
                            .visit_s = 0.5,
@@ -84,7 +84,7 @@ class LoadTest : public ::testing::TestWithParam<By> {
                      progress);
   }
 
-  // Runs until each viewer that reads all its messages has so many frames.
+  // Runs until each viewer that reads all its messages has received at least `frames` frames.
   absl::StatusOr<Report> RunFor(std::uint64_t frames) {
     return RunUntil([frames](const Progress& progress) { return progress.least_frames >= frames; });
   }
@@ -98,8 +98,8 @@ class LoadTest : public ::testing::TestWithParam<By> {
         stop.get_token());
   }
 
-  // Returns the most that throttled viewers can receive at a rate. It includes the message that was
-  // in flight when the period began.
+  // Returns the maximum data rate in kbit/s of throttled viewers. It includes the message that was
+  // in flight when the measured period began.
   double MostKbit(const Report& report) const {
     return 1.5 * options_.kbit_per_s +
            2.0 * 8e-3 * report.throttled.bytes_per_frame / report.seconds;
@@ -130,7 +130,7 @@ TEST_P(LoadTest, HasAllFigures) {
   EXPECT_THAT(report->healthy.kbit_per_viewer, Gt(0.0));
   EXPECT_THAT(report->healthy.bytes_per_frame, Gt(100.0));
   EXPECT_EQ(report->healthy_first.count, 3);
-  // The server is in this process.
+  // The server runs in this process, so its memory use can be measured.
   ASSERT_TRUE(report->server.has_value());
   EXPECT_THAT(report->server->rss_first_mb, Gt(1.0));
   EXPECT_THAT(report->server->rss_last_mb, Gt(1.0));
@@ -184,7 +184,7 @@ TEST_P(LoadTest, StalledAndThrottledViewersDoNotSlowOthers) {
 
 TEST_P(LoadTest, WhoLooksAroundGetsPicturesOfTheOwnViewAndTheOthersTheSessions) {
   options_.looking = 2;
-  // More than the two frames that may be unacknowledged.
+  // Two frames may be unacknowledged, so five frames prove that frames are acknowledged.
   const auto report = RunFor(5);
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);

@@ -71,8 +71,8 @@ TEST(MemoryLimitTest, SixtyFourSessionsOnDifferentLargeTimesKeepWithinTheBudget)
   }
   ServedProgram program(PROGRAM, first, "none", more);
   ASSERT_NE(program.stub(), nullptr);
-  // Software GL, the shader programs and gRPC have taken their memory once a picture has been
-  // drawn, so that memory does not count.
+  // After the first picture, the software renderer, the shader programs and gRPC have allocated
+  // their memory. This memory does not count towards the budget.
   double shown_mib = 0.0;
   std::vector<std::unique_ptr<Interacting>> viewers;
   for (int i = 0; i < kStorms; ++i) {

@@ -44,7 +44,8 @@ class OpenSocketsTest : public ::testing::Test {
   const std::shared_ptr<ConnectionCalls> calls_ = std::make_shared<ConnectionCalls>();
   std::map<int, std::string> peers_;
   int taken_ = 0;
-  int looked_for_ = -1;  // the last one looked up, which is closed, by the order of acceptance
+  // Number, in order of acceptance, of the last socket that was looked up to be closed.
+  int looked_for_ = -1;
   OpenSockets::Clock::time_point now_ = OpenSockets::Clock::now();
 };
 
@@ -129,7 +130,7 @@ TEST_F(OpenSocketsTest, ThoseWithoutACallAreClosedAfterAWhile) {
   EXPECT_TRUE(Take(open, "192.0.2.1:2"));
   EXPECT_TRUE(Take(open, "192.0.2.1:3"));
   const auto call = calls_->Begin("192.0.2.1:2");
-  calls_->Begin("192.0.2.1:3").reset();  // just now
+  calls_->Begin("192.0.2.1:3").reset();  // the last use of this connection is now
   const auto last = OpenSockets::Clock::now();
   const auto closes = [&](OpenSockets::Clock::time_point now) {
     looked_for_ = -1;
@@ -142,7 +143,7 @@ TEST_F(OpenSocketsTest, ThoseWithoutACallAreClosedAfterAWhile) {
   closes(last + seconds(61));
   EXPECT_FALSE(calls_->UseOf("192.0.2.1:3").has_value()) << "closed, and forgotten";
   EXPECT_TRUE(calls_->UseOf("192.0.2.1:2").has_value()) << "it has a call";
-  // Two places are free.
+  // Two more connections are allowed.
   EXPECT_TRUE(Take(open, "192.0.2.2:1"));
   looked_for_ = -1;
   EXPECT_TRUE(Take(open, "192.0.2.2:2"));

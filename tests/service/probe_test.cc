@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using ::testing::SizeIs;
 using Stub = v1::ThunderheadService::Stub;
 
-// Extinction of 1 g/m3 of droplets of 10 um (the observed constant).
+// Extinction of 1 g/m3 of droplets with a radius of 10 um (the observed constant).
 constexpr double kCellExtinction_per_m = 0.001 * 3.0 / (2.0 * 1000.0 * 1e-5);
 
 grpc::Status Probe(FakeService& service, const v1::ProbeRayRequest& request,
@@ -167,7 +167,8 @@ TEST(ProbeTest, PointsOfThePictureAndAllKindsOfCamerasCount) {
   EXPECT_EQ(probe.seen(), v1::ProbeRayResponse::SEEN_CLOUD);
   EXPECT_GT(probe.optical_depth(), 10.0);
   EXPECT_FALSE(probe.has_ground());
-  // An orbit that the server frames shows the only cell in the middle of the picture.
+  // An orbit camera without values is chosen by the server. It shows the storm's only cloud cell in
+  // the middle of the picture.
   request.mutable_camera()->mutable_orbit();
   probe = Probed(service, request);
   EXPECT_GT(probe.optical_depth(), 10.0);

@@ -1,4 +1,4 @@
-// Checks of the folder of products that a pipeline has left.
+// Checks of the folder into which a pipeline has written its products (pictures and movies).
 #pragma once
 
 #include <map>
@@ -11,12 +11,12 @@ namespace thunderhead::testing {
 
 std::string Contents(const std::string& path);
 
-// Returns the entries of a manifest by the product's file, without a torn last line. Fails the test
-// if a product has two entries.
+// Returns the manifest's entries, by the file name of the product. Ignores an incomplete last line.
+// Fails the test if a product has two entries.
 std::map<std::string, pipeline::ManifestEntry> EntriesOf(const std::string& manifest);
 
-// Fails the test unless every picture in the folder decodes. Call it only while nothing writes
-// there.
+// Fails the test unless every picture in the folder can be decoded. Call this only while no program
+// writes into the folder.
 void ExpectWholePictures(const std::string& folder);
 
 // Fails the test unless the folder holds exactly the named products, their manifest with matching

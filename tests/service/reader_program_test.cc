@@ -54,14 +54,14 @@ class ReaderProgramTest : public ::testing::Test {
   std::optional<ServedProgram> server_;
 };
 
-// Backups and profilers create such hard links.
+// Backups and profilers create hard links to the reader program.
 TEST_F(ReaderProgramTest, AnotherNameOfTheReaderChangesNothing) {
   fs::create_hard_link(reader_, folder_.File("backup"));
   const grpc::Status described = Describe("tower");
   EXPECT_TRUE(described.ok()) << described.error_message();
 }
 
-// Another version may expect other requests.
+// A reader program of another version may expect other requests, so it must not be started.
 TEST_F(ReaderProgramTest, AReplacedReaderIsNotStarted) {
   fs::copy_file(reader_, folder_.File("newer"));
   fs::rename(folder_.File("newer"), reader_);

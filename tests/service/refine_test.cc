@@ -67,7 +67,8 @@ class RefineTest : public ::testing::Test {
     });
   }
 
-  // Lets the reference trace so many more samples, and waits until frames show `samples`.
+  // Lets the reference trace `more` samples, and waits until a frame with `samples` samples per
+  // pixel is shown.
   bool TraceOn(Watcher& watcher, std::uint64_t revision, int more, std::uint32_t samples) {
     truth_->sampling.LetPass(more);
     return AwaitSamples(watcher, revision, samples);
@@ -79,7 +80,7 @@ class RefineTest : public ::testing::Test {
 };
 
 TEST_F(RefineTest, SamplesGrowAndTheErrorFallsWhileTheSceneRests) {
-  // Each doubling is shown before the next is traced.
+  // A picture is shown at each doubling of its samples, before further samples are traced.
   truth_->sampling.Close();
   Watcher watcher(service_.stub(), service_.Open(Traced()));
   ASSERT_TRUE(TraceOn(watcher, 1, 1, 1));
@@ -230,7 +231,7 @@ TEST_F(RefineTest, SessionsTakeTurnsAndOneTooManyIsTold) {
 }
 
 TEST_F(RefineTest, OneIdentityHasHalfOfThePlaces) {
-  // All calls through the port have the same address.
+  // All calls through the server's port come from the same address.
   const auto stub = v1::ThunderheadService::NewStub(grpc::CreateChannel(
       absl::StrCat("127.0.0.1:", service_.server().Port()), grpc::InsecureChannelCredentials()));
   const auto open = [&](float azimuth_deg) {
@@ -286,7 +287,7 @@ TEST_F(RefineTest, StopsAmidWork) {
   EXPECT_EQ(truth_->sources, 0);
 }
 
-// Runs the path tracer itself behind the same service.
+// Runs the real path tracer instead of the fake reference.
 TEST(RefineByReferenceTest, SamplesGrowErrorFallsChangeRestartsLeavingCancels) {
   FakeService service;
   // The fake storm's cell is opaque, so its paths are long.

@@ -103,7 +103,7 @@ class Request {
   std::thread thread_;
 };
 
-// Two pictures are read meanwhile, one in each lane.
+// The storms of two pictures are read meanwhile, one picture in each lane (drawing thread).
 TEST(RenderImageTest, CancelledPictureIsNeverDrawn) {
   FakeService service;
   service.store->reading.Close();
@@ -134,7 +134,7 @@ TEST(RenderImageTest, TooManyWaitingPicturesAreRefused) {
   std::vector<std::unique_ptr<Request>> others;
   others.push_back(std::make_unique<Request>(service, 2.0F, 1));
   others.push_back(std::make_unique<Request>(service, 3.0F, 2));
-  // One of the two waits; the other is refused while the first picture is drawn.
+  // While the first picture is drawn, one of the other two waits and the other one is refused.
   ASSERT_TRUE(WaitFor([&] { return others[0]->HasEnded() || others[1]->HasEnded(); }));
   ASSERT_TRUE(WaitFor([&] { return service.server().Load().waiting_pictures == 1; }));
   service.machine->drawing.Open();

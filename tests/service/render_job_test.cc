@@ -220,7 +220,7 @@ TEST_F(RenderJobTest, DrawsEveryPictureOnceAndKeepsItUntilItIsFetched) {
     EXPECT_EQ(fetched.first.input().valid_time(),
               absl::StrCat("0001-01-01T00:", 10 + 10 * i, ":00Z"));
     EXPECT_EQ(jobs.Fetch(job.id(), i, 10).bytes, fetched.bytes.substr(10));
-    // By HTTP, any client that has the path can fetch the file.
+    // Any client that knows the path can fetch the file by HTTP.
     const auto file = service.server().FindResult(absl::StrCat(job.result_path(), "/", i));
     ASSERT_TRUE(file.has_value());
     std::stringstream contents;
@@ -367,7 +367,7 @@ TEST_F(RenderJobTest, AResultWhoseStorageHangsIsRefusedAndTheNextAtOnce) {
     EXPECT_EQ(ReasonOf(fetched.status, &retries), "STORAGE_HANGS");
     EXPECT_TRUE(retries);
   }
-  // The storage answers again: the fetches that opened the pipe reach its end.
+  // The storage responds again, so that the fetches that opened the pipe reach its end.
   std::filesystem::rename(picture, picture + ".pipe");
   std::filesystem::rename(picture + ".kept", picture);
   { const base::FileDescriptor writer(open((picture + ".pipe").c_str(), O_RDWR | O_NONBLOCK)); }
@@ -476,7 +476,7 @@ TEST_F(RenderJobTest, MoreThanIsAllowedIsRefusedWithATimeToTryAgain) {
   refused = jobs.Create({Picture(0)}, &job);
   EXPECT_EQ(ReasonOf(refused), "TOO_MANY_JOBS");
   EXPECT_EQ(jobs.Create({}, &job).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  // A job that has ended frees a place.
+  // A job that has ended no longer counts towards the limit, so another job can be created.
   ASSERT_TRUE(jobs.Cancel(first.id()).ok());
   EXPECT_TRUE(jobs.Create({Picture(0)}, &job).ok());
   v1::GetRenderJobResponse gone;
@@ -489,7 +489,7 @@ TEST_F(RenderJobTest, WhereNobodyFetchesDrawingPausesAndGoesOnAfterAFetch) {
   FakeService service(options);
   Jobs jobs(service.server());
   const v1::RenderJob job = jobs.Create(std::vector<v1::RenderJobPicture>(6, Picture(0)));
-  // Some pictures were in progress when the first was drawn.
+  // Some pictures were already in progress when the first picture was drawn.
   ASSERT_TRUE(WaitFor([&] { return jobs.Get(job.id()).job().has_paused(); }));
   const auto drawn = [&] { return jobs.Get(job.id()).job().counts().drawn(); };
   ASSERT_TRUE(WaitFor([&] { return jobs.Get(job.id()).job().counts().drawing() == 0; }));

@@ -1,4 +1,4 @@
-// The program in another process, which a test may stop at any moment.
+// The program thunderhead in a separate process, which a test may stop at any moment.
 #pragma once
 
 #include <sys/types.h>
@@ -8,9 +8,9 @@
 
 namespace thunderhead::testing {
 
-// The exit code or signal of a process.
+// How a process ended: its exit code, or the signal that ended it.
 struct Ending {
-  int code = -1;   // -1 if a signal ended it
+  int code = -1;   // exit code; -1 if a signal ended the process
   int signal = 0;  // 0 if it exited on its own
 };
 
@@ -32,7 +32,7 @@ class RunningProgram {
   Ending Wait();
 
  private:
-  pid_t process_ = -1;  // -1 once it has ended
+  pid_t process_ = -1;  // process id; -1 after the process has ended
   Ending ending_;
 };
 

@@ -42,8 +42,8 @@ double NumberOf(const Message& message, const FieldDescriptor& field) {
   }
 }
 
-// Enumerators and switches without a fixed default: it depends on the storm or on other fields, or
-// there is none.
+// Choices and switches without a fixed default. Their default depends on the storm or on other
+// fields, or they have none.
 const std::set<std::string> kWithoutDefault = {
     "thunderhead.v1.FieldParameters.hydrometeor",
     "thunderhead.v1.FieldParameters.sizes",
@@ -140,7 +140,7 @@ scene::Scene InSinglePrecision(scene::Scene value) {
   return value;
 }
 
-// Clears the numbers whose default is in their options.
+// Clears the numbers in `message` whose field options contain a default.
 void ClearNumbersWithDefaults(Message& message) {
   std::vector<const FieldDescriptor*> set;
   message.GetReflection()->ListFields(message, &set);
@@ -153,8 +153,9 @@ void ClearNumbersWithDefaults(Message& message) {
   }
 }
 
-// The same default scene twice: as a message completed by the server, and as a separately built
-// value. Defaults that depend on the storm are the value's in both.
+// The same default scene in two forms: a message that the server has completed, and a scene::Scene
+// that is built separately. Defaults that depend on the storm are copied from the scene::Scene into
+// the message.
 struct Defaults {
   v1::Scene message;
   scene::Scene value;
@@ -199,7 +200,8 @@ std::vector<Defaults> AllDefaults() {
   return all;
 }
 
-// A scene compares all of its fields. Its parts are compared first, to show which part differs.
+// The comparison of whole scenes covers all fields. The parts are compared first, so that a failure
+// shows which part differs.
 TEST(SceneDefaults, OfTheValueAreThoseOfTheCompletedMessage) {
   for (const Defaults& defaults : AllDefaults()) {
     const scene::Scene value = ToScene(defaults.message);
@@ -280,7 +282,8 @@ bool SetValue(Message& message, const FieldDescriptor& field, int i) {
   return i < 2;
 }
 
-// Returns true if each value of the field makes another scene. `message` is part of `scene`.
+// Returns true if each value of the field results in a different scene::Scene. `message` is part of
+// `scene`.
 bool Matters(const v1::Scene& scene, Message& message, const FieldDescriptor& field) {
   const std::unique_ptr<Message> kept(message.New());
   kept->CopyFrom(message);
@@ -461,7 +464,8 @@ TEST(SceneDefaults, ThePapersPresetsStandForTheirConstants) {
   }
 }
 
-// Borders are on for ground by land use, in a storm with a map projection.
+// By default borders are drawn if the ground is coloured by land use and the storm has a map
+// projection.
 TEST(SceneDefaults, BordersAreOnWhereTheGroundIsThatOfARealPlace) {
   const auto borders = [](const storm_store::StormInfo& storm, v1::Scene scene = {}) {
     FillSceneDefaults(scene, storm);
@@ -486,7 +490,7 @@ TEST(SceneDefaults, BordersAreOnWhereTheGroundIsThatOfARealPlace) {
   EXPECT_FALSE(borders(real, off));
 }
 
-// The default ground follows from the storm. Rings default as in the value.
+// The default ground depends on the storm. The default of the rings is that of scene::Scene.
 TEST(SceneDefaults, TheGroundIsThatOfTheStormAndPlainInThePapersLook) {
   const auto cover = [](const storm_store::StormInfo& storm, v1::Scene scene = {}) {
     FillSceneDefaults(scene, storm);
@@ -528,7 +532,7 @@ TEST(SceneDefaults, LightIsTracedByDefaultWhereItIsShown) {
   rendering.mutable_light_volume()->set_transport(v1::TRANSPORT_PAPER);
   FillTechniqueDefaults(rendering);
   EXPECT_EQ(rendering.light_volume().traced_light(), v1::TRACED_LIGHT_OFF);
-  // The correction cannot be shown, and the frame reports that.
+  // This technique cannot show the path-traced correction, and the frame reports that.
   rendering.mutable_light_volume()->set_traced_light(v1::TRACED_LIGHT_AT_REST);
   FillTechniqueDefaults(rendering);
   EXPECT_EQ(rendering.light_volume().traced_light(), v1::TRACED_LIGHT_AT_REST);

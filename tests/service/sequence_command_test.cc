@@ -113,7 +113,8 @@ TEST_F(SequenceCommand, DrawsEveryTimeAndViewOnceAndOnlyWhatChangedAgain) {
 
   ASSERT_EQ(Run(Arguments("out")).code, 0);
   EXPECT_EQ(Drawn(), 0) << Contents(out_);
-  // The same bytes, copied again, make the same pictures.
+  // A file that was copied again with the same bytes results in the same pictures, so nothing is
+  // drawn.
   fs::last_write_time(RunFile(storms_, 0), fs::file_time_type::clock::now());
   ASSERT_EQ(Run(Arguments("out")).code, 0);
   EXPECT_EQ(Drawn(), 0) << Contents(out_);
@@ -122,7 +123,7 @@ TEST_F(SequenceCommand, DrawsEveryTimeAndViewOnceAndOnlyWhatChangedAgain) {
   EXPECT_EQ(Drawn(), 2) << Contents(out_);
   std::ofstream(above_) << R"({"camera": {"topDown": {}}, "sky": {"turbidity": 3}})";
   fs::remove(folder_.File("out/" + Products()[0]));
-  // One byte of a picture is changed. Only the hash shows it.
+  // One byte of a picture is changed. Only its hash reveals the change.
   std::string changed = Contents(folder_.File("out/" + Products()[2]));
   changed.back() ^= 1;
   std::ofstream(folder_.File("out/" + Products()[2]), std::ios::binary) << changed;
@@ -141,7 +142,7 @@ TEST_F(SequenceCommand, DrawsEveryTimeAndViewOnceAndOnlyWhatChangedAgain) {
 struct Extras {
   std::vector<std::string> flags;
   std::vector<std::string> products;  // products with a line in the manifest
-  bool done = false;                  // whether each product has a marker
+  bool done = false;                  // true if each product also has a marker file
 };
 
 TEST_F(SequenceCommand, KilledAtAnyMomentLosesNothingAndDoublesNothing) {
@@ -157,7 +158,8 @@ TEST_F(SequenceCommand, KilledAtAnyMomentLosesNothingAndDoublesNothing) {
   const Extras with_movie{{"--done"}, {movie}, true};
   const Extras with_maps{{"--world-file"}, maps, false};
   std::mt19937 random(7);
-  std::map<bool, milliseconds> whole;  // key: true with a movie, false with maps
+  // Duration of a whole run, by kind: true with a movie, false with maps.
+  std::map<bool, milliseconds> whole;
   int killed = 0;
   for (int round = 0; killed < kills; ++round) {
     const std::string out = "out" + std::to_string(round);
@@ -229,8 +231,9 @@ TEST_F(SequenceCommand, ASignalEndsItWithTryAgain) {
   ExpectFinished(folder_.File("out"), Products());
 }
 
-// A product's write hangs, as on a file system that hangs. The bar on a terminal shows the
-// progress. A first signal waits for the write, and a second does not.
+// The write of a product hangs, as on a file system that hangs. On a terminal the program shows a
+// progress bar. After the first signal it waits for the write, and after a second signal it ends at
+// once.
 TEST_F(SequenceCommand, ASecondSignalEndsWhatHangsAndATerminalShowsABar) {
   fs::create_directories(folder_.File("out"));
   // Opening the pipe for writing waits for a reader.
@@ -271,7 +274,8 @@ TEST_F(SequenceCommand, SharesTogetherMakeAllAndThenTheMovie) {
   EXPECT_GT(fs::file_size(folder_.File("out/storms.webm")), 500U);
   ASSERT_EQ(Run(Arguments("out", {"--movie", movie})).code, 0) << Contents(err_);
   EXPECT_EQ(Drawn(), 0) << Contents(out_);
-  // All lines are now in one manifest, including those of the shares.
+  // One manifest now contains all lines, including the lines that the shares (parallel programs)
+  // had written.
   std::vector<std::string> all = Products();
   all.push_back("storms.webm");
   ExpectFinished(folder_.File("out"), all);
@@ -367,8 +371,8 @@ TEST_F(SequenceCommand, AFileThatIsCutShortIsNamedAndLeavesTheOthersAlone) {
   std::ofstream(cut, std::ios::binary) << whole.substr(0, whole.size() / 2);
   // The folder also contains files that are not storms, as model folders do.
   std::ofstream(storms_ + "/README") << "no storm";
-  // Whether it is read alone or in its folder, the cut file may still be being written until it has
-  // been unchanged for a while.
+  // The truncated file counts as still being written until it has been unchanged for a while. This
+  // holds whether it is read alone or in its folder.
   KeepFresh(cut);
   EXPECT_EQ(RunningProgram(PROGRAM, {"inspect", cut}, out_, err_).Wait().code, 75);
   KeepFresh(cut);
@@ -382,7 +386,7 @@ TEST_F(SequenceCommand, AFileThatIsCutShortIsNamedAndLeavesTheOthersAlone) {
   alone[1] = cut;
   EXPECT_EQ(Run(alone).code, 65) << Contents(err_);
   EXPECT_EQ(Run(Arguments("out")).code, 65) << Contents(err_);
-  // Only the missing file can tell which time is the last, or has the number 1.
+  // Which time is the last, and which has the number 1, depends on the missing file.
   EXPECT_EQ(Run(Arguments("out", {"--times", "last"})).code, 65);
   EXPECT_THAT(Contents(err_), HasSubstr("Nothing is drawn, as --times is only known"));
   std::vector<std::string> numbered = Arguments("numbered");

@@ -1,4 +1,4 @@
-// The program as a server in its own process, which a test may kill.
+// The program thunderhead as a server in a separate process, which a test may kill.
 #pragma once
 
 #include <sys/types.h>
@@ -13,8 +13,8 @@ namespace thunderhead::testing {
 
 class ServedProgram {
  public:
-  // Starts `thunderhead serve` on the storm, on free ports, with software GL and the flags in
-  // `more`, and waits until it is ready.
+  // Starts `thunderhead serve` for the storm, on free ports, with the software renderer and the
+  // flags in `more`. Waits until the server is ready.
   ServedProgram(const std::string& program, const std::string& storm, const std::string& state,
                 const std::vector<std::string>& more = {});
   // Kills the process with SIGKILL.
@@ -22,7 +22,7 @@ class ServedProgram {
   ServedProgram(const ServedProgram&) = delete;
   ServedProgram& operator=(const ServedProgram&) = delete;
 
-  // Returns the stub; null if the program did not start.
+  // Returns the stub for calls to the server; null if the program did not start.
   v1::ThunderheadService::Stub* stub() { return stub_.get(); }
 
   pid_t process() const { return process_; }
@@ -31,7 +31,7 @@ class ServedProgram {
   void End(int signal);
 
  private:
-  pid_t process_ = -1;  // -1: ended
+  pid_t process_ = -1;  // process id; -1 after the process has ended
   std::unique_ptr<v1::ThunderheadService::Stub> stub_;
 };
 

@@ -105,7 +105,7 @@ class ServerSequence : public ::testing::Test {
     return fs::exists(out_ + "/manifest.jsonl") ? EntriesOf(out_ + "/manifest.jsonl").size() : 0;
   }
 
-  // Returns the number of results that the server keeps.
+  // Returns the number of drawn results that the server still stores.
   std::size_t Kept() const {
     std::size_t files = 0;
     std::error_code error;
@@ -266,7 +266,8 @@ TEST_F(ServerSequence, AServerWithTokensAndTlsServesSharesViewsAndMovies) {
     }
   }
   ExpectFinished(out_, products);
-  // By the same rules `watch` finds all products made, and `render` draws one more.
+  // With the same flags, `watch` finds that all products exist, and `render` draws one more
+  // picture.
   std::vector<std::string> until = movie;
   until.insert(until.end(), {"--until", std::to_string(kSequenceTimes)});
   EXPECT_EQ(start("watch", until, token)->Wait().code, 0) << Errors();

@@ -135,8 +135,8 @@ TEST(SessionsTest, OtherCamerasAreFramedToo) {
   EXPECT_GT(spotter.y_m(), -500.0F - 3150.0F);
   EXPECT_GT(spotter.elevation_deg(), 0.0F);
   EXPECT_EQ(CreateWith(service, spotted).scene().SerializeAsString(), spotted.SerializeAsString());
-  // A place of which only one coordinate is given keeps it, and the spotter looks at the storm from
-  // there.
+  // If only one coordinate of the place is given, the server keeps it and chooses the other. The
+  // spotter looks at the storm from there.
   wanted.mutable_camera()->mutable_spotter()->clear_azimuth_deg();
   wanted.mutable_camera()->mutable_spotter()->set_x_m(-4000.0F);
   wanted.mutable_camera()->mutable_spotter()->set_elevation_deg(3.0F);
@@ -180,7 +180,7 @@ TEST(SessionsTest, TheSunFollowsTheClockWhereAsked) {
   v1::Sun& sun = *wanted.mutable_sun();
   sun.set_source(v1::Sun::SOURCE_BY_TIME);
   sun.set_azimuth_deg(1.0F);
-  // Local noon at the equinox.
+  // The clock is set to local noon at the equinox.
   sun.mutable_clock()->set_date_time("2013-03-20T12:00:00Z");
   sun.mutable_clock()->set_latitude_deg(0.0F);
   sun.mutable_clock()->set_longitude_deg(0.0F);
@@ -196,7 +196,7 @@ TEST(SessionsTest, TheSunFollowsTheClockWhereAsked) {
   const double elapsed_min = service.store->Find("anvil")->times[3].elapsed_s / 60.0;
   EXPECT_GT(elapsed_min, 0.0);
   EXPECT_NEAR(later_deg - first_deg, elapsed_min / 4.0, 0.02);
-  // The clock's defaults are an afternoon in Oklahoma.
+  // By default the clock shows an afternoon in Oklahoma.
   sun.clear_clock();
   const v1::Sun open = CreateWith(service, wanted).scene().sun();
   EXPECT_EQ(open.clock().date_time(), "2013-05-20T20:00:00Z");

@@ -172,7 +172,8 @@ drawing::DisplayFrame* StillQuality::drawn_ = nullptr;
 frame::FineImage* StillQuality::fine_ = nullptr;
 Pixels* StillQuality::truth_ = nullptr;
 
-// The picture in 8 bits is the fine picture with noise of half a step.
+// The 8-bit picture equals the picture with 16 bits a channel, plus rounding noise of up to half a
+// step.
 TEST_F(StillQuality, TheFinePictureIsTheOneDrawn) {
   const Pixels drawn = LevelsOf(drawn_->rgb);
   double most = 0.0;

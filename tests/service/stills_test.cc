@@ -47,7 +47,7 @@ v1::Scene SeenFrom(double azimuth_deg) {
   return scene;
 }
 
-// A call that needs no thread.
+// An asynchronous call, for which the test needs no thread.
 class Asked {
  public:
   Asked(FakeService& service, const v1::RenderImageRequest& request) : request_(request) {
@@ -174,7 +174,8 @@ TEST(StillsTest, OneThatTakesLongerThanPredictedEnds) {
   options.render_loop.image_limits.max_predicted_s = 0.1;
   FakeService service(options);
   service.machine->time = &time;
-  service.machine->ms_per_mega_sample = 200.0;  // the server first assumes 2 ms
+  // Milliseconds per million samples; before its first frame the server assumes 2 ms.
+  service.machine->ms_per_mega_sample = 200.0;
   Asked still(service, LongStill());
   const grpc::Status end = still.End();
   EXPECT_EQ(end.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << end.error_message();
@@ -195,7 +196,8 @@ TEST(StillsTest, HundredsAtOnceWaitAndAllAreDrawn) {
 TEST(StillsTest, ThoseThatWaitHoldNoFields) {
   FakeService service;
   service.machine->ms_per_mega_sample = 0.01;
-  // The server expects each to take 9 s, so all wait for the same lane; they take 43 ms.
+  // The server expects each picture to take 9 s, so all of them wait for the same lane (drawing
+  // thread). In fact they take 43 ms.
   const auto long_still = [](std::uint32_t time) { return Still(1024, 1024, 4096, time); };
   service.machine->next_piece.Close();
   std::deque<Asked> stills;

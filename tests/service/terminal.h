@@ -1,4 +1,4 @@
-// A terminal on which a program shows its progress.
+// A pseudo-terminal on which a program shows its progress.
 #pragma once
 
 #include <fcntl.h>

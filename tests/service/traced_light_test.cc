@@ -37,7 +37,8 @@ class TracedLightTest : public ::testing::Test {
     return options;
   }
 
-  // Waits until a shown scene has settled, after which its light is traced.
+  // Waits until this revision is shown at full quality, and then until the server begins to trace
+  // its light.
   bool Settle(Watcher& watcher, std::uint64_t revision) {
     if (!watcher.AwaitFrame(revision, true)) return false;
     time_.Advance(seconds(1));
@@ -71,8 +72,8 @@ TEST_F(TracedLightTest, FramesAreDrawnForMoreAndMorePathsUntilThereAreEnough) {
   service_.machine->tracing.Close();
   Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
   ASSERT_TRUE(Settle(watcher, 1));
-  // The first step reports where the correction begins. Later steps are shown whenever the paths
-  // have grown by half.
+  // The first step is shown as the beginning of the correction. Later steps are shown whenever the
+  // number of traced paths has grown by half.
   service_.machine->tracing.LetOnePass();
   for (const std::uint64_t shown : {2, 3, 5}) {
     ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
@@ -117,7 +118,8 @@ TEST_F(TracedLightTest, NothingIsTracedForScenesThatDoNotAskOrCannotShowIt) {
   Watcher second(service_.stub(), service_.Open(consistent));
   Watcher traced(service_.stub(), service_.Open(WithTracedLight()));
   for (Watcher* const watcher : {&first, &second, &traced}) ASSERT_TRUE(Settle(*watcher, 1));
-  // Sessions are traced in turn, so the others would have been traced by now.
+  // Light is traced for the sessions in turn, so it would have been traced for the other sessions
+  // by now.
   ASSERT_TRUE(AwaitPaths(traced, 1, 4'100'000));
   EXPECT_EQ(service_.machine->Traced().size(), 41U);
   for (const scene::Scene& scene : service_.machine->Traced()) {
@@ -174,7 +176,7 @@ TEST_F(TracedLightTest, OneSceneTooManyWaitsForItsTurn) {
   Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
   ASSERT_TRUE(Settle(watcher, 1));
   ASSERT_TRUE(WaitFor([&] { return service_.machine->trace_refusals == 1; }));
-  // The machine tries again as time passes.
+  // The server tries again as time passes.
   ASSERT_TRUE(WaitFor([&] {
     time_.Advance(milliseconds(100));
     return service_.machine->trace_refusals > 1;
@@ -195,7 +197,7 @@ TEST_F(TracedLightTest, NoPictureIsDrawnForTooFewPaths) {
   service_.machine->tracing.Close();
   Watcher watcher(service_.stub(), service_.Open(WithTracedLight()));
   ASSERT_TRUE(Settle(watcher, 1));
-  // The steps are so far apart in time that each alone would be due for a picture.
+  // The steps are so far apart in time that the server might show a picture after each of them.
   for (int step = 0; step < 3; ++step) {
     ASSERT_TRUE(service_.machine->tracing.AwaitWaiting(1));
     time_.Advance(milliseconds(600));

@@ -1,4 +1,5 @@
-// A client with its own HTTP/2 implementation. It grants the server no flow-control window.
+// A client with its own HTTP/2 implementation. It grants the server no flow-control window, so the
+// server can send no message contents.
 #pragma once
 
 #include <cstddef>
@@ -13,18 +14,18 @@ class UntakingClient {
   explicit UntakingClient(int port);
 
   enum class Stream { kEnds, kStaysOpen };
-  // Calls `method`, which includes the service's name. The client's side of the call ends with the
-  // message, or stays open.
+  // Calls `method`, whose name includes the service's name. `stream` says whether the client ends
+  // its side of the call after the message, or leaves it open.
   void Call(const std::string& method, const std::string& message, Stream stream = Stream::kEnds);
-  // Makes a call whose message is `gzip`, which is already compressed.
+  // Makes a call whose message is `gzip`, a text that is already compressed.
   void CallCompressed(const std::string& method, const std::string& gzip);
   // Sends the headers of a call whose message never follows.
   void Announce(const std::string& method);
 
-  // Returns whether the server has reset a call. This and the next two functions read what has
-  // arrived and answer pings.
+  // Returns whether the server has reset a call. IsReset(), Refused() and IsClosed() first read all
+  // bytes that have arrived, and answer pings.
   bool IsReset();
-  // Returns how many calls the server has refused without a message.
+  // Returns the number of calls that the server has refused without a message.
   int Refused();
   // Returns whether the server has closed the connection.
   bool IsClosed();
@@ -40,7 +41,7 @@ class UntakingClient {
   void TakeAll();
 
   base::FileDescriptor socket_;
-  std::size_t stream_ = 1;  // of the next call
+  std::size_t stream_ = 1;  // HTTP/2 stream number of the next call
   std::string received_;
   bool reset_ = false;
   bool closed_ = false;

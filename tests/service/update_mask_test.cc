@@ -46,8 +46,8 @@ TEST_F(UpdateMaskTest, APathThatNamesAFieldIsAccepted) {
   }
 }
 
-// The presenter may give control to any viewer, whose messages are then as trusted as the
-// presenter's.
+// The presenter may give control to any viewer. The server then accepts this viewer's updates like
+// the presenter's.
 TEST_F(UpdateMaskTest, AViewerInControlIsRefusedAndTheSessionGoesOn) {
   v1::CreateSessionRequest request;
   *request.mutable_scene() = SmallScene();

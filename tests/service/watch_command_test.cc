@@ -126,8 +126,8 @@ class WatchCommand : public ::testing::Test {
   const std::string err_ = folder_.File("stderr");
 };
 
-// Files are written slowly, in pieces, one truncated, one twice, while the program is killed
-// repeatedly.
+// Files are written slowly and in pieces. One is truncated and one is written twice, and the
+// program is killed repeatedly meanwhile.
 TEST_F(WatchCommand, FilesThatComeAsTheyDoInLifeAreEachDrawnOnce) {
   constexpr int kFiles = 5;
   const char* wanted = std::getenv("THUNDERHEAD_KILLS");
@@ -152,8 +152,8 @@ TEST_F(WatchCommand, FilesThatComeAsTheyDoInLifeAreEachDrawnOnce) {
   std::mt19937 random(5);
   std::uniform_int_distribution<std::size_t> moment(1, 5);
   for (int i = 0; i < kills; ++i) {
-    // The program is killed once it has written so many lines, about products drawn and incomplete
-    // files.
+    // The program is killed after it has written a random number of lines. It writes a line for
+    // each product and for each incomplete file.
     const std::size_t lines = Lines() + moment(random);
     RunningProgram program(PROGRAM, arguments, out_, err_);
     WaitFor([&] { return Lines() >= lines || !program.Runs(); });
@@ -204,8 +204,8 @@ TEST_F(WatchCommand, AMarkedFileThatIsNotWholeWaits) {
   ExpectFinished(folder_.File("out"), second);
 }
 
-// HDF5 locks a file while writing it. Its readers cannot distinguish that from damage, but `watch`
-// must.
+// HDF5 locks a file while it writes the file. To a reader the locked file looks damaged, but
+// `watch` must wait for it.
 TEST_F(WatchCommand, AFileThatItsWriterHoldsOpenIsNotReady) {
   Put(0, Bytes(0));
   int writer = 0;
@@ -314,7 +314,8 @@ TEST_F(WatchCommand, FilesThatAreMovedAwayOnceDrawnStillCount) {
   const auto archive = [&](int time) {
     fs::rename(RunFile(inbox_, time), folder_.File("archived" + std::to_string(time)));
   };
-  // Returns whether so many files are drawn: two views and the movie of each.
+  // Returns whether `files` input files are drawn: the products are two views of each file and the
+  // movie of each view.
   const auto drawn = [&](std::size_t files) {
     const auto entries = EntriesOf(folder_.File("out/manifest.jsonl"));
     return entries.size() == 2 * files + 1 &&

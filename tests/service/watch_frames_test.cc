@@ -149,7 +149,7 @@ TEST(WatchFramesTest, BurstOfUpdatesYieldsFewFramesAndTheLastIsShown) {
   Watcher watcher(service.stub(), id);
   ASSERT_TRUE(watcher.AwaitFrame(1, true));
   const std::size_t drawn_before = service.machine->Log().size();
-  // The burst of updates comes while its first scene is drawn.
+  // Many updates arrive while the first of their scenes is drawn.
   service.machine->drawing.Close();
   std::uint64_t revision = service.Update(id, Facing(0.0F));
   ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
@@ -159,8 +159,8 @@ TEST(WatchFramesTest, BurstOfUpdatesYieldsFewFramesAndTheLastIsShown) {
   EXPECT_EQ(revision, 101U);
   EXPECT_EQ(watcher.NewestFrame().scene_revision(), revision);
   ExpectPainted(watcher.NewestFrame(), RedOf(0), GreenOf(99.0));
-  // At most four are drawn: the first scene, the last, and the refined pictures of those that were
-  // coarse.
+  // At most four pictures are drawn: those of the first and the last scene, and a refined picture
+  // for each of the two that was coarse.
   EXPECT_LE(service.machine->Log().size() - drawn_before, 4U);
   std::uint64_t last = 0;
   for (const auto& message : watcher.Messages()) {
@@ -170,7 +170,7 @@ TEST(WatchFramesTest, BurstOfUpdatesYieldsFewFramesAndTheLastIsShown) {
 }
 
 TEST(WatchFramesTest, CoarseWhileChangingRefinedAtRest) {
-  ManualTime time;  // drawing advances it too
+  ManualTime time;  // drawing advances this clock, too
   FakeService service(Patient(time));
   service.machine->time = &time;
   service.machine->ms_per_mega_sample = 4800.0;  // 177 ms for each full frame: refined in one step
@@ -253,7 +253,7 @@ TEST(WatchFramesTest, LongReadOfOneSessionDoesNotHoldUpAnother) {
   service.store->reading.Open();
   ASSERT_TRUE(waiting.AwaitFrame(unread, true));
   EXPECT_THAT(waiting.NewestFrame().jpeg(), ::testing::Not(::testing::IsEmpty()));
-  // The time of the read is reported with the first frame that needed it.
+  // The duration of the read is reported with the first frame that needed this read.
   const auto messages = waiting.Messages();
   const auto first = std::find_if(messages.begin(), messages.end(), [&](const auto& message) {
     return message.frame().scene_revision() == unread;

@@ -86,7 +86,7 @@ std::pair<std::string, std::string> SplitName(const std::string& full_name) {
   return {full_name.substr(0, dot), full_name.substr(dot + 1)};
 }
 
-// Returns true if the field or enumerator of a listed line is gone and its number and name are
+// Returns true if the field or enumerator of a listed line was removed and its number and name are
 // reserved.
 bool IsReserved(const std::vector<std::string>& line, const FormatLines& current) {
   const auto& [type, name] = SplitName(line[1]);

@@ -1,5 +1,5 @@
-// The wire format of proto files as lines of text, which can be stored next to them and compared.
-// The rule for compatible changes is here too.
+// Describes the wire format of proto files as lines of text, which can be stored next to the files
+// and compared. This file also defines which changes of the format are compatible.
 #pragma once
 
 #include <set>
@@ -15,10 +15,10 @@ using FormatLines = std::set<std::string>;
 // call of `files`.
 FormatLines FormatLinesOf(const std::set<const google::protobuf::FileDescriptor*>& files);
 
-// Returns the lines of `listed` and `current` in which the format is incompatible with the listed
-// one. The result is empty if clients built with the listed format still work. A field or an
-// enumerator may be removed if its number and name are reserved. A listed field may not move into a
-// oneof.
+// Returns the lines of `listed` and `current` in which the current format is incompatible with the
+// listed format. The result is empty if clients that were built with the listed format still work.
+// A field or an enumerator may be removed if its number and name are reserved. A listed field may
+// not move into a oneof.
 std::string Breaks(const FormatLines& listed, const FormatLines& current);
 
 }  // namespace thunderhead::service

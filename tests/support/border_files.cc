@@ -16,7 +16,7 @@ constexpr double kSide_deg = 10.0;
 
 using Numbers = std::vector<double>;
 
-// A file while it is written: variables, each along its own dimension.
+// A netCDF file that is being written. Each variable has its own dimension.
 class BinnedFile {
  public:
   explicit BinnedFile(const std::string& path) : file_(path) {}
@@ -44,7 +44,7 @@ class BinnedFile {
   std::vector<Added> added_;
 };
 
-// Returns the signed short with the same 16 bits.
+// Returns the value of the signed 16-bit integer that has the same bits.
 double Short(int coordinate) { return coordinate > 32'767 ? coordinate - 65'536 : coordinate; }
 
 void Write(const std::string& path, std::vector<BorderSegment> segments, bool coasts) {
@@ -59,7 +59,8 @@ void Write(const std::string& path, std::vector<BorderSegment> segments, bool co
     points.push_back(segment.declared_points != 0 ? segment.declared_points
                                                   : static_cast<double>(segment.points.size()));
     levels.push_back(segment.level);
-    // The segment has an exit and an entry, which lines do not need.
+    // The bit fields are the number of points, the level, and the sides of the bin at which the
+    // segment enters and exits. The readers of lines ignore the sides.
     embedded.push_back(points.back() * 512 + segment.level * 64 + 2 * 8 + 1);
     polygons.push_back(static_cast<double>(areas.size()));
     areas.push_back(segment.area_km2);

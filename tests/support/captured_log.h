@@ -1,4 +1,4 @@
-// Captures what the program logs while this object exists.
+// An object that captures the program's log messages while it exists.
 #pragma once
 
 #include <spdlog/sinks/ostream_sink.h>

@@ -1,5 +1,5 @@
-// Figures that depend on the machine's speed. No test fails because of a figure: it only prints the
-// figure. `./dev bench waits` collects the figures that suites named ...Benchmark print.
+// Prints figures: measured values that depend on the machine's speed. No test fails because of a
+// figure. `./dev bench waits` collects the figures that test suites named ...Benchmark print.
 #pragma once
 
 #include <cstdio>

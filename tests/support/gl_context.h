@@ -1,4 +1,4 @@
-// The GL context of a test.
+// Chooses the device on which a test makes its OpenGL context.
 #pragma once
 
 #include <cstdlib>
@@ -9,8 +9,9 @@
 
 namespace thunderhead::test_support {
 
-// Returns the device of the test. The default is software GL, which gives the same pictures on
-// every machine. THUNDERHEAD_TEST_DEVICE names another device, like `--device`.
+// Returns the device of the test. The default is the software renderer, which draws the same
+// pictures on every machine. The environment variable THUNDERHEAD_TEST_DEVICE can name another
+// device, with the values of the flag `--device`.
 inline const char* Device() {
   const char* device = std::getenv("THUNDERHEAD_TEST_DEVICE");
   return device == nullptr ? "software" : device;

@@ -1,4 +1,4 @@
-// A time source that moves only when a test moves it.
+// A time source whose time moves only when a test moves it.
 #pragma once
 
 #include <atomic>
@@ -8,14 +8,15 @@
 
 namespace thunderhead::testing {
 
-// A manual clock. Threads that wait by it notice a new time within a few milliseconds. Any thread
-// may use it.
+// A manual clock. Threads that wait for a deadline of this clock notice a new time within a few
+// milliseconds. Any thread may call its methods.
 class ManualTime : public base::TimeSource {
  public:
   Clock::time_point Now() const override { return Clock::time_point(Clock::duration(now_.load())); }
 
-  // A deadline that has passed on the real clock may still be in the future on this clock. Its
-  // waiters must sleep nevertheless, because they would otherwise keep a processor busy.
+  // Returns the real time at which a waiting thread must check this clock again. A deadline that
+  // has passed on the real clock may still be in the future on this clock. The thread must sleep
+  // nevertheless, because it would otherwise keep a processor busy.
   Clock::time_point LookAgainAt(Clock::time_point deadline) const override {
     const Clock::time_point real = Clock::now();
     ++looks_;
@@ -25,8 +26,8 @@ class ManualTime : public base::TimeSource {
   // Moves the time forward.
   void Advance(Clock::duration by) { now_ += by.count(); }
 
-  // Returns how often threads have found that their deadline has not passed. If one thread waits,
-  // an increase of two after Advance() proves that the thread is still waiting.
+  // Returns how many times threads have found that their deadline has not passed yet. If only one
+  // thread waits, an increase of two after Advance() proves that this thread is still waiting.
   int Looks() const { return looks_; }
 
  private:

@@ -11,9 +11,9 @@
 namespace thunderhead::testing {
 
 // A clock for tests of whole servers. A server needs a running clock because it limits some actions
-// to a number per second. The timeouts under test must be so long that they do not expire before
-// the test moves the time. Threads that wait by it notice a new time within a few milliseconds. Any
-// thread may use it.
+// to a number per second. A timeout under test must be so long that it does not expire before the
+// test moves the clock. Threads that wait for a deadline of this clock notice a new time within a
+// few milliseconds. Any thread may call its methods.
 class RunningTime : public base::TimeSource {
  public:
   Clock::time_point Now() const override {
@@ -24,8 +24,8 @@ class RunningTime : public base::TimeSource {
   Clock::time_point LookAgainAt(Clock::time_point deadline) const override {
     const std::lock_guard lock(mutex_);
     const Clock::time_point real = Clock::now();
-    // While the clock is stopped, a deadline that has passed on the real clock may still be in the
-    // future.
+    // While this clock is stopped, a deadline that has passed on the real clock may still be in the
+    // future on this clock.
     const Clock::time_point due = deadline - ahead_;
     const bool waits = stopped_at_.has_value() && *stopped_at_ < due;
     const Clock::time_point soon = real + std::chrono::milliseconds(2);

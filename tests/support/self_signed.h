@@ -5,7 +5,8 @@
 
 namespace thunderhead::testing {
 
-// Replaces both files, each atomically. Each certificate has a new key and the given serial number.
+// Writes a new certificate with a new key. Each of the two files is replaced atomically. `serial`
+// is the certificate's serial number.
 void WriteSelfSigned(const std::string& certificate_path, const std::string& key_path, long serial);
 
 }  // namespace thunderhead::testing

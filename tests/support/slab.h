@@ -1,5 +1,5 @@
-// A homogeneous box of one field, for tests with analytic results. The box touches every face of
-// its domain, so that its extinction is the same everywhere inside.
+// Makes clouds with analytically known results, for tests. A slab is a box that touches every face
+// of its domain, so that its extinction is the same everywhere inside.
 #pragma once
 
 #include <algorithm>
@@ -30,9 +30,10 @@ inline std::shared_ptr<const volume::HydrometeorFields> MakeSlab(
   return fields;
 }
 
-// Makes a layer in the middle of a domain that is `height_m` high. The layer is `cells_thick` cells
-// thick, with no cloud above and below. Extinction therefore rises linearly over one cell, as in a
-// storm. `optical_depth` is the vertical optical depth of the whole layer.
+// Makes a horizontal cloud layer in the middle of a domain that is `height_m` high. The layer is
+// `cells_thick` cells thick, and there is no cloud above or below it. At its edges the extinction
+// therefore rises linearly over one cell, as in a storm. `optical_depth` is the vertical optical
+// depth of the whole layer.
 inline std::shared_ptr<const volume::HydrometeorFields> MakeLayerInAir(double width_m,
                                                                        double height_m,
                                                                        int cells_thick,

@@ -1,5 +1,5 @@
-// Makes the programs of every test that draws strict (gl/strict_programs.h). It is linked into
-// these tests, so it applies however they are started.
+// Turns on strict shader programs (gl/strict_programs.h) in every test that draws. This file is
+// linked into these tests, so it applies whatever way they are started.
 #include <cstdlib>
 
 namespace {

@@ -71,7 +71,8 @@ class Writer {
     Succeed(nc_put_vara_double(id_, variable, &start, &count, file_.minutes.data()));
   }
 
-  // Writes a field. An empty `level_dimension` makes a two-dimensional field.
+  // Writes a field with the value of every cell. If `level_dimension` is empty, the field is
+  // two-dimensional.
   void Field(const std::string& name, const std::string& level_dimension, const std::string& units,
              const Value& value) {
     if (file_.omitted.contains(name)) return;

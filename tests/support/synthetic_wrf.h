@@ -1,6 +1,6 @@
 // Writes small files with known contents in WRF's output layout. A file is valid, or broken in one
-// chosen way. It calls netCDF-C without a lock, so tests must write their files before anything
-// reads.
+// chosen way. This code calls netCDF-C without a lock, so a test must write its files before
+// another thread reads.
 #pragma once
 
 #include <functional>
@@ -11,10 +11,11 @@
 
 namespace thunderhead::testing {
 
-// The end of a PROJ string for WRF's projections, whose places are on a sphere.
+// The end of a PROJ string for WRF's map projections, which assume a spherical Earth.
 inline constexpr char kSphereOfWrf[] = " +x_0=0 +y_0=0 +R=6370000 +units=m +no_defs";
 
-// A cell of the file: indices from west, south and bottom, and the record.
+// A cell of the file. The indices count from the west, the south and the bottom; `record` is the
+// index of the time.
 struct WrfCell {
   int x = 0;
   int y = 0;
@@ -22,7 +23,7 @@ struct WrfCell {
   int record = 0;
 };
 
-// A value that replaces the computed value, as stored in the file.
+// A value that is stored in the file instead of the computed value.
 struct StoredValue {
   std::string variable;
   WrfCell cell;
@@ -41,8 +42,9 @@ struct SyntheticWrf {
   double dy_m = 2000.0;
   double top_m = 4000.0;
   std::vector<std::string> times = {"2013-05-20_20:00:00"};
-  std::function<double(int x, int y)> terrain_m;             // empty: 0 everywhere
-  std::function<double(const WrfCell&)> interface_height_m;  // `level` counts interfaces
+  std::function<double(int x, int y)> terrain_m;  // height of the terrain; empty: 0 m everywhere
+  // Height of an interface between two layers; `level` counts interfaces from the bottom.
+  std::function<double(const WrfCell&)> interface_height_m;
 
   double pressure_Pa = 80'000.0;
   double potential_temperature_K = 310.0;
@@ -51,10 +53,11 @@ struct SyntheticWrf {
   // Mixing ratios by variable name. Other mixing ratios are not in the file.
   std::map<std::string, std::function<double(const WrfCell&)>> mixing_ratios;
 
-  // Two-dimensional fields in addition to HGT, XLAT and XLONG, by variable name, such as LU_INDEX.
+  // Two-dimensional fields in addition to HGT, XLAT and XLONG, by variable name. An example is
+  // LU_INDEX.
   std::map<std::string, std::function<double(const WrfCell&)>> columns;
-  std::string land_use_table;  // MMINLU; empty: not in the file
-  int land_use_classes = 0;    // NUM_LAND_CAT; 0: not in the file
+  std::string land_use_table;  // attribute MMINLU; empty: the file does not have it
+  int land_use_classes = 0;    // attribute NUM_LAND_CAT; 0: the file does not have it
 
   double latitude_deg =
       35.0;  // latitude of the south-west cell; it increases by 0.1 degrees per cell
@@ -62,26 +65,28 @@ struct SyntheticWrf {
   int map_projection = 1;
   std::map<std::string, double> numbers;  // additional global attributes, such as TRUELAT1
   int domain = 1;
-  int microphysics = 0;  // MP_PHYSICS; 0: not in the file
-  int hail_option = 0;   // HAIL_OPT; 0: not in the file
+  int microphysics = 0;  // attribute MP_PHYSICS; 0: the file does not have it
+  int hail_option = 0;   // attribute HAIL_OPT; 0: the file does not have it
   std::string simulation_start = "2013-05-20_12:00:00";
 
   WrfFormat format = WrfFormat::kNetcdf4;
-  std::set<std::string> omitted;    // variables and global attributes left out
-  std::set<std::string> unwritten;  // variables declared but never written
+  std::set<std::string> omitted;    // variables and global attributes that the file does not have
+  std::set<std::string> unwritten;  // variables that are declared but never written
   std::set<std::string> packed;     // variables stored as shorts with scale_factor and add_offset
-  std::set<std::string> one_level_short;      // variables with one level fewer
-  std::map<std::string, std::string> units;   // units attribute that replaces the right one
-  std::map<std::string, double> fill_values;  // _FillValue attribute
+  std::set<std::string> one_level_short;  // variables that have one level fewer than they should
+  // By variable name: a units attribute that replaces the correct one.
+  std::map<std::string, std::string> units;
+  std::map<std::string, double> fill_values;  // by variable name: the attribute _FillValue
   std::vector<StoredValue> stored_values;
-  std::vector<double> minutes;  // XTIME; empty: not in the file
+  std::vector<double> minutes;  // variable XTIME (minutes since the start of the run); empty: the
+                                // file does not have it
   int times_left_blank = 0;     // number of records at the end whose Times are not written yet
 };
 
-// Returns the height of an interface of `file`.
+// Returns the height of an interface between two layers of `file`; `cell.level` counts interfaces.
 double InterfaceHeight_m(const SyntheticWrf& file, const WrfCell& cell);
 
-// Writes `file` at `path`. Aborts the test program if that fails.
+// Writes `file` to `path`. Aborts the test program if writing fails.
 void WriteWrf(const SyntheticWrf& file, const std::string& path);
 
 }  // namespace thunderhead::testing

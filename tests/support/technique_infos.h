@@ -1,4 +1,5 @@
-// Descriptions of the techniques, for tests of messages, which do not link renderers.
+// Makes descriptions of the techniques for tests of messages. These tests do not link the code that
+// renders.
 #pragma once
 
 #include <string>
@@ -11,7 +12,8 @@
 
 namespace thunderhead::test_support {
 
-// Returns the techniques of scene::Technique that have their own message, in its order.
+// Returns descriptions of the techniques in scene::Technique that have their own Protobuf message,
+// in the order of scene::Technique.
 inline std::vector<scene::TechniqueInfo> TechniquesOfTheSchema() {
   std::vector<scene::TechniqueInfo> infos;
   const auto add = [&]<typename Kind>(std::type_identity<Kind>) {

@@ -1,5 +1,6 @@
-// Scenes along the axes that tests vary: a technique, a mode of the papers, a transport. Setting
-// one axis keeps the others, if the technique has them.
+// Functions that set what tests vary in a scene: its technique, its mode (a variant of the
+// technique that a paper describes) and its transport. Setting one of the three keeps the other
+// two, if the technique has them.
 #pragma once
 
 #include <optional>
@@ -10,15 +11,15 @@
 
 namespace thunderhead::test_support {
 
-// Returns a scene that uses the light volume with consistent transport, without detail and
-// path-traced correction.
+// Returns a scene that uses the light volume with consistent transport, without turbulent detail
+// and without path-traced correction.
 inline scene::Scene PlainScene() {
   scene::Scene scene;
   scene.rendering.technique = accuracy::Plain<scene::LightVolume>().settings();
   return scene;
 }
 
-// Plain techniques and modes as test parameters.
+// The techniques with plain settings (accuracy::Plain), and modes, as test parameters.
 inline constexpr auto kHalfAngle = accuracy::Plain<scene::HalfAngle>();
 inline constexpr auto kLightVolume = accuracy::Plain<scene::LightVolume>();
 inline constexpr auto kMetaball = accuracy::Plain<scene::Metaballs>();
@@ -29,7 +30,8 @@ inline constexpr accuracy::Mode kUniformPhase = accuracy::kUniformPhaseTransluce
 inline constexpr accuracy::Mode kPerFieldPhase = accuracy::kPerFieldPhaseTranslucentMode;
 inline constexpr accuracy::Mode kWithDetail = accuracy::kPerFieldPhaseDetailTranslucentMode;
 
-// Returns the plain technique; none for the reference and for techniques of extensions.
+// Returns the technique with plain settings; nothing for the reference and for techniques of server
+// extensions.
 inline std::optional<accuracy::PlainTechnique> PlainTechniqueOf(const scene::Technique& technique) {
   return accuracy::PlainTechniqueNamed(scene::NameOf(technique));
 }
@@ -47,7 +49,8 @@ inline void SetMode(scene::Technique* technique, const accuracy::Mode& mode) {
   *technique = accuracy::InMode(*technique, mode, TransportOf(*technique));
 }
 
-// Sets the transport of the translucent variant. A low-albedo mode stays a low-albedo mode.
+// Sets the transport of the translucent variant. The mode stays the same; a low-albedo mode, for
+// example, stays a low-albedo mode.
 inline void SetTransport(scene::Technique* technique, scene::Transport transport) {
   *technique = accuracy::InMode(*technique, accuracy::ModeOf(*technique), transport);
 }

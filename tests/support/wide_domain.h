@@ -1,5 +1,5 @@
-// A wide domain made of copies of one storm, like that of a regional model over a thousand
-// kilometres.
+// Makes a wide domain from copies of one storm. Its size is that of a regional model, about a
+// thousand kilometres.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,8 @@
 namespace thunderhead::support {
 
 // Repeats `storm` `across` by `along` times. Keeps only every `stride`-th column, and enlarges the
-// cells by the same factor. The terrain is level, and the statistics stay those of the storm.
+// cells by the same factor. The terrain is level. The fields' values are copied, so their
+// statistics stay those of the storm.
 inline std::shared_ptr<const volume::HydrometeorFields> WideDomain(
     const volume::HydrometeorFields& storm, int across, int along, int stride) {
   auto wide = std::make_shared<volume::HydrometeorFields>();
@@ -29,7 +30,8 @@ inline std::shared_ptr<const volume::HydrometeorFields> WideDomain(
     const std::size_t count = wide->grid.CellCount();
     tiled.concentration_kg_per_m3.assign(count, 0.0F);
     const bool sized = !field.sizes.Empty();
-    constexpr std::uint16_t kAnyRadius = 0x3c00;  // used where there are no particles
+    constexpr std::uint16_t kAnyRadius = 0x3c00;  // inverse radius (as a 16-bit float, 1.0) of
+                                                  // cells without particles, where it has no effect
     tiled.sizes.first_cell = 0;
     tiled.sizes.inverse_radius.assign(sized ? count : 0, kAnyRadius);
     std::size_t to = 0;

@@ -1,4 +1,4 @@
-// The kind of camera, its position and its direction, as numbers.
+// The tool "Camera": the kind of camera, and its position and direction as numbers.
 #include <imgui.h>
 
 #include "desktop/controls.h"

@@ -1,4 +1,5 @@
-// All parameters of the scene, from the messages' descriptors, in groups, with a search box.
+// The panel of all settings. It lists all parameters of the scene in groups, with a search box. The
+// list is made from the descriptors of the Protobuf messages.
 #include <imgui.h>
 #include <imgui_stdlib.h>
 

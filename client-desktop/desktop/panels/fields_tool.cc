@@ -1,5 +1,6 @@
 // One row for each field of the storm. It switches the field on or off, and sets its amount and the
-// source of its particle sizes. If the picture shows false colours, it also sets the colour.
+// source of its particle sizes. If the picture shows false colours, the row also sets the field's
+// colour.
 #include <imgui.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// The sun, set by the clock or by hand, and the air through which its light passes.
+// The tool "Light": the sun, set by the clock or by hand, and the air through which sunlight
+// passes.
 #include <imgui.h>
 
 #include "desktop/controls.h"

@@ -1,5 +1,5 @@
-// Quality, what the picture does not simulate, colours, exposure, sky and ground, the requested
-// accuracy, and the papers' modes.
+// The tool "Look": quality, the effects that the picture does not simulate, colours, exposure, sky
+// and ground, the required accuracy or speed, and the modes of papers.
 #include <imgui.h>
 
 #include <algorithm>
@@ -68,7 +68,8 @@ void DrawGoal(Ui& ui) {
       ChooseGoal(scene, static_cast<v1::Accuracy::LimitCase>(goal));
     });
   }
-  // Only the parameter of the chosen goal exists, so at most one of these controls is drawn.
+  // The scene has only the parameter of the chosen goal, so at most one of these two controls is
+  // drawn.
   Setting(ui, "accuracy.max_error", "Error");
   Setting(ui, "accuracy.max_milliseconds", "Time");
   if (ui.frame.accuracy().has_unmet()) Quiet(ui.frame.accuracy().unmet().message() + ".");
@@ -86,7 +87,8 @@ void DrawPapersModes(Ui& ui, v1::Preset preset) {
   }
 }
 
-// Draws settings that are stored under each technique's name. A technique may lack them.
+// Draws the settings that the scene stores in the message of its technique. Not every technique has
+// every setting.
 void DrawTechniqueSettings(Ui& ui) {
   const v1::Rendering& rendering = ui.state.scene.rendering();
   const auto* const field =

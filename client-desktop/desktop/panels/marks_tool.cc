@@ -1,4 +1,5 @@
-// The pen and the pointer. All people in the session see them.
+// The tool "Marks": the pen and the pointer. All people in the session see what they draw and point
+// at.
 #include <imgui.h>
 
 #include "absl/strings/str_cat.h"

@@ -1,5 +1,5 @@
-// Notices at the right, below the bar and next to an open panel. They show the picture's error, and
-// failures or events.
+// Notices at the right, below the top bar and next to an open panel. They show the picture's
+// estimated or measured error, failures and events.
 #include <imgui.h>
 
 #include <algorithm>

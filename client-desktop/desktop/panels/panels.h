@@ -1,5 +1,5 @@
-// The panels over the picture, one file each. Each panel is drawn where the layout says, and acts
-// on the Ui.
+// The panels over the picture; each has its own file. A panel is drawn at its position in Layout,
+// and shows and changes the Ui.
 #pragma once
 
 #include <imgui.h>
@@ -20,7 +20,7 @@ struct Layout {
   ImVec2 window;
 
   static Layout Of(float width, float height, float scale);
-  float panel_width() const { return kPanelPerTool * tool_width; }  // of a panel at the right
+  float panel_width() const { return kPanelPerTool * tool_width; }  // width of a panel at the right
   float tool_right() const { return 2.0F * margin + rail_width + tool_width; }
   // The panels lie below the bar and above the time line.
   float top() const { return 2.0F * margin + bar_height; }

@@ -1,4 +1,5 @@
-// The people in the session, who steers, what viewers may do, and the key for others to join.
+// The panel with the people in the session, who steers, what viewers may do, and the key with which
+// others can join.
 #include <imgui.h>
 
 #include <algorithm>

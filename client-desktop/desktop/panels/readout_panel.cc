@@ -1,4 +1,5 @@
-// Figures of the pictures: rate, latency, bytes, error, and the time of each stage.
+// The panel with statistics of the pictures: rate, latency, bytes, error, and the time of each
+// drawing stage.
 #include <imgui.h>
 
 #include "absl/strings/ascii.h"

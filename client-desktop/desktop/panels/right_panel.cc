@@ -1,4 +1,5 @@
-// The open panel at the right: storms, people, figures, every setting or the keys.
+// Draws the open panel at the right: storms, people, statistics of the pictures, every setting, or
+// the keys.
 #include <imgui.h>
 
 #include <array>
@@ -16,7 +17,7 @@ struct PanelText {
   const char* title;
   const char* key;
   void (*draw)(Ui&);
-  bool whole;  // the panel takes the whole height
+  bool whole;  // true if the panel has the whole free height
 };
 
 constexpr std::array<PanelText, 5> kPanels{{

@@ -1,5 +1,5 @@
-// The bar above the time line. It shows who steers, with one button to ask for control or give it.
-// It is hidden while this is of no interest.
+// The bar above the time line. It shows who steers, with one button to ask for control or to give
+// control. It is hidden if there is nothing to say about control.
 #include <imgui.h>
 
 #include <algorithm>
@@ -48,8 +48,8 @@ void ControlButton(Ui& ui) {
   }
 }
 
-// Draws the people who ask to steer, for the person who answers. As many as fit are in a line of
-// width `room`; the others are below.
+// Draws the people who ask to steer, with buttons to answer them. Only people who steer or present
+// see this. As many as fit are in a line of width `room`. The others are below.
 void Asking(Ui& ui, float room) {
   if (!ui.state.Steers() && !ui.state.Presents()) return;
   constexpr int kMaxShown = 3;

@@ -1,4 +1,4 @@
-// The list of times, and the playback speed.
+// The tool "Time": the list of the storm's times, and the playback speed.
 #include <imgui.h>
 
 #include <algorithm>

@@ -36,8 +36,9 @@ std::string LinkText(const Ui& ui) {
   return "";
 }
 
-// Draws the storm and the time. `right` is where the connection begins. If the room is limited, the
-// time has priority, then the title, then the lead time, then the run.
+// Draws the storm and the time. `right` is the x position at which the connection's text begins.
+// The title is shortened to leave room for the time. The lead time, and then the run, are drawn
+// only if they fit.
 void DrawStorm(Ui& ui, float right) {
   const auto& storm = ui.storms.storm;
   const bool known = storm.id() == ui.state.scene.storm_id() && !storm.id().empty();
@@ -114,8 +115,8 @@ void DrawTopBar(Ui& ui, const Layout& layout) {
     const float buttons =
         ButtonWidth(people) + ButtonWidth("Settings") + ButtonWidth("?") + 3.0F * gap;
     const float inside = size.x - ImGui::GetStyle().WindowPadding.x - buttons;
-    // The storm and the time have priority. If the room is too small, only the lamp shows the state
-    // of the connection.
+    // The storm and the time have priority. If the width is too small, only the coloured lamp shows
+    // the state of the connection.
     std::string link = LinkText(ui);
     constexpr float kStormRoom = 230.0F;
     if (inside - ButtonWidth("    " + link) < kStormRoom * ui.scale) link.clear();

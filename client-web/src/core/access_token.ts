@@ -6,7 +6,7 @@ const TOKEN_ITEM = "thunderhead.token";
 
 export class AccessToken {
   readonly #store: TextStore | undefined;
-  // This is used if the browser denies access to its storage.
+  // The token, used if the browser denies access to its storage.
   #token: string | undefined;
 
   constructor(store: TextStore | undefined) {
@@ -23,7 +23,7 @@ export class AccessToken {
     try {
       this.#store?.setItem(TOKEN_ITEM, this.#token);
     } catch {
-      // The storage is full, so the token lasts as long as the page.
+      // Writing fails if the storage is full. The token then lasts only as long as the page.
     }
   }
 }

@@ -1,6 +1,6 @@
 // Texts, scales and rings over a picture: title, valid time, legend, scale bar, degrees along the
-// horizon, distance rings. They are shapes in pixels of the picture, placed by the frame's own
-// camera. The window and files therefore draw the same shapes.
+// horizon, distance rings. The shapes are in pixels of the picture, and their positions follow from
+// the frame's own camera. The window and saved files draw the same shapes.
 import { type Pose, wrapDegrees } from "./camera";
 import { type PicturePoint, type Projection, project, projectLine, type Vec3 } from "./projection";
 import { compassPoint } from "./sun";
@@ -13,7 +13,7 @@ export interface AnnotationChoice {
   readonly scale: boolean;
   readonly compass: boolean;
   readonly rings: boolean;
-  // Applies only to files. The window always shows the marks.
+  // Whether saved files contain the people's marks. The window always shows them.
   readonly marks: boolean;
 }
 
@@ -36,7 +36,7 @@ export interface LegendEntry {
 export interface Annotated {
   readonly widthPx: number;
   readonly heightPx: number;
-  // Pixels at each side that something else covers.
+  // Number of pixels at each side of the picture that other parts of the page cover.
   readonly inset: Readonly<Record<"left" | "top" | "right" | "bottom", number>>;
   // Height of the letters.
   readonly letterPx: number;
@@ -73,13 +73,13 @@ export type Shape =
 // Height of the letters in a window.
 export const LETTER_PX = 13;
 
-// Returns the height of the letters in an image file. Their relative size is the same as in a
-// window, of a desktop or of a phone.
+// Returns the height of the letters in an image file. Relative to the picture, the letters are as
+// large as in a window on a desktop or a phone.
 export function letterPxOf(widthPx: number, heightPx: number): number {
   return Math.max(11, Math.round(Math.min(heightPx / 45, widthPx / 30)));
 }
 
-// Returns the maximum width of a text in the picture. A longer text is squeezed.
+// Returns the maximum width of a text in the picture. A wider text is compressed to this width.
 export function widthForPx({ x, anchor }: TextShape, widthPx: number, letterPx: number): number {
   const [left, right] = [x - letterPx, widthPx - letterPx - x];
   if (anchor === "start") return right;
@@ -144,8 +144,8 @@ function at(picture: Annotated, { x, y }: PicturePoint): readonly [number, numbe
   return [((x + 1) / 2) * picture.widthPx, ((1 - y) / 2) * picture.heightPx];
 }
 
-// Returns the legend. It continues in another column at the left if a low picture has too little
-// height for all rows.
+// Returns the legend. If the picture is too low for all rows, the legend continues in another
+// column to the left.
 function legend({ legend: entries, inset, letterPx, widthPx, heightPx }: Annotated): Shape[] {
   const rowPx = 1.5 * letterPx;
   const roomPx = heightPx - inset.top - inset.bottom - 0.5 * letterPx;
@@ -206,7 +206,7 @@ function azimuthName(deg: number): string {
 }
 
 // Returns a line along the horizon with a tick every few degrees, for a camera on the ground. The
-// names are below the line if they do not collide with the valid time there.
+// names of the ticks are below the line, unless they would overlap the valid time there.
 function horizon(picture: Annotated): Shape[] {
   const { projection, pose, widthPx, heightPx, inset, letterPx } = picture;
   if (pose?.kind !== "spotter") return [];
@@ -228,7 +228,7 @@ function horizon(picture: Annotated): Shape[] {
   const lowestY = Math.max(...ticks.map(({ y }) => y));
   const namesAreBelow = lowestY + 1.6 * letterPx < timeLineY(picture) - 1.3 * letterPx;
   const awayPx = (namesAreBelow ? 1.6 : -0.8) * letterPx;
-  // Half of the width of a name.
+  // Half of the width of a tick's name.
   const marginPx = 1.5 * letterPx;
   return [
     { kind: "line", points: ticks.map(({ x, y }) => [x, y] as const) },

@@ -1,5 +1,6 @@
-// Exponential back-off with full jitter: each delay is random below a bound that doubles. A class
-// of clients therefore does not reconnect all at once.
+// Exponential back-off with full jitter. Each delay is random below a bound, and the bound doubles
+// after each attempt. Many clients that lose their server together therefore do not reconnect all
+// at once.
 
 // The random delay is added even to a delay that the server requested, because the server requests
 // the same delay from all clients.
@@ -10,7 +11,7 @@ export class BackOff {
   readonly #random: () => number;
   #attempts = 0;
 
-  // Makes a back-off. `random` returns a number from 0 to 1.
+  // `random` returns a number from 0 to 1.
   constructor(random: () => number = Math.random) {
     this.#random = random;
   }
@@ -19,8 +20,8 @@ export class BackOff {
     return this.#attempts;
   }
 
-  // Returns the delay before the next attempt. It is not below `leastMs`, which the server asked
-  // for.
+  // Returns the delay before the next attempt. The delay is at least `leastMs`, the minimum delay
+  // that the server asked for.
   next(leastMs = 0): number {
     const bound = Math.min(LONGEST_BOUND_MS, FIRST_BOUND_MS * 2 ** Math.min(this.#attempts, 16));
     this.#attempts += 1;

@@ -1,6 +1,6 @@
-// Camera motions: how a drag in pixels moves and turns each kind of camera.
-// The world axes are those of proto/thunderhead/v1/scene.proto: x east, y north, z up, azimuth
-// clockwise from north.
+// Camera motions: how a drag in pixels moves and turns each kind of camera. The world axes are
+// those of proto/thunderhead/v1/scene.proto. The x axis points east, y north and z up; the azimuth
+// is clockwise from north.
 import { create } from "@bufbuild/protobuf";
 import {
   type Camera,
@@ -76,7 +76,7 @@ const DEGREES_PER_HEIGHT = 180;
 // Distance that a spotter walks for a drag across the picture's whole height.
 const WALK_PER_HEIGHT_M = 20_000;
 
-// Height of the image frame behind a spotter's lens.
+// Height of the film frame of 36 x 24 mm to which a spotter's focal length refers.
 const FRAME_HEIGHT_MM = 24;
 
 // Returns the pose of a camera whose values the server has filled in; undefined while some are
@@ -162,7 +162,8 @@ function spotterMessage(pose: SpotterPose) {
   };
 }
 
-// Returns a camera of that kind with no values set, so that the server frames the whole storm.
+// Returns a camera of that kind with no values set. The server then chooses values that show the
+// whole storm.
 export function homeCamera(kind: CameraKind = "orbit"): Camera {
   return create(CameraSchema, { kind: { case: kind, value: {} } });
 }
@@ -181,7 +182,8 @@ export function wrapDegrees(degrees: number): number {
 }
 
 // Turns or moves the camera so that the scene follows the pointer. An orbit camera turns around its
-// target, a spotter turns its head, and a map moves. Pixels count right and down.
+// target, a spotter turns its head, and a map moves. Pixel distances are positive to the right and
+// down.
 export function drag<P extends Pose>(
   pose: P,
   rightPx: number,
@@ -218,9 +220,9 @@ export function turn(pose: Pose, azimuthDeg: number, elevationDeg: number): Pose
   };
 }
 
-// Moves the camera perpendicular to the line of sight, so that points at the target's distance
-// follow the pointer. A spotter walks instead: left for a drag to the right, backwards for a drag
-// up.
+// Moves an orbit camera or a map perpendicular to the line of sight, so that points at the target's
+// distance follow the pointer. A spotter walks instead: to the left for a drag to the right, and
+// backwards for a drag up.
 export function pan<P extends Pose>(
   pose: P,
   rightPx: number,

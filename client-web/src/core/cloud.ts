@@ -14,7 +14,7 @@ import { type Limits, limitsOf } from "./limits";
 export interface CloudDraft {
   readonly preset: Preset;
   readonly seed: number;
-  // False: the preset determines all values below.
+  // If false, the preset determines all values below.
   readonly ownShape: boolean;
   readonly octaves: number;
   readonly persistence: number;
@@ -23,8 +23,9 @@ export interface CloudDraft {
   readonly threshold: number;
   readonly dynamics: number;
   readonly waterKgPerM3: number;
-  // One ellipsoid a line, as numbers separated by commas. They are center x, y, z, radii x, y, z in
-  // m, and optionally rotation about x, y, z in degrees. Empty: the preset's ellipsoids.
+  // A text with one ellipsoid a line, given as numbers separated by commas. The numbers are the
+  // centre's x, y, z and the radii along x, y, z in metres, and optionally the rotations about x,
+  // y, z in degrees. An empty text means the preset's ellipsoids.
   readonly ellipsoids: string;
 }
 

@@ -1,5 +1,5 @@
-// The second picture of a comparison. It shows the same view at another time, of another storm or
-// run, or with earlier settings.
+// The second picture of a comparison, called B; the first picture, called A, shows the session. B
+// shows the same view as A, but at another time, of another storm or run, or with earlier settings.
 
 import type { Camera, Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { StormDescription } from "../gen/thunderhead/v1/storm_pb";
@@ -9,11 +9,12 @@ import { withCamera, withOutput, withRun, withStorm } from "./scene";
 import { formatElapsed } from "./units";
 
 export interface ComparisonChoice {
-  // Absent: the storm that is shown.
+  // If undefined, B shows A's storm.
   readonly stormId: string | undefined;
-  // Absent: the time that is shown. For another storm it is the time with the nearest date.
+  // If undefined, B shows A's time. If B shows another storm, it then shows the time with the
+  // nearest date.
   readonly timeIndex: number | undefined;
-  // Settings that B keeps while those of A change; absent: B uses A's settings.
+  // Settings that B keeps while the settings of A change. If undefined, B uses A's settings.
   readonly settings: Scene | undefined;
   readonly layout: "swipe" | "side";
 }
@@ -65,7 +66,8 @@ export function timeOfB(
   return nearestTime(validTime, times) ?? { index: sameNumber(index, times), awayS: undefined };
 }
 
-// Returns a sentence about B's time; undefined if it is A's time or was chosen explicitly.
+// Returns a sentence about how far B's time is from A's time. Returns undefined if the two times
+// are the same, or if B's time was chosen explicitly.
 export function awayInWords({ awayS }: TimeOfB): string | undefined {
   if (awayS === 0) return undefined;
   if (awayS === undefined)

@@ -1,12 +1,12 @@
-// Restores control to a person who steered when the connection was lost. Each presence after the
-// page has joined again decides. The server may not have noticed the loss yet, so the old
-// connection may appear to steer for some seconds.
+// Restores control to a person who steered when the connection was lost. After the page has joined
+// again, it decides at each presence message (the list of people and who steers). The server may
+// notice the loss late, so the old connection may appear to steer for some seconds.
 import { type Presence, Role } from "../gen/thunderhead/v1/interact_pb";
 
 export type Resumption =
   // The page should take control again.
   | "takes"
-  // Control is expected back; edits are kept until then.
+  // The page may still get control back, so it keeps its unsent edits.
   | "waits"
   // Another viewer steers.
   | "lost";
@@ -18,8 +18,8 @@ export interface Before {
 }
 
 export class ControlResumption {
-  // This person's ids in the connections since it steered. The set is empty unless control is
-  // expected back.
+  // This person's viewer ids in all connections since this person last steered. The set is empty if
+  // this person does not expect to get control back.
   readonly #ownIds = new Set<bigint>();
   // The people who were present when the connection was lost.
   #known: ReadonlySet<bigint> = new Set();
@@ -33,27 +33,28 @@ export class ControlResumption {
     this.#takes = true;
   }
 
-  // Returns what to do after a presence in which this person does not steer.
+  // Returns what the page should do after a presence message in which this person does not steer.
   of(presence: Presence, presents: boolean): Resumption {
     if (this.#ownIds.size === 0 || !this.#awaits(presence, presents)) {
       this.end();
       return "lost";
     }
-    // Takes control only once. The request may cross with an older presence, and a second request
-    // could take control from a colleague who got it afterwards.
+    // The page takes control only once. An older presence message may arrive after the request was
+    // sent. A second request could then take control from a colleague who got it meanwhile.
     const takes = presents && this.#takes;
     this.#takes = false;
     return takes ? "takes" : "waits";
   }
 
-  // Ends the resumption because this person steers, or no longer expects to.
+  // Ends the resumption, because this person steers again or no longer expects to steer.
   end(): void {
     this.#ownIds.clear();
   }
 
-  // Returns true if no viewer steers, or if this person's lost connection still steers. Also
-  // returns true if a new presenter got control because that presenter reached a restarted server
-  // first. A colleague who was present before and took control keeps it.
+  // Returns true if this person may still get control back. This is so if no viewer steers, or if
+  // this person's lost connection still steers. It is also so if a presenter who was not present
+  // before steers, because that presenter reached a restarted server first. A colleague who was
+  // present before and took control keeps it.
   #awaits({ steeringViewerId, people }: Presence, presents: boolean): boolean {
     if (steeringViewerId === 0n || this.#ownIds.has(steeringViewerId)) return true;
     const steerer = people.find(({ viewerId }) => viewerId === steeringViewerId);

@@ -5,8 +5,9 @@ import { secondsBetween } from "./moment";
 
 type Placed = Pick<StormDescription, "grid" | "latitudeDeg" | "longitudeDeg">;
 
-// Returns the same text for all storms of one domain; empty if the storm is unknown. Heights are
-// ignored because a model's layers may move.
+// Returns a text that identifies the storm's domain; an empty text if the storm is unknown. Storms
+// of the same domain have the same text. Heights are ignored because the heights of a model's
+// layers may differ between runs.
 export function domainOf(storm: Placed | undefined): string {
   const grid = storm?.grid;
   if (storm === undefined || grid === undefined) return "";

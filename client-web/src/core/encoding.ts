@@ -1,4 +1,4 @@
-// The encoding of a frame's picture.
+// Functions about the encoding of a frame's picture (JPEG, video or AVIF).
 import type { Frame } from "../gen/thunderhead/v1/frame_pb";
 
 export type Encoding = "jpeg" | "vp9" | "avif";
@@ -14,7 +14,7 @@ export function pictureBytes(frame: Encoded): number {
   return frame[encodingOf(frame)].byteLength;
 }
 
-// Returns the encoding's name for people. `whyNoVideo` is that of PageState.
+// Returns the encoding's name for people. Pass PageState.whyNoVideo as `whyNoVideo`.
 export function nameOfEncoding(encoding: Encoding, whyNoVideo: string | undefined): string {
   if (encoding === "vp9") return "VP9 video";
   const name = encoding === "avif" ? "AVIF, 10 bits" : "JPEG";

@@ -1,8 +1,8 @@
-// Decodes frames and paints them, and drops old ones. One frame is being decoded, one waits to be
-// decoded, and one waits to be painted. A newer frame replaces a waiting one. The page therefore
-// holds at most three frames, and latency cannot grow however slow decoding or painting is. The
-// newest frame is the one that arrived last, whatever its number. The server may send a frame
-// again, for example in another size or when a hidden page becomes visible.
+// Decodes frames and paints them, and drops old frames. At most one frame is being decoded, one
+// waits to be decoded, and one waits to be painted. A newer frame replaces a waiting frame. The
+// page therefore holds at most three frames, and latency cannot grow however slow decoding or
+// painting is. The newest frame is the last to arrive, whatever its sequence number. The server may
+// send a frame again, for example in another size or when a hidden page becomes visible.
 
 export interface PipelineSteps<F, P> {
   decode(frame: F): Promise<P>;

@@ -1,12 +1,14 @@
-// The times of a storm that are in the server's memory, as stretches of a time line.
+// Converts the list of a storm's times that are in the server's memory to shaded sections of the
+// time line.
 
 export interface Stretch {
-  // Positions from 0 to 1.
+  // Positions on the time line: 0 is the first time and 1 the last.
   readonly from: number;
   readonly to: number;
 }
 
-// Returns one stretch for each run of adjacent times. A time extends halfway to its neighbours.
+// Returns one section for each group of adjacent times. A time's section extends halfway to the
+// neighbouring times.
 export function stretchesOf(indices: readonly number[], count: number): Stretch[] {
   const last = count - 1;
   const within = indices.filter((index) => index <= last);

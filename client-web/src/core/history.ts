@@ -1,6 +1,6 @@
-// Undo and redo of changes made on this page. A step contains what it changed, and leaves the rest
-// of the scene as it is by then, because other viewers may have changed it. Edits that closely
-// follow each other, such as those of a slider or a drag, are one step.
+// Undo and redo of changes made on this page. Undoing a step restores only the values that the step
+// changed, because other viewers may have changed the rest of the scene meanwhile. Edits that
+// closely follow each other, such as those of a slider or a drag, are one step.
 import { computed, type Signal, signal } from "@preact/signals-core";
 import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
 import { type Change, changeBetween, withChange } from "./scene_change";
@@ -40,7 +40,7 @@ export class History {
         : [...past.slice(0, -1), [...last, change]];
   }
 
-  // Returns the edit that undoes the last step; undefined if there is none.
+  // Returns the edit that undoes the last step; undefined if no step can be undone.
   undo(): ((scene: Scene) => Scene) | undefined {
     const step = this.#move(this.#past, this.#future);
     return (
@@ -56,7 +56,7 @@ export class History {
     );
   }
 
-  // Forgets the steps, because they belong to another storm's scene.
+  // Forgets all steps. This is needed when another storm is shown.
   clear(): void {
     this.#past.value = [];
     this.#future.value = [];

@@ -1,11 +1,11 @@
-// Arrows and letters as lines that a pen draws. A mark is one line for the session. A repeated
-// corner means that the pen is lifted to the next corner.
+// Arrows and letters as lines that a pen draws. The server stores each mark as a single line. A
+// corner that occurs twice in succession means that the pen is lifted and moves to the next corner.
 import type { StrokePoint } from "./stroke";
 
 type Strokes = readonly (readonly StrokePoint[])[];
 
-// The strokes of each letter on a grid, 0 to 4 to the right and 0 to 6 down, with two digits a
-// point. A space lifts the pen.
+// The strokes of each letter on a grid: x is 0 to 4 to the right, and y is 0 to 6 down. Each point
+// is written as two digits, x and y. A space separates two strokes.
 const LETTERS: Readonly<Record<string, string>> = {
   A: "062046 1434",
   B: "0600304142331303 3344453606",
@@ -71,14 +71,14 @@ const HEIGHT = 6;
 const LETTER_WIDTH = 4;
 // Maximum number of corners of a mark that the session accepts.
 const MAX_CORNERS = 256;
-// Maximum number of simple letters. Other letters use more of the corners.
+// Maximum number of letters in a mark. Letters with many corners reach MAX_CORNERS earlier.
 export const MAX_LETTERS = 40;
 
 interface Written {
   // The strokes of each letter, as in LETTERS.
   readonly letters: readonly string[];
   readonly unknown: readonly string[];
-  // The part of the text that exceeds the corners of one mark.
+  // The end of the text that does not fit into the MAX_CORNERS corners of one mark.
   readonly tooLong: string;
 }
 

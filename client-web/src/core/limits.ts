@@ -45,7 +45,7 @@ export function limitsOf(field: DescField): Limits {
   };
 }
 
-// Returns the value of an absent bool; false if it depends on the storm.
+// Returns the value that an absent bool stands for; false if this value depends on the storm.
 export function defaultOnOf(field: DescField): boolean {
   if (field.fieldKind !== "scalar" || field.scalar !== ScalarType.BOOL) {
     throw new Error(`${field.toString()} has no default in the schema`);
@@ -77,8 +77,9 @@ export function mostItemsOf(field: DescField): number {
   return most;
 }
 
-// Returns the nearest value that the server accepts. A 32-bit float near a limit can round to a
-// value outside (0.99 becomes 0.9900000095), so the limit itself is rounded inwards.
+// Returns the nearest value that the server accepts. A 32-bit float near a limit can be rounded to
+// a value outside the limits (0.99 becomes 0.9900000095). The limit itself is therefore rounded to
+// the nearest 32-bit float inside the limits.
 export function clampToLimits(value: number, limits: Limits): number {
   if (Number.isNaN(value)) return limits.defaultValue ?? limits.minimum;
   const rounded = limits.integer ? Math.round(value) : value;
@@ -99,8 +100,8 @@ function neighbourTowards(single: number, direction: -1 | 1): number {
   return view.getFloat32(0);
 }
 
-// A logarithmic slider that may reach zero starts at its end divided by this number. Its first
-// position is zero.
+// A logarithmic slider whose minimum is zero spans this ratio: its smallest positive value is its
+// maximum divided by this number. Its first position is zero.
 const LOGARITHMIC_SPAN = 1e5;
 
 function logarithmicFloor(limits: Limits): number {
@@ -116,7 +117,8 @@ export function positionOfValue(value: number, limits: Limits): number {
   return share(Math.log(value / floor) / Math.log(maximum / floor));
 }
 
-// Returns the value at a slider position, 0 to 1. Between the ends it is rounded to three digits.
+// Returns the value at a slider position, 0 to 1. Between the ends, the value is rounded to three
+// digits.
 export function valueAtPosition(position: number, limits: Limits): number {
   const { minimum, maximum } = limits;
   const along = share(position);

@@ -10,14 +10,14 @@ export interface Extent {
 }
 
 export interface MapPlace {
-  // Fractions of the map's width and height, from its north-west corner.
+  // Position on the map as fractions of its width and height, from its north-west corner.
   readonly right: number;
   readonly down: number;
 }
 
-// Width of the margin around the domain, as a fraction of its size.
+// Width of the margin around the domain, as a fraction of the domain's size.
 const MARGIN = 0.06;
-// A camera farther away than this many domains is shown at the edge.
+// A camera whose distance exceeds this number times the domain's size is shown at the map's edge.
 const FARTHEST = 1.2;
 
 // Returns the domain with a margin. The area includes the camera's position if that is not far from

@@ -1,5 +1,5 @@
-// Splits marks in a picture into strokes, which are ink or straight. The window and files draw the
-// same strokes.
+// Splits a mark, which people draw over the picture, into strokes that are either hand-drawn ink or
+// straight lines. The window and saved files draw the same strokes.
 import { getStroke } from "perfect-freehand";
 import { parted } from "./lettering";
 import { type PicturePoint, type Projection, projectLine, type Vec3 } from "./projection";

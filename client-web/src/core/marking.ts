@@ -1,5 +1,5 @@
 // The tools that show something to all people in the session: a pointer, a pen, an arrow and a
-// text. They convert places in the picture to rays.
+// text. The tools convert points of the picture to rays from the camera.
 import { signal } from "@preact/signals-core";
 import { arrowStrokes, joined, letterStrokes, ringStroke, wordsWidthPx } from "./lettering";
 import { type Later, Newest } from "./newest";
@@ -14,12 +14,12 @@ export interface PictureTool {
   press(place: StrokePoint): void;
   drag(place: StrokePoint): void;
   release(): void;
-  // Cancels the stroke because the gesture became another one.
+  // Cancels the stroke, because the gesture has become a different one, such as a pinch.
   cancel(): void;
   leave(): void;
 }
 
-// The picture on the screen, and the distance of its middle from the eye.
+// The picture on the screen, and the distance from the camera to what the picture's middle shows.
 export interface MarkedPicture {
   readonly box: Box;
   readonly projection: Projection;
@@ -28,7 +28,7 @@ export interface MarkedPicture {
 
 export interface MarkingSteps {
   picture(): MarkedPicture | undefined;
-  // Sends the pointer's ray. Without a ray the pointer is removed.
+  // Sends the pointer's ray to the session; undefined removes the pointer.
   point(ray: WorldRay | undefined): void;
   // Sends a mark. Returns the message's id; undefined if it could not be sent.
   addMark(rays: readonly WorldRay[]): bigint | undefined;
@@ -45,7 +45,7 @@ const LETTER_PX = 22;
 const EDGE_PX = 4;
 const RING_PX = 60;
 const ARROW_PX = 70;
-// A shorter stroke counts as a click.
+// A stroke shorter than this counts as a click.
 const SHORTEST_STROKE_PX = 4;
 
 // A mark that was sent.
@@ -117,7 +117,7 @@ export class Marking {
     };
   }
 
-  // Returns the active tool; undefined for the camera.
+  // Returns the active tool; undefined if the pointer moves the camera.
   tool(): PictureTool | undefined {
     if (!this.#session.mayMark.peek()) return undefined;
     const tool = this.#session.tool.peek();
@@ -125,8 +125,8 @@ export class Marking {
     return { pointer: this.#pointer, pen: this.#pen, arrow: this.#arrow, text: this.#text }[tool];
   }
 
-  // Writes the text to the right of a place, or centred on it. A text that would leave the picture
-  // is moved. A text that is wider than the picture is written smaller.
+  // Writes the text to the right of a place, or centred on the place. A text that would extend
+  // beyond the picture is moved into it. A text that is wider than the picture is written smaller.
   write({ left, top }: StrokePoint, from: "start" | "middle" = "start"): void {
     const words = this.words.peek().trim();
     const box = this.#steps.picture()?.box;
@@ -143,8 +143,8 @@ export class Marking {
     this.#addMark(joined(letterStrokes(words, place, heightPx)));
   }
 
-  // Makes a mark without a mouse. It is a ring around the middle of the picture, an arrow to the
-  // middle, the text on it, or the pointer on it.
+  // Makes a mark without a mouse, in the middle of the picture. The tool determines the mark: a
+  // ring around the middle, an arrow to the middle, the text, or the pointer.
   markMiddle(tool: Exclude<Tool, "camera">): void {
     const box = this.#steps.picture()?.box;
     if (box === undefined) return;
@@ -180,7 +180,8 @@ export class Marking {
     pendingMarks.value = [...others, waiting];
     const withdraw = this.#steps.later(afterMs, () => {
       this.#resting.delete(withdraw);
-      // After joining again a page has no pending marks, so it must not resend this one.
+      // When the page joins again it drops its pending marks, so this mark must then not be sent
+      // again.
       if (pendingMarks.peek().includes(waiting)) this.#send({ ...mark, pending: waiting });
     });
     this.#resting.add(withdraw);

@@ -1,14 +1,15 @@
-// A valid time for people: the day, the clock in UTC, and the local clock if the storm has a place.
+// A valid time as texts for people: the day, the time of day in UTC, and the local time if the
+// storm has geographical coordinates.
 
 import { formatElapsed } from "./units";
 
 export interface Moment {
-  // A date like "2013-05-20", or "day 1" for an idealised run, which starts in year 1. It is empty
-  // if only the elapsed time is known.
+  // A date like "2013-05-20", or "day 1" for an idealised run, which starts in year 1. The text is
+  // empty if only the elapsed time is known.
   readonly date: string;
   // A time like "20:00Z".
   readonly clock: string;
-  // A time like "15:00 CDT"; undefined if there is no place or no date.
+  // A time like "15:00 CDT"; undefined if the storm has no geographical coordinates or no date.
   readonly local: string | undefined;
 }
 
@@ -25,7 +26,7 @@ export function instantOf(validTime: string): Date | undefined {
 }
 
 // Returns the seconds between two valid times of the same run, idealised or not; undefined if one
-// is unknown.
+// of the times cannot be parsed.
 export function secondsBetween(from: string, to: string): number | undefined {
   const [start, end] = [from, to].map((each) => {
     const match = VALID_TIME.exec(each);
@@ -67,12 +68,12 @@ export function localClock(instant: Date, zone: string | undefined): string | un
   }).format(instant);
 }
 
-// Returns the nautical time zone of a longitude, without daylight-saving time. It is used until the
-// zone of a place is known.
+// Returns the nautical time zone of a longitude, without daylight-saving time. The page uses this
+// zone until the real zone of the place is known.
 export function zoneOfLongitude(longitudeDeg: number): string {
   const hours = Math.round(longitudeDeg / 15);
   if (hours === 0) return "Etc/GMT";
-  // The names in the database count westwards.
+  // In the database's names Etc/GMT±N, positive numbers are west of Greenwich.
   return `Etc/GMT${hours > 0 ? "-" : "+"}${Math.abs(hours)}`;
 }
 

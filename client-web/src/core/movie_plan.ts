@@ -10,7 +10,7 @@ export interface MovieDraft {
   readonly from: number;
   readonly to: number;
   readonly picturesPerSecond: number;
-  // Used for the path along the named views.
+  // Number of pictures from one named view to the next. Used only if `alongViews` is true.
   readonly picturesPerView: number;
   readonly alongViews: boolean;
   readonly widthPx: number;
@@ -47,8 +47,8 @@ interface PathPoint {
   readonly timeIndex: number;
 }
 
-// Returns a path from view to view, with slow beginnings and ends. If the kind of camera changes,
-// the picture cuts.
+// Returns a camera path from view to view. The camera accelerates after each view and slows down
+// before the next. Between views with different kinds of cameras the movie cuts instead.
 export function cameraPath(views: readonly NamedView[], perView: number): PathPoint[] {
   const stops = views.flatMap(({ camera, timeIndex }) => {
     const pose = poseOfCamera(camera);
@@ -85,7 +85,7 @@ function mix(from: unknown, to: unknown, share: number, isAngle: boolean): unkno
   if (Array.isArray(from))
     return from.map((each, at) => mix(each, (to as unknown[])[at], share, false));
   if (typeof from !== "number" || typeof to !== "number") return from;
-  // Angles turn along the shorter arc.
+  // An angle changes along the shorter arc.
   const change = isAngle ? ((((to - from) % 360) + 540) % 360) - 180 : to - from;
   return from + share * change;
 }

@@ -1,6 +1,6 @@
-// Movies whose pictures are drawn by jobs on the server, at most one for each storm. They are
-// remembered for this tab. After a reload the page continues with the movie of the storm that it
-// shows.
+// A list of the movies whose pictures are drawn by jobs on the server, at most one movie for each
+// storm. The browser keeps the list for this tab. After a reload the page continues the movie of
+// the storm that it shows.
 import type { MovieDraft } from "./movie_plan";
 import type { TextStore } from "./own_keys";
 
@@ -21,8 +21,8 @@ export class RememberedMovies {
     this.#store = store;
   }
 
-  // Remembers the movie. Returns false if the browser stores nothing, in which case a reload loses
-  // the movie.
+  // Remembers the movie. Returns false if the browser denies access to its storage, in which case a
+  // reload loses the movie.
   remember(work: MovieWork): boolean {
     return this.#set(work.stormId, JSON.stringify(work));
   }

@@ -1,4 +1,4 @@
-// Cameras with names, kept for each domain in the browser's storage.
+// A list of cameras with names for each storm domain, kept in the browser's storage.
 import { fromJson, toJson } from "@bufbuild/protobuf";
 import { signal } from "@preact/signals-core";
 import { type Camera, CameraSchema } from "../gen/thunderhead/v1/scene_pb";
@@ -12,7 +12,7 @@ export interface NamedView {
   // Valid time at which the view was kept. The indices of a storm's times may change.
   readonly validTime: string;
   readonly timeIndex: number;
-  // A small picture as a data URL; may be empty.
+  // A small picture of the view as a data URL; may be empty.
   readonly picture: string;
 }
 
@@ -24,23 +24,24 @@ export class NamedViews {
   readonly #domain: () => string;
   readonly all = signal<readonly NamedView[]>([]);
 
-  // Makes the list of views. `domain` returns the domain that is shown. It is empty while the
-  // domain is unknown, and there are no views then.
+  // `domain` returns the domain that is shown. It returns an empty text while the domain is
+  // unknown; the list then has no views.
   constructor(storage: TextStore | undefined, domain: () => string) {
     this.#storage = storage;
     this.#domain = domain;
   }
 
-  // Loads the views because another domain is shown, or because another tab has kept or removed a
-  // view.
+  // Loads the views from the browser's storage. Call this when another domain is shown, or when
+  // another tab has kept or removed a view.
   load(): void {
     const domain = this.#domain();
     const stored = domain === "" ? [] : this.#read()[domain];
     this.all.value = (Array.isArray(stored) ? stored.flatMap(viewOf) : []).reduce(withView, []);
   }
 
-  // Keeps a view. A duplicate name gets a number. Only the last MAX_VIEWS are kept. Returns false
-  // if the view will not outlast the page, because it could not be stored.
+  // Keeps a view. A number is appended to a name that is already used. Only the last MAX_VIEWS
+  // views are kept. Returns false if the view could not be stored, so that it is lost with the
+  // page.
   keep(view: NamedView): boolean {
     return this.#write(withView(this.all.peek(), view).slice(-MAX_VIEWS));
   }
@@ -49,7 +50,7 @@ export class NamedViews {
     this.#write(this.all.peek().filter((view) => view.name !== name));
   }
 
-  // Returns the views with their times as indices into these times.
+  // Returns the views. Each view's time index refers to `times`.
   at(times: readonly StormTime[]): readonly NamedView[] {
     return this.all.value.map((view) => ({
       ...view,
@@ -73,7 +74,7 @@ export class NamedViews {
       this.#storage?.setItem(VIEWS_ITEM, JSON.stringify(all));
       return this.#storage !== undefined;
     } catch {
-      // The storage is full.
+      // Writing fails if the storage is full.
       return false;
     }
   }

@@ -56,8 +56,8 @@ const TECHNIQUE_NAMES: Readonly<Record<string, string>> = {
   [ReferenceSchema.typeName]: "Monte Carlo reference",
 };
 
-// Returns a technique's display name. `name` is that of TechniqueDescription. Techniques of server
-// extensions have no other name.
+// Returns a technique's display name. Pass TechniqueDescription.name as `name`. A technique of a
+// server extension has no other name, so `name` is returned.
 export function nameOfTechnique(name: string): string {
   const field = RenderingSchema.fields.find((each) => each.name === name);
   return TECHNIQUE_NAMES[field?.message?.typeName ?? ""] ?? name;

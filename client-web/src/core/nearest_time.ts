@@ -11,8 +11,8 @@ export interface NearestTime {
   readonly awayS: number;
 }
 
-// Runs that are farther apart than this have no times in common. An example is an idealised and a
-// real run.
+// Maximum difference in seconds at which a date counts as near. Runs that are farther apart, such
+// as an idealised and a real run, have no times in common.
 const FARTHEST_S = 2 * 86_400;
 
 // Returns the nearest time; undefined if no date is near or the dates cannot be compared.
@@ -26,12 +26,13 @@ export function nearestTime(validTime: string, times: readonly Dated[]): Nearest
   return nearest;
 }
 
-// Returns the same index, limited to the available times.
+// Returns `index`, limited to the indices of `times`.
 export function sameNumber(index: number, times: readonly Dated[]): number {
   return Math.min(index, Math.max(0, times.length - 1));
 }
 
-// Returns the index of the nearest date. If there is none, returns the same index.
+// Returns the index of the time with the nearest date. If no date is near, returns `index`, limited
+// to the indices of `times`.
 export function timeLike(validTime: string, index: number, times: readonly Dated[]): number {
   return nearestTime(validTime, times)?.index ?? sameNumber(index, times);
 }

@@ -1,4 +1,5 @@
-// Sends the newest of many values, at most one an interval. The last value is always sent.
+// Sends values at a limited rate: at most one value per interval, always the newest. The last value
+// is always sent.
 
 // Calls `callback` after the delay. Returns a function that cancels the call.
 export type Later = (delayMs: number, callback: () => void) => () => void;

@@ -1,6 +1,6 @@
-// The browser storage that the page uses. It holds the person's name and, by viewer key, the
-// presenter keys of this browser's sessions. Only the presenter's link contains a presenter key in
-// its address, and the page removes it from the address at once.
+// Keeps the person's name and the presenter keys of this browser's sessions in the browser's
+// storage. Each presenter key is found by its session's viewer key. A presenter's link contains a
+// presenter key, which the page removes from the address at once.
 
 // The part of the DOM's Storage that the page uses.
 export interface TextStore {
@@ -17,7 +17,7 @@ type Entry = readonly [viewerKey: string, presenterKey: string];
 
 export class OwnKeys {
   readonly #store: TextStore | undefined;
-  // These are used if the browser denies access to its storage.
+  // These members are used if the browser denies access to its storage.
   #name = "";
   #entries: readonly Entry[] = [];
 
@@ -71,12 +71,14 @@ export class OwnKeys {
     try {
       this.#store?.setItem(item, text);
     } catch {
-      // The storage is full or denied, so the text lasts as long as the page.
+      // Writing fails if the storage is full or denied. The text then lasts only as long as the
+      // page.
     }
   }
 }
 
-// The length is counted in code points, as on the server.
+// Returns the name without surrounding spaces, cut to LONGEST_NAME code points. The server also
+// counts code points.
 export function trimmedName(name: string): string {
   return [...name.trim()].slice(0, LONGEST_NAME).join("");
 }

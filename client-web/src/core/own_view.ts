@@ -1,5 +1,5 @@
-// The own view of a person who looks around: its camera, and the messages that begin, move and end
-// it.
+// The own view of a person who looks around. This class holds its camera, and sends the messages
+// that begin, move and end the view.
 import { type Signal, signal } from "@preact/signals-core";
 import type { Camera } from "../gen/thunderhead/v1/scene_pb";
 import { cameraOfPose, type Pose, poseOfCamera } from "./camera";
@@ -32,8 +32,7 @@ export class OwnView {
     return this.#pose.value;
   }
 
-  // Moves the camera relative to its own pose. When looking around begins, moves it relative to the
-  // pose that is shown.
+  // Moves the own view's camera. If there is no own view yet, begins it at the pose that is shown.
   move(motion: (pose: Pose) => Pose, shown: Pose | undefined): void {
     const from = this.active.peek() ? (this.#pose.peek() ?? shown) : shown;
     if (from !== undefined) this.show(cameraOfPose(motion(from)));
@@ -50,7 +49,8 @@ export class OwnView {
     this.#steps.detach(camera);
   }
 
-  // Takes the pose that the server chose for a camera without values.
+  // Reports the camera of a frame. Its pose is used if the own view's camera has no values, so that
+  // the server has chosen them.
   placed(camera: Camera | undefined): void {
     if (this.#pose.peek() === undefined) this.#pose.value = poseOfCamera(camera);
   }
@@ -70,8 +70,7 @@ export class OwnView {
     this.#pose.value = undefined;
   }
 
-  // Begins the view again after the page has joined again, because the server does not know about
-  // it.
+  // Begins the own view again after the page has joined again, because the server has forgotten it.
   resume(): void {
     if (this.active.peek() && this.#camera !== undefined) this.#steps.detach(this.#camera);
   }

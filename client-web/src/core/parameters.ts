@@ -1,6 +1,6 @@
-// Every parameter of a scene, read from the messages' descriptors. A field that is added to
-// scene.proto appears in this list without a change of code. Values are read and changed by their
-// path of fields.
+// The list of every parameter of a scene, made from the descriptors of the Protobuf messages. A
+// field that is added to scene.proto appears in this list without a change of code. A parameter's
+// value is found by the path of fields that leads to it.
 import {
   create,
   type DescField,
@@ -14,7 +14,7 @@ import { enumeratorInWords } from "./names";
 
 interface Step {
   readonly field: DescField;
-  // Index in a list.
+  // Index of the element if the field is a list.
   readonly index?: number;
 }
 
@@ -46,8 +46,8 @@ export interface ParameterOption {
 
 type Fields = Record<string, unknown>;
 
-// Returns the parameters that the scene has now. They include only the set case of a oneof, and
-// each element of a list.
+// Returns the parameters that the scene has now. A oneof contributes only the case that is set, and
+// a list contributes each of its elements.
 export function parametersOf(scene: Scene): Parameter[] {
   return SceneSchema.fields.flatMap((field) => ofField(scene, field, [], "", field.name));
 }
@@ -122,7 +122,7 @@ function nameOf(field: string): string {
   return words.charAt(0).toUpperCase() + words.slice(1);
 }
 
-// Returns the parameter's value; undefined if it is absent.
+// Returns the parameter's value; undefined if the scene has no such value.
 export function parameterValue(scene: Scene, { steps }: Parameter): unknown {
   let at: unknown = scene;
   for (const step of steps) {
@@ -140,7 +140,8 @@ function valueAt(owner: Message, { field, index }: Step): unknown {
   return index === undefined ? value : (value as unknown[])[index];
 }
 
-// Returns the scene with another value of the parameter. Undefined leaves the value to the server.
+// Returns the scene with another value of the parameter. If `value` is undefined, the server
+// chooses the value.
 export function withParameter(scene: Scene, { steps }: Parameter, value: unknown): Scene {
   return changed(scene, steps, value) as Scene;
 }

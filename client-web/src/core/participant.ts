@@ -6,7 +6,7 @@ const PARTICIPANT_ITEM = "thunderhead.participant";
 
 export class Participant {
   readonly #store: TextStore | undefined;
-  // This is used if the browser denies access to its storage.
+  // The session's key and the participant key, used if the browser denies access to its storage.
   #kept: string | undefined;
 
   constructor(store: TextStore | undefined) {
@@ -20,13 +20,13 @@ export class Participant {
     return session === sessionKey ? (key ?? "") : "";
   }
 
-  // Keeps the key of this session, and forgets that of any other session.
+  // Keeps the participant key of this session, and forgets the key of any other session.
   keep(sessionKey: string, participantKey: string): void {
     this.#kept = `${sessionKey} ${participantKey}`;
     try {
       this.#store?.setItem(PARTICIPANT_ITEM, this.#kept);
     } catch {
-      // The storage is full, so the key lasts as long as the page.
+      // Writing fails if the storage is full. The key then lasts only as long as the page.
     }
   }
 }

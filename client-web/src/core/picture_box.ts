@@ -24,7 +24,7 @@ export function pictureBox(canvas: Size, picture: Size): Box {
   };
 }
 
-// Returns the point in the picture; undefined outside the picture.
+// Converts a position in the window to a point of the picture; undefined outside the picture.
 export function picturePointAt(box: Box, left: number, top: number): PicturePoint | undefined {
   const x = (2 * (left - box.left)) / box.width - 1;
   const y = 1 - (2 * (top - box.top)) / box.height;

@@ -2,8 +2,8 @@
 import type { AccuracyReport } from "../gen/thunderhead/v1/frame_pb";
 import { formatNumber } from "./units";
 
-// Returns a text like "measured: 8.1 to 9.4 %". Before the error is measured, it names the source
-// of the estimate instead.
+// Returns a text like "measured: 8.1 to 9.4 %", the interval of the measured error. Before the
+// error is measured, the text says that the error comes from a table.
 export function errorSource(report: AccuracyReport): string {
   if (report.errorLow === undefined || report.errorHigh === undefined)
     return "from a table, until measured";

@@ -19,7 +19,7 @@ export class Playback {
   readonly #steps: PlaybackSteps;
   readonly #playing = signal(false);
   readonly timesPerSecond: Signal<number> = signal(2);
-  // False: playback stops at the last time.
+  // If false, playback stops at the last time.
   readonly loops: Signal<boolean> = signal(true);
   #lastStepMs: number | undefined;
   #withdrawPaint: (() => void) | undefined;
@@ -51,8 +51,8 @@ export class Playback {
     this.#withdrawPaint = undefined;
   }
 
-  // Goes one time forward or back, and wraps around at the ends. Stops playback so that this time
-  // stays.
+  // Shows the time `by` steps later, and wraps around at the ends. Stops playback so that this time
+  // stays on the screen.
   step(by: number): void {
     this.pause();
     this.#step(by, false);

@@ -1,8 +1,9 @@
-// A text inside a PNG file, in an iTXt chunk (PNG specification, third edition, 11.3.3.4). Programs
-// that do not know this text keep it or skip it.
+// Writes and reads a text inside a PNG file, in an iTXt chunk (PNG specification, third edition,
+// 11.3.3.4). Programs that do not know the text's keyword keep or skip the chunk.
 
 const SIGNATURE = [137, 80, 78, 71, 13, 10, 26, 10];
-// Size of a chunk's length and type, which precede its data, and of its checksum, which follows.
+// Number of bytes of a chunk in addition to its data: the length and the type before the data, and
+// the checksum after the data.
 const CHUNK_BYTES = 12;
 
 // Returns the file with the text inserted before its first image data; undefined if it is not a
@@ -22,7 +23,7 @@ export function withPngText(
   return result;
 }
 
-// Returns the text with that keyword; undefined if there is none or the file is not a PNG.
+// Returns the text with that keyword; undefined if the file has no such text or is not a PNG.
 export function pngText(file: Uint8Array, keyword: string): string | undefined {
   for (const { type, data } of chunksOf(file) ?? []) {
     if (type !== "iTXt") continue;

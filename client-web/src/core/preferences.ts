@@ -1,4 +1,5 @@
-// A person's preferences, kept in the browser's storage: units, and the texts over the picture.
+// Keeps a person's preferences in the browser's storage: the units of length, and the annotations
+// over the picture.
 import type { Signal } from "@preact/signals-core";
 import { type AnnotationChoice, FIRST_ANNOTATIONS } from "./annotations";
 import type { TextStore } from "./own_keys";
@@ -23,7 +24,8 @@ export function loadPreferences(store: TextStore | undefined, { units, annotatio
   };
 }
 
-// Stores the signals' values. It reads the signals, so an effect must call it.
+// Stores the signals' values. Call this function in an effect, so that it runs again when a signal
+// changes.
 export function keepPreferences(
   store: TextStore | undefined,
   { units, annotations }: Preferred,
@@ -32,7 +34,8 @@ export function keepPreferences(
   try {
     store?.setItem(ITEM, text);
   } catch {
-    // The storage is full or denied, so the choices last as long as the page.
+    // Writing fails if the storage is full or denied. The choices then last only as long as the
+    // page.
   }
 }
 

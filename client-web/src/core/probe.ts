@@ -1,9 +1,10 @@
-// The place that a click on the picture found, and its displacement to the place of the next click.
+// The result of a probe: the place in the storm at which a person clicked, and the displacement
+// from one such place to the next.
 import type { ProbeRayResponse, RayPlace } from "../gen/thunderhead/v1/probe_pb";
 import type { WorldRay } from "./projection";
 
 export interface Probed {
-  // The picture that was clicked. In a comparison, B is the picture that is compared with A.
+  // The picture that was clicked. In a comparison, A shows the session and B is the second picture.
   readonly picture: "A" | "B";
   readonly stormId: string;
   readonly ray: WorldRay;
@@ -12,7 +13,7 @@ export interface Probed {
 
 // The displacement from one place to another.
 export interface Displacement {
-  // Distance along the ground.
+  // Horizontal distance.
   readonly distanceM: number;
   readonly heightM: number;
   // Azimuth clockwise from north.
@@ -34,7 +35,8 @@ export function displacementBetween(
   };
 }
 
-// Returns the display unit of a mixing ratio, a mass or an extinction.
+// Returns the unit in which a field with these `units` (a mixing ratio, a mass per volume or an
+// extinction) is shown.
 export function readable(units: string): { readonly factor: number; readonly symbol: string } {
   switch (units) {
     case "kg kg-1":

@@ -1,6 +1,6 @@
-// Projects world points into a picture by Frame.view, and returns the rays of its pixels. The
-// coordinate x is -1 at the picture's left edge and 1 at the right edge. The coordinate y is -1 at
-// the bottom and 1 at the top.
+// Projects world points into a picture, and returns the rays through its points. The projection
+// uses Frame.view, the camera of the shown frame. Picture coordinates: x is -1 at the left edge and
+// 1 at the right edge; y is -1 at the bottom and 1 at the top.
 import type { View } from "../gen/thunderhead/v1/frame_pb";
 
 export type Vec3 = readonly [number, number, number];
@@ -23,7 +23,7 @@ export interface WorldRay {
   readonly direction: Vec3;
 }
 
-// Minimum depth in front of a perspective eye. Nearer points have no position in the picture.
+// Minimum depth in front of a perspective camera. Nearer points have no position in the picture.
 const NEAR_M = 1;
 
 export function projectionOf(view: View | undefined): Projection | undefined {
@@ -50,14 +50,14 @@ export function pointOnRay({ originM, direction }: WorldRay, times: number): Vec
   return add(originM, scaled(direction, times));
 }
 
-// Returns the position in the picture; undefined for a point behind the eye.
+// Returns a point's position in the picture; undefined for a point behind the camera.
 export function project(projection: Projection, pointM: Vec3): PicturePoint | undefined {
   const depthM = depthOf(projection, pointM);
   if (!projection.parallel && depthM < NEAR_M) return undefined;
   return place(projection, pointM, depthM);
 }
 
-// Returns the visible parts of a line, without those behind the eye.
+// Returns the parts of a line that are in front of the camera.
 export function projectLine(projection: Projection, pointsM: readonly Vec3[]): PicturePoint[][] {
   if (projection.parallel) return [pointsM.map((point) => place(projection, point, 1))];
   const parts: PicturePoint[][] = [];

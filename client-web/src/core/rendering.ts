@@ -1,5 +1,6 @@
-// Scene.rendering is a technique with its own settings, or a preset that stands for one. This file
-// reads a technique's settings from its message in the schema.
+// Reads and changes Scene.rendering, which is either a technique with its settings or a preset that
+// stands for a technique with settings. The names of the settings come from the technique's
+// Protobuf message.
 import {
   create,
   type DescField,
@@ -23,13 +24,13 @@ import {
 import type { PresetDescription, TechniqueDescription } from "../gen/thunderhead/v1/thunderhead_pb";
 import { defaultChoiceOf, defaultOnOf, type Limits, limitsOf } from "./limits";
 
-// The settings of any one technique.
+// The settings message of a technique.
 export type Settings = Exclude<Rendering["technique"]["value"], Preset | undefined>;
 
 type FieldsOf<T extends Message> = Omit<T, keyof Message>;
 
-// Settings that several techniques share. Undefined means the technique's default, or a setting
-// that the technique does not have.
+// Settings that several techniques share. A setting is undefined if it has the technique's default,
+// or if the technique does not have it.
 export type SharedSettings = Partial<FieldsOf<LightVolume>>;
 
 export type SettingsChange = SharedSettings &
@@ -37,15 +38,15 @@ export type SettingsChange = SharedSettings &
   Partial<FieldsOf<Cumulus>> &
   Partial<FieldsOf<OtherTechnique>>;
 
-// The presets that trade speed for accuracy, fastest first. The other presets are the papers'
-// settings.
+// The quality presets, which trade speed for accuracy, fastest first. The other presets reproduce
+// the settings of papers.
 export const QUALITY_PRESETS: readonly Preset[] = [Preset.FAST, Preset.BALANCED, Preset.TRUE];
 
 const TECHNIQUES: readonly (DescField & { readonly message: DescMessage })[] =
   RenderingSchema.fields.flatMap((field) => (field.fieldKind === "message" ? [field] : []));
 
-// Settings that are kept when the technique changes. The other settings are reset because each
-// technique has different defaults for them.
+// Settings that are kept when the technique changes. The other settings are reset, because their
+// defaults differ between techniques.
 const KEPT = ["slices", "thetaFDeg", "perFieldPhase", "falseColors"] as const;
 
 function fieldOf(settings: Settings) {
@@ -129,8 +130,8 @@ export function withSettings(rendering: Rendering, change: SettingsChange): Rend
   return settings === undefined ? rendering : renderingOf({ ...settings, ...change } as Settings);
 }
 
-// Changes the transport, and lets the server decide when to trace paths, because path tracing does
-// not correct every transport.
+// Changes the transport. Also clears `traced_light`, so that the server decides when to trace
+// paths, because path tracing does not correct every transport.
 export function withTransport(rendering: Rendering, transport: Transport): Rendering {
   const settings = settingsOf(rendering);
   const traces = settings !== undefined && hasSetting(settings, "tracedLight");

@@ -1,6 +1,6 @@
-// Matches the scenes that were sent with the frames that were shown. It gives the latency from
-// sending a scene to showing that scene or a later one. It also gives the storm's time that is on
-// the screen.
+// Matches the scenes that were sent with the frames that were shown, by the scenes' revisions. The
+// result is the latency, from sending a scene to showing a frame of that or a later scene. Another
+// result is the time of the storm that is on the screen.
 
 interface Sent {
   readonly sentAtMs: number;
@@ -8,7 +8,7 @@ interface Sent {
   revision: bigint | undefined;
 }
 
-// Maximum number of sent scenes that wait for their frame. Older ones are dropped without a
+// Maximum number of sent scenes that wait for their frame. Older scenes are dropped and give no
 // latency.
 const MAX_OPEN = 64;
 const MAX_LATENCIES = 60;
@@ -35,7 +35,7 @@ export class RevisionLedger {
     return this.#latenciesMs[this.#latenciesMs.length - 1];
   }
 
-  // Forgets all revisions, because they restart with a new session.
+  // Forgets all revisions. A new session numbers its revisions from the start again.
   startSession(): void {
     this.#open = [];
     this.#recentlyShown = [];
@@ -56,8 +56,8 @@ export class RevisionLedger {
     };
   }
 
-  // Records a scene that another viewer has set. It counts for the shown time but not for the
-  // latency.
+  // Records a scene that another viewer has set. The scene counts for `shownTimeIndex` but not for
+  // the latency.
   told(timeIndex: number, revision: bigint): void {
     this.#open.push({ sentAtMs: Number.POSITIVE_INFINITY, timeIndex, revision });
     if (this.#open.length > MAX_OPEN) this.#open.shift();
@@ -71,7 +71,8 @@ export class RevisionLedger {
     this.settled(revision);
   }
 
-  // Records that this revision is finished: it was shown, or it has a problem instead of a frame.
+  // Records that this revision is finished: its frame was shown, or the server reported a problem
+  // instead of a frame.
   settled(revision: bigint): void {
     if (revision > this.#newestShown) this.#newestShown = revision;
     this.#close();
@@ -82,8 +83,8 @@ export class RevisionLedger {
     this.#close();
   }
 
-  // Closes the scenes that were shown. Both accepted() and shown() call it, because a frame may
-  // arrive before the response that names its revision.
+  // Removes the scenes whose frames were shown from the waiting scenes. Both accepted() and shown()
+  // call this, because a frame may arrive before the response that names its revision.
   #close(): void {
     const stillOpen: Sent[] = [];
     for (const entry of this.#open) {

@@ -1,5 +1,6 @@
-// Scenes as immutable values. A change returns a new scene that shares the unchanged parts, so
-// `===` detects changes. Absent values mean their defaults, as in proto/thunderhead/v1/scene.proto.
+// Functions that change a scene. Scenes are immutable: a change returns a new scene that shares the
+// unchanged parts, so `===` detects changes. An absent value stands for its default in
+// proto/thunderhead/v1/scene.proto.
 import {
   create,
   type DescMessage,
@@ -112,7 +113,7 @@ export const DEFAULTS = {
 
 export const MAX_LIGHTS = mostItemsOf(SceneSchema.field.lights);
 
-// The fields of a message, all optional.
+// A change of a message: new values for some of its fields.
 type Change<T extends Message> = Partial<Omit<T, keyof Message>>;
 
 function changed<T extends Message>(message: T, change: Change<T>): T {
@@ -137,8 +138,8 @@ export function withSunClock(scene: Scene, change: Change<SunClock>): Scene {
   });
 }
 
-// Sets all lights except the sun. It replaces the whole list, so that applying an edit twice has no
-// further effect.
+// Sets all lights except the sun. The whole list is replaced, so that applying the same edit twice
+// has no further effect.
 export function withLights(scene: Scene, lights: readonly DirectionalLight[]): Scene {
   return changed(scene, { lights: [...lights] });
 }
@@ -181,8 +182,9 @@ function isSame<T extends DescMessage>(
   return a !== undefined && equals(schema, a, b);
 }
 
-// Replaces technique and settings by a preset, which also determines the source of the particle
-// sizes. Drops an accuracy goal, for which the server would choose other settings.
+// Replaces the rendering technique and its settings by a preset. The preset also determines where
+// the particle sizes come from. Removes a goal (a required accuracy or speed), because the server
+// would choose other settings to reach the goal.
 export function withPreset(scene: Scene, preset: Preset): Scene {
   return changed(scene, {
     rendering: renderingOfPreset(preset),
@@ -234,16 +236,16 @@ export function withDetail(scene: Scene, hydrometeor: Hydrometeor, change: Chang
   return withField(scene, hydrometeor, { detail });
 }
 
-// Shows one of another storm's times. Drops the settings that belong to the old storm: fields,
-// time, camera and clock. Keeps light, rendering and picture.
+// Shows a time of another storm. Clears the fields, the camera and the sun's clock, because they
+// belong to the old storm. Keeps light, rendering and picture settings.
 export function withStorm(scene: Scene, stormId: string, timeIndex: number): Scene {
   const next = changed(scene, { stormId, timeIndex, camera: undefined, fields: [] });
   return next.sun?.clock === undefined ? next : withSun(next, { clock: undefined });
 }
 
 // Shows a time of another run of the same model, from the same place and with the same settings.
-// The new run's first time is `laterS` later. The sun's clock counts from the first time, so it
-// moves by the same amount.
+// The new run's first time is `laterS` seconds after the first time of the old run. The sun's clock
+// is set for the first time, so it moves by the same amount.
 export function withRun(scene: Scene, stormId: string, timeIndex: number, laterS: number): Scene {
   const next = changed(scene, { stormId, timeIndex });
   const first = Date.parse(scene.sun?.clock?.dateTime ?? "");
@@ -251,14 +253,15 @@ export function withRun(scene: Scene, stormId: string, timeIndex: number, laterS
   return withSunClock(next, { dateTime: firstDateTime(new Date(first), -laterS) });
 }
 
-// Returns the source of a field's particle sizes. A given radius has priority, then the field's own
-// choice, then the scene's.
+// Returns the source of a field's particle sizes. A radius that the field sets has priority, then
+// the field's own source, then the scene's source.
 function sizesOf(scene: Scene, set: FieldParameters | undefined): ParticleSizes {
   if (set?.radiusM !== undefined) return ParticleSizes.GIVEN;
   return set?.sizes || scene.particleSizes || ParticleSizes.MODEL;
 }
 
-// Sets the source of all particle sizes, and clears that of each single field.
+// Sets the source of the particle sizes for all fields, and clears the sources that were set for
+// single fields.
 export function withParticleSizes(scene: Scene, particleSizes: ParticleSizes): Scene {
   return changed(scene, {
     particleSizes,
@@ -268,7 +271,8 @@ export function withParticleSizes(scene: Scene, particleSizes: ParticleSizes): S
   });
 }
 
-// Sets the source of one field's particle sizes. `radiusM` applies to given sizes.
+// Sets the source of one field's particle sizes. `radiusM` is used only if the source is
+// ParticleSizes.GIVEN.
 export function withFieldSizes(
   scene: Scene,
   hydrometeor: Hydrometeor,
@@ -279,7 +283,8 @@ export function withFieldSizes(
   return withField(scene, hydrometeor, { sizes, radiusM: given ? radiusM : undefined });
 }
 
-// Returns a field's settings as drawn: the scene's, or the defaults of the storm's description.
+// Returns the settings with which a field is drawn. A setting that the scene does not have gets the
+// default from the storm's description.
 export function effectiveField(
   scene: Scene,
   hydrometeor: Hydrometeor,
@@ -327,7 +332,8 @@ export function outputSize(
   };
 }
 
-// A serialized scene for addresses, in the URL-safe base64 of RFC 4648, section 5.
+// Characters of the URL-safe base64 (RFC 4648, section 5) in which a serialized scene is written
+// into an address.
 const URL_ALPHABET = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
 
 export function sceneToUrlText(scene: Scene): string {

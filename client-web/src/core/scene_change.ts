@@ -1,5 +1,5 @@
-// The difference of two messages, member by member. It can be applied to a third message that may
-// differ elsewhere.
+// Computes the difference between two messages, and applies it to a third message. Values outside
+// the difference stay as they are in the third message.
 import { create, type DescMessage, equals, type Message } from "@bufbuild/protobuf";
 
 export type Side = "before" | "after";
@@ -21,7 +21,7 @@ interface Parts {
   readonly parts: ReadonlyMap<string, Change>;
 }
 
-// Lists with the same number of messages on both sides.
+// A change of a list of messages that has the same length before and after.
 interface Items {
   readonly kind: "list";
   readonly items: readonly (Change | undefined)[];
@@ -37,7 +37,7 @@ export function changeBetween(
   return changeOfMessage(schema, membersOf(before), membersOf(after));
 }
 
-// Returns the message with the changed members as they are on that side.
+// Returns the message with the changed members as they are in the change's `before` or `after`.
 export function withChange<T extends Message>(message: T, change: Change, side: Side): T {
   return applied(message, change, side) as T;
 }
@@ -89,7 +89,7 @@ function applied(present: unknown, change: Change, side: Side): unknown {
     case "value":
       return change[side];
     case "list":
-      // A list with a different length was changed by another viewer.
+      // If the list has a different length, another viewer has changed it. It then stays unchanged.
       if (!Array.isArray(present) || present.length !== change.items.length) return present;
       return present.map((item, at) => {
         const part = change.items[at];

@@ -1,4 +1,4 @@
-// A scene as a file: JSON by protobuf's mapping, alone or inside a PNG.
+// Reads and writes a scene as a file: Protobuf JSON, either alone or inside a PNG.
 import { fromJson, toJson } from "@bufbuild/protobuf";
 import { type Scene, SceneSchema } from "../gen/thunderhead/v1/scene_pb";
 import { pngText, withPngText } from "./png_text";

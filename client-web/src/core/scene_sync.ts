@@ -1,7 +1,7 @@
 // Synchronizes the page's scene with the session's. Edits are functions of a scene. They are
-// applied to the page's scene at once. They are then sent as scenes, at most one a screen refresh
-// and only a few in flight. If another viewer has changed the session's scene meanwhile, the edits
-// are applied again to that scene.
+// applied to the page's scene at once. They are then sent as whole scenes, at most one scene per
+// screen refresh, of which at most a few are unanswered. If another viewer has changed the
+// session's scene meanwhile, the edits are applied again to that scene.
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 import type { Later } from "./newest";
 
@@ -9,26 +9,25 @@ export type Edit = (scene: Scene) => Scene;
 
 export type SceneVerdict =
   | { readonly kind: "taken"; readonly revision: bigint }
-  // The edits were made to another scene than the session's current one.
+  // The scene is based on an older revision than the session's current scene.
   | { readonly kind: "stale" }
   // The server has too much to do. It may accept the same scene later.
   | { readonly kind: "busy"; readonly message: string }
   | { readonly kind: "refused"; readonly message: string };
 
 export interface SyncSteps {
-  // Returns the page's scene, with every edit.
+  // Returns the page's scene, which includes every edit.
   scene(): Scene;
   // Shows a scene in the controls.
   adopt(scene: Scene): void;
-  // Takes the server's completed version of the page's own scene.
+  // Passes on the page's own scene, in which the server has filled in the defaults.
   complete(scene: Scene): void;
-  // Reports that another viewer's scene is in force.
+  // Reports that the session's scene is now one that another viewer has set.
   changedByOthers(scene: Scene, revision: bigint): void;
   // Sends a scene. Rejects if the connection is lost.
   send(scene: Scene, expectedRevision: bigint): Promise<SceneVerdict>;
   taken(): void;
-  // Reports that the revision on which page and server agree may have changed. See
-  // SceneSync.agreed.
+  // Reports that the value of SceneSync.agreed may have changed.
   agreed?(revision: bigint | undefined): void;
   // Reports that a scene was refused, or that it will be sent again because the server is busy.
   refused(message: string): void;
@@ -48,22 +47,22 @@ export class SceneSync {
   #edits: Edit[] = [];
   // Number of unanswered scenes.
   #inFlight = 0;
-  // Edits were made after the last scene was sent.
+  // True if edits were made after the last scene was sent.
   #unsent = false;
-  // The revision that the last sent scene gets if all in flight are accepted.
+  // The revision that the last sent scene will get if the server accepts all scenes in flight.
   #awaited = -1n;
-  // One scene was refused, so those in flight will be refused, too. Nothing is sent before all are
-  // answered.
+  // True after a scene was refused, because the scenes in flight will then be refused, too. Nothing
+  // is sent before the server has answered all of them.
   #drains = false;
   #revision = -1n;
   // The newest revision whose scene the server has sent with its defaults filled in.
   #completed = -1n;
   #told: { readonly scene: Scene; readonly revision: bigint } | undefined;
   #mayEdit = false;
-  // Nothing is sent before the newer scene is known.
+  // True after a refusal as stale. Nothing is sent before the server's newer scene is known.
   #stale = false;
   #openingEdits = 0;
-  // Another viewer steers. This is called when edits are discarded.
+  // Set while another viewer steers. The function is called when edits are discarded.
   #onLost: (() => void) | undefined;
   #withdrawPaint: (() => void) | undefined;
   #withdrawRest: (() => void) | undefined;
@@ -93,7 +92,8 @@ export class SceneSync {
   edited(edit: Edit): void {
     this.#edits.push(edit);
     this.#unsent = true;
-    // A person may edit before the controls are disabled because another viewer steers.
+    // Another viewer may already steer while the controls are not disabled yet. The edit is then
+    // discarded.
     this.#giveUp();
     this.#schedule();
     this.#tellAgreed();
@@ -153,7 +153,7 @@ export class SceneSync {
     this.#onLost();
   }
 
-  // Takes the session's scene from the server.
+  // Reports the session's scene and its revision, as the server sent them.
   told(scene: Scene, revision: bigint): void {
     this.#told = { scene, revision };
     if (revision > this.#completed) this.#completed = revision;
@@ -220,12 +220,13 @@ export class SceneSync {
     try {
       const verdict = await this.#steps.send(scene, expected);
       this.#inFlight -= 1;
-      // An earlier refusal already gave the reason.
+      // This scene was stale only because an earlier scene was refused.
       const follows = this.#drains && verdict.kind === "stale";
       if (verdict.kind !== "taken" || verdict.revision !== expected + 1n) this.#drains = true;
       if (!follows) this.#judge(verdict, sent, scene);
     } catch {
-      // The connection is lost. allow() is called after it is restored.
+      // send() rejects if the connection is lost. allow() is called after the connection is
+      // restored.
       this.#inFlight -= 1;
       this.#drains = true;
       this.#onLost = undefined;
@@ -257,8 +258,8 @@ export class SceneSync {
         // The newer scene is already known. It is adopted once all scenes are answered.
         if (this.#told !== undefined && this.#told.revision > this.#revision) break;
         this.#stale = true;
-        // No newer scene arrives if the change that was in flight cannot be drawn, so the wait is
-        // limited.
+        // The newer scene may never arrive, for example if the server cannot draw it. The wait is
+        // therefore limited.
         this.#withdrawRest ??= this.#steps.later(STALE_REST_MS, () => {
           this.#withdrawRest = undefined;
           this.#stale = false;

@@ -1,5 +1,5 @@
-// The session as signals: the people, who steers, the rules, pointers and marks, and what they mean
-// for the person at this page. It does not depend on network or document.
+// The session as signals: the people, who steers, the rules, pointers and marks, and what this
+// person may therefore do. This file does not depend on network or document.
 import { create } from "@bufbuild/protobuf";
 import { batch, computed, signal } from "@preact/signals-core";
 import {
@@ -34,7 +34,7 @@ export type Tool = "camera" | "pointer" | "pen" | "arrow" | "text";
 export class SessionState {
   // The key for viewers' links; undefined before there is a session.
   readonly viewerKey = signal<string | undefined>(undefined);
-  // Why the session is over; undefined while it is not.
+  // Why the session has ended; undefined while the session exists.
   readonly ended = signal<string | undefined>(undefined);
   // This person. The value is kept while the connection is lost.
   readonly me = signal<Me | undefined>(undefined);
@@ -59,7 +59,7 @@ export class SessionState {
   readonly steerer = computed(() => this.person(this.steeringId.value));
   readonly asking = computed(() => this.people.value.filter((person) => person.asksControl));
   readonly iAsk = computed(() => this.asking.value.some((person) => this.isMe(person.viewerId)));
-  // True if no viewer steers and a viewer who asks gets control at once.
+  // True if a viewer who asks for control gets it at once, because no viewer steers.
   readonly steersWhoAsks = computed(() => {
     const { viewersMaySteer, controlLocked } = this.rules.value;
     const kept = this.presenterAway.value || this.awaited.value !== undefined;
@@ -84,17 +84,19 @@ export class SessionState {
       ).length,
   );
   readonly alone = computed(() => this.people.value.length < 2);
-  // True if nothing about who steers needs to be shown.
+  // True if this person is the only one in the session, presents and steers, so that the page need
+  // not show who steers.
   readonly steersAlone = computed(
     () => this.steering.value && this.presenting.value && this.alone.value,
   );
-  // True if the bar is needed, to show who steers or that this page shows an own view.
+  // True if the session bar is needed. The bar shows who steers, or that this page shows an own
+  // view.
   readonly hasBar = computed(
     () => this.me.value !== undefined && (this.lookingAround.value || !this.steersAlone.value),
   );
 
-  // Why the scene cannot be changed from here; undefined if it can. A scene may be changed before
-  // the session exists.
+  // Why this page cannot change the scene; undefined if it can. The scene may be changed before the
+  // session exists.
   readonly editBlock = computed((): string | undefined => {
     if (this.ended.value !== undefined) return "This session has ended.";
     if (this.steering.value) return undefined;
@@ -128,8 +130,8 @@ export class SessionState {
     return person === undefined ? "" : this.nameOf(person);
   }
 
-  // Handles joining. If this person steered before the connection was lost, it is assumed to steer
-  // until the next presence, so that controls stay usable.
+  // Handles joining. If this person steered before the connection was lost, the page assumes until
+  // the next presence message that this person steers. The controls therefore stay usable.
   joined(joined: Joined): void {
     const steered = this.steering.peek();
     batch(() => {

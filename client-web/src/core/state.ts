@@ -1,6 +1,6 @@
 // The page's state as signals: the scene being edited, the server's descriptions of itself and its
-// storms, the frame on the screen, the connection, and notices. It does not depend on network or
-// document.
+// storms, the frame on the screen, the connection, and notices. This file does not depend on
+// network or document.
 
 import { create } from "@bufbuild/protobuf";
 import { batch, computed, type ReadonlySignal, signal } from "@preact/signals-core";
@@ -70,15 +70,15 @@ import { describePose, describeSun } from "./words";
 export type Connection =
   | { readonly kind: "connecting" }
   | { readonly kind: "live" }
-  // `attempts` counts since the connection was lost. `retryInMs` is the delay before the next
-  // attempt.
+  // `attempts` is the number of attempts to reconnect since the connection was lost. `retryInMs` is
+  // the delay before the next attempt.
   | {
       readonly kind: "lost";
       readonly reason: string;
       readonly attempts: number;
       readonly retryInMs: number;
     }
-  // The server requires a token, or another token.
+  // The server requires a token, and this page has none or a wrong one.
   | { readonly kind: "locked"; readonly reason: string }
   // The session has ended. SessionState has the reason.
   | { readonly kind: "gone" };
@@ -93,10 +93,11 @@ export interface ShownFrame {
   readonly encoding: Encoding;
   readonly stages: readonly StageCost[];
   readonly modelled: Modelled | undefined;
-  // Set only for pictures by the reference.
+  // Set only for pictures by the reference, the path tracer on the CPU that refines its picture
+  // continually.
   readonly refinement: Refinement | undefined;
   readonly accuracy: AccuracyReport | undefined;
-  // The level by which the picture is reduced for this page's link or window.
+  // The level by which the server reduces the picture for this page's network link or window.
   readonly tier: number;
   readonly ownView: boolean;
   readonly pose: Pose | undefined;
@@ -135,12 +136,13 @@ export class PageState {
   readonly frame = signal<ShownFrame | undefined>(undefined);
   // The times of the session's storm that are in the server's memory, as last reported.
   readonly timesInMemory = signal<TimesInMemory | undefined>(undefined);
-  // The indices of the shown storm's times that can be drawn without reading files.
+  // The indices of the shown storm's times that are in the server's memory, so that they can be
+  // drawn without reading files.
   readonly heldTimes = computed((): readonly number[] => {
     const held = this.timesInMemory.value;
     return held?.stormId === this.stormId.value ? held.timeIndices : [];
   });
-  // Why the server sends no video to this browser; undefined if it can.
+  // Why the server sends no video to this browser; undefined if it can send video.
   readonly whyNoVideo = signal<string | undefined>(undefined);
   readonly pace = signal<Pace>({ framesPerSecond: 0, bytesPerSecond: 0, latencyMs: undefined });
   readonly notices = signal<readonly Notice[]>([]);
@@ -153,7 +155,7 @@ export class PageState {
   readonly drawerOpen = signal(false);
   // The open panel of the top bar.
   readonly popover = signal<PanelName | undefined>(undefined);
-  // The storm from above, and the reason if there is no map.
+  // The map, which shows the storm from above, and the reason why the map is missing.
   readonly stormMap = signal<GetStormMapResponse | undefined>(undefined);
   readonly mapProblem = signal<string | undefined>(undefined);
   // The places of the last two clicks with the probe, and the reason if the last one failed.
@@ -168,7 +170,7 @@ export class PageState {
   readonly sunZone = signal("Etc/GMT");
   // The picture's rectangle in the window, in CSS pixels.
   readonly pictureBox = signal<Box | undefined>(undefined);
-  // The cloud set in the panel, and whether the server is making it.
+  // The cloud as it is set in the panel, and whether the server is making a cloud now.
   readonly cloud = signal<CloudDraft>(FIRST_CLOUD);
   readonly makingCloud = signal(false);
 
@@ -180,7 +182,7 @@ export class PageState {
     return this.#scene;
   }
 
-  // These parts of the scene change only when they are edited themselves.
+  // Parts of the scene. Each signal changes only when its own part changes.
   readonly fields = computed(() => this.#scene.value.fields);
   readonly particleSizes = computed(() => this.#scene.value.particleSizes);
   readonly sun = computed(() => this.#scene.value.sun);
@@ -204,8 +206,8 @@ export class PageState {
   );
   readonly settings = computed(() => settingsOf(this.rendering.value));
   readonly technique = computed(() => this.#describe(this.settings.value));
-  // The preset that the scene's rendering equals; undefined if there is none, or while an accuracy
-  // goal overrides it.
+  // The preset whose settings equal the scene's rendering settings; undefined if no preset matches,
+  // or if the scene has a goal.
   readonly preset = computed((): Preset | undefined =>
     this.goal.value === undefined
       ? presetOf(this.rendering.value, this.server.value?.presets ?? [])
@@ -213,10 +215,11 @@ export class PageState {
   );
   readonly display = computed(() => this.#scene.value.display);
   readonly accuracy = computed(() => this.#scene.value.accuracy);
-  // The kind of accuracy goal. While there is one the server chooses technique and settings.
+  // The kind of goal, a required accuracy or speed; undefined without a goal. While there is a
+  // goal, the server chooses technique and settings.
   readonly goal = computed(() => this.#scene.value.accuracy?.limit.case);
-  // The technique that draws, and what it shows of the fields. It is the scene's own technique, or
-  // the one chosen for the goal.
+  // The technique that draws the picture: the scene's own technique, or the technique that the
+  // server chose for the goal.
   readonly drawnTechnique = computed(() => this.#describe(this.#drawnSettings.value));
   readonly detailShown = computed(() => this.#isDrawn(drawsDetail));
   readonly falseColorsShown = computed(() => this.#isDrawn(drawsFalseColors));
@@ -227,7 +230,8 @@ export class PageState {
   readonly output = computed(() => this.#scene.value.output);
   readonly timeIndex = computed(() => this.#scene.value.timeIndex ?? 0);
   readonly stormId = computed(() => this.#scene.value.stormId);
-  // The description of the storm shown, not that of the previous storm.
+  // The description of the storm that is shown; undefined while only the previous storm's
+  // description is known.
   readonly #describedStorm = computed(() => {
     const storm = this.storm.value;
     return storm?.id === this.stormId.value ? storm : undefined;
@@ -286,7 +290,8 @@ export class PageState {
       this.shownTime.value?.elapsedS ?? 0,
     ),
   );
-  // Time since the run's start. If the start is unknown, it counts from the first time.
+  // Lead time: seconds since the run's start. If the start is unknown, seconds since the storm's
+  // first time.
   readonly leadS = computed(() => {
     const time = this.shownTime.value;
     if (time === undefined) return 0;
@@ -319,8 +324,8 @@ export class PageState {
     this.#onEdit = listener;
   }
 
-  // Applies an edit and sends it to the server. Ignored while the scene cannot be changed from this
-  // page. "unrecorded" is for edits that the page makes itself, which cannot be undone.
+  // Applies an edit and sends it to the server. Does nothing while this page cannot change the
+  // scene. Use "unrecorded" for an edit that the page makes itself and that undo should not revert.
   edit(change: Edit, record: "recorded" | "unrecorded" = "recorded"): void {
     if (this.session.editBlock.peek() !== undefined) return;
     const before = this.#scene.value;
@@ -348,7 +353,7 @@ export class PageState {
     );
   }
 
-  // Edits the technique. Ignored until the server has sent the present technique.
+  // Edits the technique. Does nothing until the server has sent the present technique.
   editRendering(change: (rendering: Rendering) => Rendering): void {
     const rendering = this.rendering.peek();
     if (rendering !== undefined) this.edit((scene) => withRendering(scene, change(rendering)));
@@ -365,20 +370,20 @@ export class PageState {
     if (pose !== undefined) this.edit((scene) => withCamera(scene, cameraOfPose(motion(pose))));
   }
 
-  // Takes a scene from the server, without sending it back.
+  // Replaces the page's scene by a scene from the server, without sending it back.
   adoptScene(scene: Scene): void {
     const before = this.#scene.peek().stormId;
     if (before !== "" && scene.stormId !== before) this.history.clear();
     this.#scene.value = scene;
   }
 
-  // Takes the page's own scene as the server completed it.
+  // Fills in the values that the server added to the page's own scene.
   adoptCompleted(scene: Scene): void {
     this.#scene.value = withCompleted(this.#scene.peek(), scene);
   }
 
-  // Takes the camera of the frame on the screen. Fills in a camera for which the scene has no
-  // values.
+  // Reports the camera of the frame on the screen. If the scene's camera has no values, it gets the
+  // values of this camera.
   adoptCamera(camera: Camera | undefined): void {
     const pose = poseOfCamera(camera);
     if (pose === undefined) return;

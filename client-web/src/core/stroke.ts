@@ -8,8 +8,8 @@ export interface StrokePoint {
 const FINEST_TOLERANCE_PX = 0.75;
 const COARSER = 1.5;
 
-// Returns at most `most` of the points, with both ends. The tolerance is the smallest that is
-// sufficient.
+// Returns at most `most` of the points, including both ends. Uses the smallest tolerance that
+// leaves few enough points.
 export function simplifiedStroke<P extends StrokePoint>(points: readonly P[], most: number): P[] {
   for (let tolerancePx = FINEST_TOLERANCE_PX; ; tolerancePx *= COARSER) {
     const kept = withinTolerance(points, tolerancePx);

@@ -9,13 +9,15 @@ export interface SunDirection {
 // End of civil twilight. If the sun is lower, pictures are nearly black.
 export const NIGHT_BELOW_DEG = -6;
 
-// Returns a sun that lights what the camera sees. It is behind the left shoulder of a viewer who
-// stands in this direction from the storm.
+// Returns a sun direction that lights the side of the storm that the camera sees. The argument is
+// the azimuth of the camera's position, seen from the storm. The sun is behind the camera's left
+// shoulder.
 export function daylight(standingAzimuthDeg: number): SunDirection {
   return { azimuthDeg: (standingAzimuthDeg + 45) % 360, elevationDeg: 35 };
 }
 
-// Elevation at the disc's edge. It is below the horizon so that twilight can be set by dragging.
+// Elevation of the sun at the disc's edge. The edge lies below the horizon so that twilight can be
+// set by dragging.
 export const DOME_LOWEST_DEG = -18;
 
 // Radius of the horizon, where 1 is the disc's edge.

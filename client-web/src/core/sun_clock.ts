@@ -1,5 +1,6 @@
-// The sun's clock at the time that is shown. A scene's clock is set at the storm's first time and
-// advances with the storm. People set it for the picture that they see, in local time.
+// The sun's clock (the date and time that determine the sun's direction) at the storm time that is
+// shown. A scene stores the clock's setting for the storm's first time, and the clock advances with
+// the storm's time. People instead set the clock for the picture that they see, in local time.
 import { getPosition, getTimes } from "suncalc";
 import type { SunClock } from "../gen/thunderhead/v1/scene_pb";
 import { minutesAhead } from "./moment";
@@ -13,8 +14,8 @@ export interface ClockHere {
   readonly longitudeDeg: number;
 }
 
-// Returns the clock of the picture: the scene's if it has one, otherwise the storm's. Returns
-// undefined while neither is known.
+// Returns the clock of the picture: the scene's clock if the scene has one, otherwise the storm's.
+// Returns undefined while neither clock is known.
 export function clockHere(
   set: SunClock | undefined,
   storm: SunClock | undefined,
@@ -28,7 +29,8 @@ export function clockHere(
   return { instant: new Date(first + 1000 * elapsedS), latitudeDeg, longitudeDeg };
 }
 
-// Returns the clock's setting at the storm's first time for which it shows `instant` now.
+// Returns the setting of the clock at the storm's first time that makes the clock show `instant`
+// after `elapsedS` seconds.
 export function firstDateTime(instant: Date, elapsedS: number): string {
   return new Date(instant.getTime() - 1000 * elapsedS).toISOString().replace(/\.\d+Z$/, "Z");
 }
@@ -44,7 +46,8 @@ export function atMinute(instant: Date, minute: number, zone: string): Date {
   return new Date(instant.getTime() + (minute - minuteOfDay(instant, zone)) * MINUTE_MS);
 }
 
-// Returns the minutes of the local day at which the sun rises and sets; undefined if it does not.
+// Returns the minutes of the local day at which the sun rises and sets; undefined if the sun does
+// not rise or set on this day.
 export function sunriseAndSunset(
   { instant, latitudeDeg, longitudeDeg }: ClockHere,
   zone: string,
@@ -69,7 +72,7 @@ export function dayInWords(here: ClockHere, zone: string): string {
   return noonDeg > 0 ? "The sun does not set" : "The sun does not rise";
 }
 
-// Returns the sun's height at evenly spaced times over the local day, from its first midnight to
+// Returns the sun's elevation at evenly spaced times over the local day, from its first midnight to
 // its last.
 export function sunHeightsDeg(here: ClockHere, zone: string, steps: number): number[] {
   return Array.from({ length: steps + 1 }, (_, at) => {

@@ -1,4 +1,4 @@
-// The seven tools of the rail. Each answers one question that people have about a storm.
+// The seven tools of the tool rail, with their texts and keys.
 
 export const TOOL_NAMES = ["map", "time", "light", "look", "fields", "probe", "marks"] as const;
 export type ToolName = (typeof TOOL_NAMES)[number];

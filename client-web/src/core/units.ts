@@ -41,16 +41,16 @@ export function roundLength(lengthM: number): number {
 }
 
 export interface DisplayUnit {
-  // A value in the schema's unit is multiplied by this.
+  // Factor by which a value in the schema's unit is multiplied.
   readonly factor: number;
-  // Printed after the number; empty for a pure number.
+  // The unit's symbol, printed after the number; empty for a pure number.
   readonly symbol: string;
 }
 
 const SYMBOLS: Readonly<Record<string, string>> = { "1": "", deg: "°", "kg/m3": "kg/m³", m: "m" };
 
-// Returns the unit in which a number is shown. Lengths that never exceed a metre are in
-// millimetres. Lengths that may exceed the size of any storm are in kilometres.
+// Returns the unit in which a number is shown. A length whose maximum is a metre or less is in
+// millimetres. A length whose maximum exceeds the size of any storm is in kilometres.
 export function displayUnitOf(limits: Limits): DisplayUnit {
   if (limits.unit === "m" && limits.maximum <= 1) return { factor: 1e3, symbol: "mm" };
   if (limits.unit === "m" && limits.maximum > 1 && lengthUnits.value === "aviation")

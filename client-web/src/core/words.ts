@@ -24,7 +24,7 @@ export function describePose(pose: Pose | undefined): string {
   }
 }
 
-// A position nearer to the middle than this has no meaningful direction.
+// A position whose distance from the domain's middle is below this has no meaningful direction.
 const NEAR_MIDDLE_M = 100;
 
 // Returns a text like "20 km SE of the middle". The middle is the origin of the world.

@@ -6,7 +6,7 @@ import { ThunderheadService } from "../gen/thunderhead/v1/thunderhead_pb";
 import { openBidi, type Socket, type SocketFactory } from "./interact_socket";
 import type { OpenInteract } from "./session_client";
 
-// Returns the token that calls send; undefined for none.
+// Returns the token that calls send; undefined if calls send no token.
 export type TokenSource = () => string | undefined;
 
 export function createSameOriginTransport(pageUrl: string, token: TokenSource): Transport {

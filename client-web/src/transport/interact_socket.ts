@@ -1,6 +1,6 @@
-// A bidirectional rpc over one WebSocket, as the gateway bridges it. Each WebSocket message is a
-// kind followed by a message of the rpc. The last one has the status as trailers. This code does
-// not depend on any message type.
+// A bidirectional gRPC call over one WebSocket, which the server's gateway connects to the gRPC
+// service. Each WebSocket message is a byte for its kind, followed by a message of the call. The
+// last WebSocket message contains the status as trailers. This code works for any message types.
 import {
   create,
   type DescMessage,
@@ -25,7 +25,7 @@ export interface Socket {
 
 export type SocketFactory = (url: string, protocols: string[]) => Socket;
 
-// A bidirectional rpc: its name and messages, as in the generated descriptors.
+// A bidirectional gRPC method: its name and message types, as in the generated descriptors.
 export interface BidiMethod<I extends DescMessage, O extends DescMessage> {
   readonly name: string;
   readonly parent: { readonly typeName: string };
@@ -39,10 +39,10 @@ export type CallEnd =
       readonly kind: "status";
       readonly code: Code | 0;
       readonly message: string;
-      // 0 means that the server gives no time to retry.
+      // Delay before a retry that the server asks for; 0 if it asks for none.
       readonly retryAfterMs: number;
     }
-  // The connection failed, or was never made.
+  // The connection was lost, or could not be made.
   | { readonly kind: "broken"; readonly message: string };
 
 export interface BidiListener<O extends DescMessage> {
@@ -75,7 +75,8 @@ export function openBidi<I extends DescMessage, O extends DescMessage>(
   makeSocket: SocketFactory,
   listener: BidiListener<O>,
 ): BidiCall<I> {
-  // The token is a subprotocol because browsers let a page set no other header of a WebSocket.
+  // The token is sent as a WebSocket subprotocol, because browsers let a page set no other header
+  // of a WebSocket.
   const protocols = token === undefined ? [PROTOCOL] : [PROTOCOL, TOKEN_PREFIX + base64Url(token)];
   const socket = makeSocket(addressOf(method, baseUrl), protocols);
   socket.binaryType = "arraybuffer";

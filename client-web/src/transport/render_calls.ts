@@ -1,4 +1,5 @@
-// Calls for pictures that are saved: one picture with its progress, or a job of many.
+// The calls for pictures that are saved: one picture with its progress, or a job that draws many
+// pictures.
 import { type Client, Code, ConnectError, createClient, type Transport } from "@connectrpc/connect";
 import { BackOff } from "../core/back_off";
 import {
@@ -11,7 +12,8 @@ import { ImageFormat, ThunderheadService } from "../gen/thunderhead/v1/thunderhe
 import { NETWORK_CODES } from "./network_codes";
 import { retryAfterMs } from "./retry_info";
 
-// Maximum number of attempts without a new picture. They take some minutes.
+// Maximum number of attempts without a new picture. With the back-off's delays these attempts take
+// some minutes.
 const MAX_ATTEMPTS = 60;
 
 export interface DrawnPicture {
@@ -28,7 +30,8 @@ export class RenderCalls {
     this.#jobs = createClient(RenderJobService, transport);
   }
 
-  // Requests one picture. `progress` reports the fraction of the paths that is traced.
+  // Requests one picture. `progress` is called with the fraction of the light paths that the server
+  // has traced, from 0 to 1.
   async picture(
     scene: Scene,
     format: ImageFormat,

@@ -1,11 +1,12 @@
-// Reads the details of the server's errors: the delay before a retry, and the reason for programs.
+// Reads the details of the server's errors: the delay before a retry, and the reason in a form for
+// programs.
 import { fromBinary } from "@bufbuild/protobuf";
 import { anyUnpack, type Duration } from "@bufbuild/protobuf/wkt";
 import type { ConnectError } from "@connectrpc/connect";
 import { ErrorInfoSchema, RetryInfoSchema } from "../gen/google/rpc/error_details_pb";
 import { type Status, StatusSchema } from "../gen/google/rpc/status_pb";
 
-// Returns the delay; 0 if the server gives none.
+// Returns the delay before a retry that the server asks for; 0 if it asks for none.
 export function retryAfterMs(failure: ConnectError): number {
   return milliseconds(failure.findDetails(RetryInfoSchema)[0]?.retryDelay);
 }
@@ -18,7 +19,7 @@ export function retryAfterMsOfStatus(status: Status | undefined): number {
   return 0;
 }
 
-// Returns the reason; empty if the server gives none.
+// Returns the error's reason in a form for programs; empty if the server gives no reason.
 export function reasonOfStatus(status: Status | undefined): string {
   for (const detail of status?.details ?? []) {
     const info = anyUnpack(detail, ErrorInfoSchema);

@@ -1,4 +1,4 @@
-// The unary calls, by gRPC-Web.
+// The page's unary calls to the server, by gRPC-Web.
 import type { MessageInitShape } from "@bufbuild/protobuf";
 import { type Client, createClient, type Transport } from "@connectrpc/connect";
 import type { GenerateCloudRequest } from "../gen/thunderhead/v1/cloud_pb";

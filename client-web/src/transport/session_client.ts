@@ -1,6 +1,6 @@
 // One person's connection to a session. It opens or joins the session, and sends and receives its
-// messages. After a connection loss it joins the same session again. It does not depend on widgets
-// or on a scene's contents.
+// messages. After a connection loss it joins the same session again. This code does not depend on
+// widgets or on a scene's contents.
 import type { MessageInitShape } from "@bufbuild/protobuf";
 import { Code, ConnectError } from "@connectrpc/connect";
 import { BackOff } from "../core/back_off";
@@ -41,9 +41,10 @@ export interface SessionListener {
   // again after a delay.
   openingRefused(message: string): void;
   opened(session: OpenedSession): void;
-  // Returns the name and the window with which to join.
+  // Returns the person's name and the window's size, which the page sends when it joins.
   joining(): JoinDetails;
-  // Reports that a new call has begun. Its sequence numbers restart.
+  // Reports that a new call has joined the session. The frames' sequence numbers restart with each
+  // call.
   joined(joined: Joined): void;
   connection(connection: Connection): void;
   // Reports any other message of the session.
@@ -60,9 +61,9 @@ export interface Refusal {
   readonly requestId: bigint;
   readonly code: Code;
   readonly message: string;
-  // The reason for programs; empty if the server gives none.
+  // The refusal's reason in a form for programs; empty if the server gives no reason.
   readonly reason: string;
-  // 0 means that the server gives no time to retry.
+  // Delay before a retry that the server asks for; 0 if it asks for none.
   readonly retryAfterMs: number;
 }
 
@@ -88,9 +89,11 @@ export const SILENCE_MS = 15_000;
 const FAILED_CHECKS = 2;
 const CHECK_TIMEOUT_MS = 4_000;
 const JOIN_TIMEOUT_MS = 10_000;
-// A call that lasted this long resets the back-off. A shorter call lengthens the next delay.
+// A call that lasted at least this long resets the back-off. After a shorter call the next delay
+// becomes longer.
 const SOUND_MS = 2_000;
-// Maximum number of requests whose refusal can be assigned to them.
+// Maximum number of sent requests that are remembered, so that a later refusal can be assigned to
+// its request.
 const MAX_REMEMBERED = 256;
 
 type Outcome =
@@ -118,13 +121,14 @@ export class SessionClient {
   #call: Call | undefined;
   #joined = false;
   #lastRequestId = 0n;
-  // True after a session was opened in place of another, until it is joined.
+  // True after the client has opened a new session in place of another, until the client has joined
+  // it.
   #reopened = false;
   // True while the client waits for openNew().
   #gone = false;
   #disposed = false;
   #wake: (() => void) | undefined;
-  // These functions change the wait that is in progress.
+  // Functions that change the current wait; undefined while nothing waits.
   #reschedule: ((delayMs: number) => void) | undefined;
   #shortenWait: (() => void) | undefined;
 
@@ -360,7 +364,8 @@ export class SessionClient {
     return scene !== undefined;
   }
 
-  // Ends the call if the server cannot be reached twice in a row and no message arrives meanwhile.
+  // Checks whether the server can be reached. Ends the call if FAILED_CHECKS checks in a row fail
+  // and no message arrives meanwhile.
   async #check(call: Call, silence: SilenceWatch): Promise<void> {
     const heardBefore = silence.heardCount;
     for (let failures = 0; failures < FAILED_CHECKS; failures += 1) {
@@ -376,8 +381,8 @@ export class SessionClient {
     call.finish({ kind: "lost", reason: UNREACHABLE, leastMs: 0 });
   }
 
-  // Finds the reason why the call did not open. If the server answers other calls, something in
-  // between blocks WebSockets.
+  // Finds the reason why the call could not be opened. If the server answers other calls, a proxy
+  // or firewall between page and server blocks WebSockets.
   async #whyNotOpened(lost: Outcome & { kind: "lost" }): Promise<Outcome> {
     try {
       await this.#calls.serverInfo(CHECK_TIMEOUT_MS);

@@ -1,5 +1,5 @@
-// The accuracy or speed that the server must reach, and its report on the picture shown: technique
-// and settings, their cost, and the estimated error.
+// Controls for the accuracy or speed that the server must reach. They also show the server's report
+// on the picture that is shown: technique and settings, their cost, and the estimated error.
 import { create, isMessage } from "@bufbuild/protobuf";
 import { nameOfTechnique, nameOfTransport } from "../core/names";
 import { biasInWords, errorSource } from "../core/picture_error";
@@ -27,8 +27,8 @@ const GOALS = [
   ["maxMilliseconds", "At most this time a frame"],
 ] as const;
 
-// First values of the sliders: an error that every view can reach, and a time per frame that still
-// gives smooth motion.
+// Initial values of the two sliders: a relative error (0.5 is 50 %) that every view can reach, and
+// a time per frame that still gives smooth motion.
 const FIRST_ERROR = 0.5;
 const FIRST_MILLISECONDS = 100;
 

@@ -1,5 +1,6 @@
-// The links of a session, and the address of the presenter's page. That address opens the session.
-// If the session has ended, it opens a new one with the same scene.
+// Makes the links of a session, and keeps the address of the presenter's page up to date. The
+// address opens the session again. If the session has ended, the address opens a new session with
+// the same scene.
 import { effect } from "@preact/signals-core";
 import type { OwnKeys } from "../core/own_keys";
 import type { PageState } from "../core/state";
@@ -26,8 +27,8 @@ export class Addresses {
     });
   }
 
-  // Returns the viewers' link. With the scene, the link can open a new session after this one has
-  // ended.
+  // Returns the viewers' link. If `withScene` is true, the link contains the scene, so that it can
+  // open a new session after this session has ended.
   viewersLink(withScene = false): string | undefined {
     const viewerKey = this.#state.session.viewerKey.value;
     if (viewerKey === undefined) return undefined;
@@ -50,15 +51,16 @@ export class Addresses {
     return presentersLinkTo(this.#window.location.href, viewerKey.value, presenterKey);
   }
 
-  // Returns the host's name if the page's links only work on this machine; undefined if others can
-  // reach it.
+  // Returns the host name in the page's address if it means this machine, such as "localhost", so
+  // that links do not work on other machines. Otherwise returns undefined.
   get loopbackHost(): string | undefined {
     const { href } = this.#window.location;
     return isLoopback(href) ? new URL(href).hostname : undefined;
   }
 
-  // Keeps the key of a presenter's link and removes it from the address. Returns false for any
-  // other address. An existing key stays, so that a link cannot take it away.
+  // Stores the presenter key of a presenter's link and removes it from the address. Returns false
+  // if the address is not a presenter's link. A key that is already stored for the session is not
+  // replaced, so that a link cannot destroy it.
   adoptPresentersLink(): boolean {
     const { viewerKey, presenterKey, scene } = readLink(this.#window.location.href);
     if (viewerKey === undefined || presenterKey === undefined) return false;

@@ -17,11 +17,12 @@ import { effectiveField } from "../core/scene";
 import type { PageState } from "../core/state";
 import type { StormTime } from "../gen/thunderhead/v1/storm_pb";
 
-// Sizes of the areas that the page's own bars cover. The second top value includes the names of
-// compared pictures.
+// Sizes of the areas at the window's edges that the page's own bars cover. TOP_WITH_NAMES_PX
+// replaces `top` while two pictures are compared, because their names are below the bar.
 const BARS_PX = { left: 76, top: 106, right: 0, bottom: 88 };
 const TOP_WITH_NAMES_PX = 166;
-// Size of the left area with a tool next to the rail, and of the right area with the drawer.
+// Size of the covered area at the left while a tool is open next to the rail, and of the area at
+// the right while the drawer is open.
 const TOOL_LEFT_PX = 374;
 const DRAWER_RIGHT_PX = 344;
 const NARROW_BARS_PX = { left: 0, top: 190, right: 0, bottom: 84 };
@@ -30,9 +31,9 @@ const SESSION_BAR_PX = 72;
 const NARROW_PX = 900;
 // If the window is lower than this, an open tool covers the picture instead of moving it.
 const TALL_PX = 600;
-// Minimum height between the bars.
+// Minimum height between the bars for annotations, as a multiple of the letters' height.
 const MIN_ROOM_LETTERS = 4;
-// Maximum height of a tool's sheet, relative to the window's height.
+// Maximum height of a tool at the bottom of a narrow window, relative to the window's height.
 const SHEET_SHARE = 0.42;
 
 export function Annotations(props: { state: PageState; comparing: boolean }) {
@@ -41,7 +42,7 @@ export function Annotations(props: { state: PageState; comparing: boolean }) {
   const content = annotated(labelsOf(state), state.frame.value ?? {}, state.shownTime.value);
   if (box === undefined || content === undefined) return null;
   const narrow = window.innerWidth < NARROW_PX;
-  // The drawer covers the picture.
+  // In a narrow window the drawer covers the picture, so there are no annotations.
   if (narrow && state.drawerOpen.value) return null;
   const bars = narrow ? narrowBars(state, comparing) : wideBars(state, comparing);
   // Too little of the picture is visible, for example on a phone in landscape orientation.
@@ -60,7 +61,7 @@ export function Annotations(props: { state: PageState; comparing: boolean }) {
       },
       letterPx: LETTER_PX,
     },
-    // The bar above shows the title.
+    // The annotations omit the title, because the top bar shows it.
     { ...state.annotations.value, title: false },
   );
   return (
@@ -76,7 +77,7 @@ export function Annotations(props: { state: PageState; comparing: boolean }) {
 
 function narrowBars({ tool, session }: PageState, comparing: boolean) {
   const sheetPx = tool.value === undefined ? 0 : SHEET_SHARE * window.innerHeight;
-  // The picture lies between the bars and the sheet.
+  // If a tool is open at the bottom, the picture lies between the bars and the tool.
   const between = sheetPx > 0 && !comparing && window.innerHeight >= TALL_PX;
   const barsPx = comparing ? NARROW_TOP_WITH_NAMES_PX : NARROW_BARS_PX.top;
   const top = barsPx + (session.hasBar.value ? SESSION_BAR_PX : 0);
@@ -127,7 +128,7 @@ function Drawn({ shape }: { shape: Shape }) {
 
 type Content = Omit<Annotated, "widthPx" | "heightPx" | "inset" | "letterPx">;
 
-// Texts that all pictures of a storm and its settings share.
+// The labels that do not depend on the picture's camera and time: title, ground height and legend.
 export interface Labels {
   readonly title: string;
   readonly times: readonly StormTime[];
@@ -136,8 +137,8 @@ export interface Labels {
   readonly legend: readonly LegendEntry[];
 }
 
-// Returns the labels of what is shown now. A file that takes long keeps the labels of its
-// beginning, because another storm may be shown before it is finished.
+// Returns the labels of the storm that is shown now. A movie keeps the labels of the moment when it
+// was requested, because another storm may be shown before the movie is finished.
 export function labelsOf(state: PageState): Labels {
   return {
     title: [state.title.value, state.run.value].filter((part) => part !== "").join(" · "),
@@ -167,7 +168,7 @@ function legendOf(state: PageState): LegendEntry[] {
 
 type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
 
-// Draws the annotations into a picture. Their relative size is the same as in a window.
+// Draws the annotations into a picture. Relative to the picture, they are as large as in a window.
 export function drawAnnotations(
   context: Context,
   content: Content,

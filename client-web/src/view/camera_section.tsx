@@ -1,4 +1,4 @@
-// The kind of camera, its position and its direction.
+// Controls for the kind of camera, its position and its direction.
 import {
   type CameraKind,
   type Pose,

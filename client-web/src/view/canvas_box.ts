@@ -1,4 +1,4 @@
-// The rectangles of a canvas in the window, and of a picture on the canvas.
+// Computes the size of a canvas in physical pixels, and the rectangle of a picture on the canvas.
 import type { Box } from "../core/picture_box";
 import { pictureBox } from "../core/picture_box";
 

@@ -1,5 +1,5 @@
-// Draws the newest picture into a canvas, centred and as large as fits. Draws it again when the
-// canvas changes size. It owns the picture on the screen.
+// Draws the newest picture into a canvas, centred and as large as fits. Draws the picture again
+// when the canvas changes size. The painter owns the picture on the screen and must close it.
 import { pictureBox } from "../core/picture_box";
 
 // A decoded picture, from an image file or from video.

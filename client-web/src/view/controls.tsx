@@ -6,29 +6,30 @@ import { displayUnitOf, formatNumber, formatQuantity } from "../core/units";
 import { Icon } from "./icons";
 
 const SLIDER_STEPS = 400;
-// If a change of a slider costs seconds, the slider reports it after this long without motion.
+// A slider whose changes cost the server seconds reports its value after this time without motion.
 const SLIDER_REST_MS = 500;
 
 interface SliderProps {
   readonly label: string;
   readonly limits: Limits;
-  // Undefined until the server has sent it.
+  // Undefined until the server has sent the value.
   readonly value: number | undefined;
   // The value that the reset button restores; absent means the schema's default.
   readonly initial?: number | undefined;
-  // Resets a value that the server may choose. With this function the value can also be set while
-  // it is unknown.
+  // Resets the value, so that the server chooses it. If this function is given, the value can be
+  // set even while it is unknown.
   readonly giveBack?: (() => void) | undefined;
   readonly testId: string;
-  // True if a change costs seconds. The change is then reported when the slider is released or
-  // rests, not at each step.
+  // True if the server needs seconds for a change. The change is then reported only when the slider
+  // is released or has not moved for a while.
   readonly afterRest?: boolean;
   // True to put the slider on the line of its visible label.
   readonly inLine?: boolean;
   readonly onChange: (value: number) => void;
 }
 
-// Holds the value to which a slider was dragged, until it is reported on release or after a rest.
+// Holds the value to which a slider was dragged, until the value is reported. This happens on
+// release or after SLIDER_REST_MS without motion.
 function useHeld(onChange: (value: number) => void) {
   const [held, setHeld] = useState<number | undefined>(undefined);
   const tellLater = useRef<ReturnType<typeof setTimeout> | undefined>(undefined);
@@ -48,9 +49,9 @@ function useHeld(onChange: (value: number) => void) {
   return { held, hold, release: () => tell.current() };
 }
 
-// Returns the value and events of an input that keeps what is being typed. Without it, each frame
-// would redraw the page and lose the text. `tell` gets the input on Enter or when the input is
-// left. It returns false if the input is incomplete, such as half a date.
+// Returns the value and event handlers of an input that keeps the text while it is being typed.
+// Otherwise each frame would redraw the page and lose the text. `tell` gets the input on Enter or
+// when the input is left. It returns false if the input is incomplete, such as half a date.
 export function useTyped(value: string, tell: (input: HTMLInputElement) => boolean) {
   const [typed, setTyped] = useState<string | undefined>(undefined);
   return {
@@ -63,7 +64,7 @@ export function useTyped(value: string, tell: (input: HTMLInputElement) => boole
   };
 }
 
-// A number as a slider and as text, with its unit.
+// A control for a number: a slider, a text field and the unit.
 export function Slider(props: SliderProps) {
   const { label, limits, initial, giveBack, testId, afterRest, inLine, onChange } = props;
   const { held, hold, release } = useHeld(onChange);
@@ -164,7 +165,7 @@ interface ChoiceProps<T extends string | number> {
   readonly onChange: (value: T) => void;
 }
 
-// A choice of one of a few named values.
+// A control to choose one of a few named values.
 export function Choice<T extends string | number>(props: ChoiceProps<T>) {
   const { label, value, options, testId, onChange } = props;
   const id = useId();
@@ -192,11 +193,11 @@ export function Choice<T extends string | number>(props: ChoiceProps<T>) {
 
 interface SegmentsProps<T extends string | number> {
   readonly label: string;
-  // Undefined if none is chosen.
+  // The chosen value; undefined if no option is chosen.
   readonly value: T | undefined;
-  // Value, name and explanation.
+  // Each option has a value, a name and an explanation.
   readonly options: readonly (readonly [T, string, string])[];
-  // Shown instead of an explanation while none is chosen.
+  // Text that is shown instead of an explanation while no option is chosen.
   readonly otherwise: string;
   readonly testId: string;
   readonly onChange: (value: T) => void;
@@ -243,7 +244,7 @@ interface NumberInputProps {
   readonly onChange: (value: number) => void;
 }
 
-// A number without known limits.
+// A control for a number without known limits.
 export function NumberInput({ label, value, testId, onChange }: NumberInputProps) {
   const id = useId();
   const typed = useTyped(String(value), ({ valueAsNumber }) => {
@@ -288,7 +289,7 @@ interface TimeInputProps {
   readonly onChange: (value: string) => void;
 }
 
-// A date and time.
+// A control for a date and time.
 export function TimeInput({ label, value, testId, onChange }: TimeInputProps) {
   const id = useId();
   const typed = useTyped(value, (input) => {

@@ -1,4 +1,4 @@
-// The surface of a cumulus and its shading (Neyret 2000).
+// The controls of the cumulus technique: the cloud's surface and its shading (Neyret 2000).
 import { DEFAULTS, LIMITS } from "../core/scene";
 import type { PageState } from "../core/state";
 import {

@@ -5,7 +5,7 @@ import { VIDEO_CONFIG } from "./video_pictures";
 
 export interface Decodable {
   readonly codecs: Codec[];
-  // Undefined if video can be decoded.
+  // Why this browser cannot decode video; undefined if it can.
   readonly whyNoVideo: string | undefined;
 }
 

@@ -1,5 +1,5 @@
-// Every setting of the scene with its unit, limits, default and meaning from the schema, and a
-// search box.
+// The drawer with every setting of the scene and a search box. Units, limits, defaults and
+// explanations come from the Protobuf schema.
 import type { ComponentType } from "preact";
 import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
 import type { SettingsProps } from "./every_setting";
@@ -16,11 +16,12 @@ export function ExpertDrawer({ page }: { page: Page }) {
   const open = page.state.drawerOpen.value;
   const block = page.state.session.editBlock.value;
   const wasOpen = useRef(false);
-  // This must run before the next key is handled.
+  // A layout effect is used because the focus must change before the next key is handled.
   useLayoutEffect(() => {
     const closes = wasOpen.current && !open;
     wasOpen.current = open;
-    // The focus was in the drawer. Browsers remove the focus from hidden elements, but not at once.
+    // This finds out whether the focus was in the drawer. Browsers remove the focus from hidden
+    // elements, but not at once.
     const focused = document.activeElement;
     if (closes && (focused === document.body || drawer.current?.contains(focused))) {
       focusRail("settings");

@@ -1,4 +1,4 @@
-// The drawer's list, group by group.
+// The drawer's list of settings, in groups by the part of the scene.
 
 import { nameOfHydrometeor } from "../core/names";
 import { type Parameter, parametersOf, parameterValue, withParameter } from "../core/parameters";
@@ -8,7 +8,7 @@ import { COMMENTS } from "../gen/comments";
 import { Choice, Slider, Switch, TextInput } from "./controls";
 import type { Page } from "./page";
 
-// The page sets these parameters itself.
+// Parameters that the list leaves out, because other parts of the page set them.
 const NOT_LISTED = new Set(["storm_id", "time_index"]);
 
 export interface SettingsProps {

@@ -119,7 +119,8 @@ function FieldRow({ state, field }: { state: PageState; field: FieldDescription 
   );
 }
 
-// Unit of fields that are already an extinction. Particle size has no effect on them.
+// Unit of fields that contain extinction instead of a mass. Particle size has no effect on such
+// fields.
 const EXTINCTION_UNITS = "m-1";
 
 function amountOf(field: FieldDescription): string {
@@ -149,7 +150,8 @@ function sizeInWords(field: FieldDescription, shown: ReturnType<typeof effective
   }
 }
 
-// Returns the variable or scheme from which the model's sizes come.
+// Returns the name of the model's variable or microphysics scheme from which the particle sizes
+// come.
 function originOf(field: FieldDescription): string {
   switch (field.sizeOrigin) {
     case SizeOrigin.EFFECTIVE_RADIUS:
@@ -168,7 +170,8 @@ const PREPOSITIONS: Partial<Record<SizeOrigin, string>> = {
   [SizeOrigin.SCHEME]: "by ",
 };
 
-// Returns the mean effective radius, preceded by `before`; empty if there is none.
+// Returns the field's mean effective radius as a text that begins with `before`; empty if the field
+// has no radius.
 function meanRadius(field: FieldDescription, before: string): string {
   return field.meanRadiusM > 0 ? `${before}${micrometres(field.meanRadiusM)}` : "";
 }

@@ -12,7 +12,7 @@ export interface KeyActions {
   stepTime(by: number): void;
   undo(): void;
   redo(): void;
-  // Returns false if the key has no meaning now.
+  // Handles the Enter key. Returns false if the key has no meaning now.
   enter(): boolean;
   fullScreen(): void;
   // Closes the uppermost panel or tool, or puts the pen down. Returns false if there was nothing to
@@ -50,7 +50,8 @@ const PANEL_KEYS: Readonly<Record<string, PanelName>> = {
 };
 
 const TURN_DEG = 3;
-// Pan distance of one key press, as a percentage of the picture.
+// Pan distance of one key press in pixels of PICTURE, which is 100 x 100 pixels: 5 % of the
+// picture.
 const PAN_PX = 5;
 const PICTURE = { widthPx: 100, heightPx: 100 };
 const ZOOM_FACTOR = 0.88;

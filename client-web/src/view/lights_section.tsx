@@ -1,4 +1,4 @@
-// The lights except the sun, each with its direction and its colour.
+// Controls for the lights other than the sun: direction and colour of each.
 import { create } from "@bufbuild/protobuf";
 import { colorOfHex, hexOfColor } from "../core/color";
 import { nameOfTechnique } from "../core/names";

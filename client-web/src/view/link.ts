@@ -1,8 +1,8 @@
-// Links to a session. The query ?session=VIEWER_KEY names the session. The fragment #scene=... is a
-// copy of the scene. It opens a new session if that session has ended or none is named; a link
-// without a session is a link to a view. The fragment #present=PRESENTER_KEY lets another person or
-// device present. Browsers do not send the fragment to the server, so no log contains the
-// presenter's key.
+// Links to a session. The query ?session=VIEWER_KEY names the session. The fragment #scene=...
+// contains a copy of the scene. If the session has ended, or if the link names no session, the link
+// opens a new session with this scene. A link that names no session is called a link to a view. The
+// fragment #present=PRESENTER_KEY lets another person or device present. Browsers do not send the
+// fragment to the server, so no log contains the presenter's key.
 import { sceneFromUrlText, sceneToUrlText } from "../core/scene";
 import type { Scene } from "../gen/thunderhead/v1/scene_pb";
 

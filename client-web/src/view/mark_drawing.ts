@@ -1,4 +1,5 @@
-// Draws marks into a picture that is saved. Their relative size is the same as in a window.
+// Draws marks into a picture that is saved. Relative to the picture, they are as large as in a
+// window.
 import { LETTER_PX, letterPxOf } from "../core/annotations";
 import { hexOfColor } from "../core/color";
 import { inkOutline, markStrokes } from "../core/mark_strokes";
@@ -9,7 +10,7 @@ import type { Mark } from "../gen/thunderhead/v1/interact_pb";
 
 type Context = CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
 
-// The same values are in picture.css.
+// Colour and width of the marks' dark edge. picture.css has the same values.
 const EDGE = "rgb(0 0 0 / 45%)";
 const EDGE_PX = 5;
 const LINE_PX = 2.5;

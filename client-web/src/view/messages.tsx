@@ -1,4 +1,5 @@
-// Messages: the connection, requests for control, notices, the end of the session.
+// Messages over the picture: the state of the connection, requests for control, notices, and the
+// end of the session.
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { standingAzimuthDeg } from "../core/camera";
@@ -45,7 +46,8 @@ function ConnectionBanner({ state }: { state: PageState }) {
   );
 }
 
-// Counts down the seconds to the next attempt if there are many.
+// Shows that the connection was lost, and counts down the seconds to the next attempt if the wait
+// is long.
 function Reconnecting({ inMs }: { inMs: number }) {
   const left = useSignal(Math.ceil(inMs / 1000));
   useEffect(() => {

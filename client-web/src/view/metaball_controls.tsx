@@ -1,4 +1,4 @@
-// The number of metaballs and how they scatter light (Man).
+// The controls of the metaball technique: the number of metaballs and how they scatter light (Man).
 import { transportOf } from "../core/rendering";
 import { DEFAULTS, LIMITS } from "../core/scene";
 import type { PageState } from "../core/state";

@@ -1,11 +1,11 @@
-// Notices that disappear automatically.
+// Shows notices, of which some disappear automatically.
 import type { PageState } from "../core/state";
 
 const NOTE_MS = 6000;
 
 export class Notes {
   readonly #state: PageState;
-  // The timers of the notices that disappear, by their subjects.
+  // The timers of the notices that disappear automatically, by the notices' subjects.
   readonly #timers = new Map<string, ReturnType<typeof setTimeout>>();
 
   constructor(state: PageState) {

@@ -1,6 +1,7 @@
 // A warning next to a link that only works on this computer.
 
-// `host` is the address that others cannot open; undefined if they can.
+// `host` is the host name in the link if other machines cannot open it, such as "localhost";
+// otherwise undefined.
 export function OnlyHere({ host }: { host: string | undefined }) {
   if (host === undefined) return null;
   return (

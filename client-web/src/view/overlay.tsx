@@ -1,5 +1,5 @@
-// Pointers and marks over the picture, at their positions in the world as seen in the picture on
-// the screen.
+// Draws pointers and marks over the picture. Their positions in the world are projected by the
+// camera of the picture on the screen.
 
 import { hexOfColor } from "../core/color";
 import { inkOutline, type MarkStroke, markStrokes } from "../core/mark_strokes";
@@ -68,7 +68,8 @@ export function Overlay({ state, marking, marked }: OverlayProps) {
   );
 }
 
-// Shows the target of a probe by keys, and the places that its clicks found.
+// Shows the cross in the picture's middle, where a probe by keyboard measures, and the places that
+// earlier probes have found.
 function ProbeMarks({ state, projection, box }: InPicture & { state: PageState }) {
   if (state.tool.value !== "probe") return null;
   const places = state.probes.value.flatMap(({ found }) => {

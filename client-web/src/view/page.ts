@@ -1,5 +1,5 @@
-// Connects the parts: the session with the state, the state with the screen, and keys and buttons
-// with both. It owns the parts, and dispose() ends them.
+// Connects the parts of the page: the session with the state, the state with the screen, and keys
+// and buttons with both. The page owns the parts, and dispose() ends them.
 
 import type { Transport } from "@connectrpc/connect";
 import { effect, untracked } from "@preact/signals-core";
@@ -221,7 +221,8 @@ export class Page {
     this.viewpoint.showKind(kind);
   }
 
-  // Shows the view's camera and time. A person who looks around keeps the session's time.
+  // Shows a named view's camera and time. If the person looks around, only the camera changes,
+  // because the own view always has the session's time.
   showView({ camera, validTime, timeIndex }: NamedView): void {
     const { state } = this;
     if (state.session.editBlock.peek() !== undefined) {
@@ -241,7 +242,7 @@ export class Page {
     this.viewpoint.follow();
   }
 
-  // Tries again with this token.
+  // Stores this token and tries to connect again.
   signIn(token: string): void {
     this.#token.set(token);
     this.state.connection.value = { kind: "connecting" };
@@ -409,7 +410,8 @@ export class Page {
       effect(() => {
         const { server, storm, storms } = this.state;
         const id = storm.value?.id;
-        // The movie's texts need the server's description and its storms, so it waits for them.
+        // The movie continues only when the server's description and storms are known, because the
+        // movie's texts need them.
         const known = server.value !== undefined && storms.value.length > 0;
         if (id !== undefined && known) untracked(() => this.keeper.resumeMovie(id));
       }),
@@ -460,7 +462,8 @@ export class Page {
     return this.state.session.editBlock.peek() === undefined;
   }
 
-  // Turns the camera around the place that is seen there.
+  // Makes the camera turn around the place that `findSeen` returns, such as the place seen under
+  // the pointer.
   async #turnAround(
     findSeen: () => Promise<readonly [number, number, number] | undefined>,
   ): Promise<void> {
@@ -489,7 +492,7 @@ export class Page {
   }
 }
 
-// Returns the storage; undefined because browsers may deny access to it.
+// Returns the browser's storage; undefined if the browser denies access to it.
 function storageOf(window: Window): Storage | undefined {
   try {
     return window.localStorage;

@@ -1,4 +1,4 @@
-// The people of the session: names, roles, who steers, who asks.
+// The list of the people in the session: their names and roles, who steers, and who asks to steer.
 import { LONGEST_NAME } from "../core/own_keys";
 import { type Person, Role } from "../gen/thunderhead/v1/interact_pb";
 import type { Page } from "./page";
@@ -73,7 +73,8 @@ function PersonRow({ page, person }: { page: Page; person: Person }) {
   );
 }
 
-// The people who ask to steer, for the people who answer. A request expires after 20 seconds.
+// The people who ask to steer, with buttons to answer them. Only people who may answer see this. A
+// request expires after 20 seconds.
 export function Asking({ page }: { page: Page }) {
   const { session } = page.state;
   if (!session.answersAsking.value) return null;

@@ -1,7 +1,7 @@
-// Frames between the network and the canvas, either of the session's view or of the own view of a
-// person who looks around. Every frame is acknowledged, shown or not, because the server waits for
-// that. Every video frame is decoded on arrival, because later frames depend on it. Of other images
-// only the newest is decoded.
+// Passes frames from the network to the canvas. The frames show either the session's view, or the
+// own view of a person who looks around. Every frame is acknowledged, shown or not, because the
+// server waits for the acknowledgement. Every video frame is decoded on arrival, because later
+// frames depend on it. Of JPEG and AVIF frames only the newest is decoded.
 
 import { FramePipeline } from "../core/frame_pipeline";
 import type { Frame } from "../gen/thunderhead/v1/frame_pb";
@@ -18,7 +18,7 @@ export interface PictureFlowSteps {
   onNextPaint(callback: () => void): () => void;
 }
 
-// A frame, with its video that is already being decoded.
+// A frame. If it is a video frame, `video` is the result of its decoding, which has already begun.
 interface Arrived {
   readonly frame: Frame;
   readonly video: Promise<VideoFrame> | undefined;
@@ -76,7 +76,7 @@ export class PictureFlow {
     this.#newestSequence = frame.sequence;
     const video =
       frame.vp9.byteLength > 0 ? this.#video.decode(frame.vp9, frame.keyFrame) : undefined;
-    // The pipeline or #skipped handles the error, so it is ignored here.
+    // The pipeline or #skipped handles a decoding error, so it is ignored here.
     video?.catch(() => undefined);
     this.#pipeline.offer({ frame, video });
   }
@@ -95,8 +95,8 @@ export class PictureFlow {
     this.detach();
   }
 
-  // Switches to the other view, whose sequences are numbered separately. Waiting frames of the old
-  // view are dropped.
+  // Switches between the session's view and the own view, whose frames have separate sequence
+  // numbers. Drops waiting frames of the old view.
   #switchTo(ownView: boolean): void {
     if (this.#newestSequence !== undefined)
       this.#steps.acknowledge(this.#newestSequence, this.#showsOwnView);

@@ -1,4 +1,4 @@
-// The picture's brightness, the sky and the ground.
+// Controls for the picture's brightness, the sky and the ground.
 import { DEFAULTS, LIMITS, withDisplay, withGround, withOutput, withSky } from "../core/scene";
 import type { PageState } from "../core/state";
 import { Ground_Cover, ToneMap } from "../gen/thunderhead/v1/scene_pb";
@@ -26,7 +26,7 @@ const RESOLUTIONS = [
 // The exposure, either automatic or set by hand.
 export function ExposureControls({ state }: { state: PageState }) {
   const display = state.display.value;
-  // An automatic exposure is that of the newest frame.
+  // If the exposure is automatic, the newest frame reports its value.
   const shownExposureEv =
     display?.exposureEv ?? Math.round(100 * (state.frame.value?.modelled?.exposureEv ?? 0)) / 100;
   return (

@@ -8,14 +8,15 @@ import type { StrokePoint } from "../core/stroke";
 
 export interface PointerSteps {
   move(motion: (pose: Pose) => Pose): void;
-  // Returns the active tool; undefined for the camera.
+  // Returns the active tool; undefined if the pointer moves the camera.
   tool(): PictureTool | undefined;
-  // These report a press and release at one place while no tool is active.
+  // clicked() and doubleClicked() report presses and releases at one place while no tool is active.
   clicked(place: StrokePoint): void;
   doubleClicked(place: StrokePoint): void;
 }
 
-// A motion longer than this is a drag.
+// If the pointer moves farther than this between press and release, the gesture is a drag instead
+// of a click.
 const CLICK_PX = 4;
 
 interface Point {
@@ -36,7 +37,8 @@ export function attachPointer(canvas: HTMLCanvasElement, steps: PointerSteps): (
   const down = new Map<number, Point>();
   const listening = new AbortController();
   const options = { signal: listening.signal };
-  // `drawing` is the pointer that uses the tool. It is also in `down`.
+  // `drawing` is the pointer (mouse or finger) that uses the tool. `down` also contains this
+  // pointer.
   let pressedAt: StrokePoint | undefined;
   let drawing: { readonly pointerId: number; readonly tool: PictureTool } | undefined;
 

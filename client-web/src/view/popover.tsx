@@ -1,4 +1,5 @@
-// The panel that a button of the top bar opens. It takes the focus, and returns it when it closes.
+// The panel that a button of the top bar opens. The panel takes the keyboard focus when it opens,
+// and returns the focus when it closes.
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import type { PanelName } from "../core/tools";
@@ -14,7 +15,7 @@ interface PopoverProps {
 
 export function Popover({ page, name, title, label, children }: PopoverProps) {
   const dialog = useRef<HTMLElement>(null);
-  // This must run before the next key is handled.
+  // A layout effect is used because the focus must change before the next key is handled.
   useLayoutEffect(() => {
     const before = document.activeElement;
     dialog.current?.focus();

@@ -1,5 +1,5 @@
-// Asks the server for the fields along the ray of a click, and keeps the last two answers. The
-// second click measures from the first.
+// Asks the server for the values of the fields along the ray of a click, and keeps the last two
+// answers. From two answers the page shows the displacement between the two places.
 import { ConnectError } from "@connectrpc/connect";
 import { effect, untracked } from "@preact/signals-core";
 import { cameraOfPose, type Pose } from "../core/camera";
@@ -29,7 +29,8 @@ export class Probing {
   constructor(calls: ServerCalls, state: PageState) {
     this.#calls = calls;
     this.#state = state;
-    // Answers belong to one storm and time, so they are dropped when another is shown.
+    // The answers belong to one storm and time, so they are dropped when another storm or time is
+    // shown.
     this.#stop = effect(() => {
       void [state.stormId.value, state.timeIndex.value];
       untracked(() => this.forget());
@@ -40,7 +41,7 @@ export class Probing {
     this.#stop();
   }
 
-  // Probes at a place of the window, in CSS pixels.
+  // Probes the storm at a position in the window, given in CSS pixels.
   async at(place: StrokePoint): Promise<void> {
     const point = this.#pointAt(place);
     if (point !== undefined) await this.through(point);

@@ -33,7 +33,7 @@ export function QualityControls({ state }: { state: PageState }) {
   );
 }
 
-// The papers' modes, and every setting of the technique.
+// The section with the modes of papers and every setting of the technique.
 export function TechniqueSection({ state }: { state: PageState }) {
   return (
     <Section title="Technique, and the papers' modes" testId="technique-settings">

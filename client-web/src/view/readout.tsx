@@ -1,10 +1,10 @@
-// The connection, and the cost of the pictures.
+// The readout: the state of the connection, and the pictures' cost in time, bytes and memory.
 import { nameOfEncoding } from "../core/encoding";
 import { nameOfStage, nameOfTechnique } from "../core/names";
 import type { PageState } from "../core/state";
 import { formatBitRate, formatBytes, formatNumber } from "../core/units";
 
-// A summary of the connection. When it is opened, it shows the cost of the picture.
+// A button with a summary of the connection. A click opens a panel with the cost of the picture.
 export function Connection({ state }: { state: PageState }) {
   const frame = state.frame.value;
   const pace = state.pace.value;
@@ -111,8 +111,8 @@ function Costs({ state }: { state: PageState }) {
   );
 }
 
-// Describes the own view. All own views together get half of the server's time while the session's
-// view also moves (server/session/turns.h).
+// Describes how many people look around. All own views together get half of the server's rendering
+// time while the session's view also moves (server/session/turns.h).
 function ownView({ session }: PageState): string {
   const count = session.othersLookingAround.value + 1;
   if (count === 1) return "Your own, drawn for you alone";

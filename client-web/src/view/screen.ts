@@ -1,5 +1,5 @@
-// The screen. It passes frames to the canvas, places the canvas in its window, and reports the
-// shown frame to the state.
+// The part of the page that shows pictures. It passes frames to the canvas, tracks the canvas's
+// size and position in the window, and reports the shown frame to the state.
 import { poseOfCamera, standingAzimuthDeg } from "../core/camera";
 import { encodingOf, pictureBytes } from "../core/encoding";
 import { FrameRate } from "../core/frame_rate";
@@ -11,11 +11,11 @@ import { CanvasPlace } from "./canvas_place";
 import { PictureFlow } from "./picture_flow";
 import type { PointerSteps } from "./pointer";
 
-// The person may have asked the browser to save data. Not every browser reports this.
+// The browser's setting to save data. Not every browser has the property `connection`.
 type NetworkNavigator = Navigator & { readonly connection?: { readonly saveData?: boolean } };
 
 const PACE_EVERY_MS = 500;
-// Distance of what the camera sees, for a camera that does not turn around a target.
+// Assumed distance to what the camera sees, if the camera has no target.
 const TYPICAL_DISTANCE_M = 30_000;
 
 export interface ScreenSteps extends Omit<PointerSteps, "tool"> {
@@ -23,7 +23,7 @@ export interface ScreenSteps extends Omit<PointerSteps, "tool"> {
   acknowledge(sequence: bigint, ownView: boolean, videoLost?: boolean): void;
   // Reports that a frame is on the screen.
   shown(frame: Frame, nowMs: number): void;
-  // Called twice a second.
+  // This callback is called twice a second.
   paced(): void;
   resizeRested(): void;
   onNextPaint(callback: (nowMs: number) => void): () => void;
@@ -82,7 +82,7 @@ export class Screen {
     return this.#place.attach(canvas);
   }
 
-  // Returns the window as it is reported to the session.
+  // Returns the message about this page's window (its size and visibility) for the session.
   window() {
     const { document, navigator } = this.#window;
     const savesBytes = (navigator as NetworkNavigator | undefined)?.connection?.saveData === true;
@@ -99,14 +99,15 @@ export class Screen {
     return { box, projection, distanceM };
   }
 
-  // Publishes for tests the revision that the resting picture will show; empty until it is known.
+  // Publishes, for tests, the scene revision on which page and server agree (SceneSync.agreed). The
+  // final picture will show this revision. The text is empty while they do not agree.
   tellAgreed(revision: bigint | undefined): void {
     const { canvas } = this.#place;
     if (canvas !== undefined) canvas.dataset.agreed = String(revision ?? "");
   }
 
-  // Begins a new call. Its frames are numbered anew, and the picture on the canvas belongs to an
-  // earlier call.
+  // Begins a new call to the session. Its frames have new sequence numbers, and the picture on the
+  // canvas belongs to an earlier call.
   startCall(): void {
     this.#flow.startCall();
     delete this.#place.canvas?.dataset.revision;

@@ -1,4 +1,5 @@
-// The requests of the session's buttons: control, rules, marks, the name, the end.
+// The requests that the session's buttons send: about control, rules, marks, the person's name, and
+// the end of the session.
 import { ConnectError } from "@connectrpc/connect";
 import type { OwnKeys } from "../core/own_keys";
 import type { PageState } from "../core/state";

@@ -1,4 +1,4 @@
-// The person who steers, and the button that ends looking around.
+// The session bar. It shows the person who steers, and the button that ends looking around.
 import type { SessionState } from "../core/session_state";
 import type { Page } from "./page";
 
@@ -59,7 +59,7 @@ interface ControlStep {
   act(): void;
 }
 
-// Returns the action of the button about who steers: ask, take, give back or let go.
+// Returns the action of the control button: ask for control, take it, give it back or release it.
 function controlStep({ state: { session }, actions }: Page): ControlStep {
   const letGo = () => actions.giveControl();
   if (session.steering.value && session.presenting.value)

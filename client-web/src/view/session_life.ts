@@ -33,7 +33,7 @@ import type { Screen } from "./screen";
 import type { StormsOnServer } from "./storms_on_server";
 import type { Viewpoint } from "./viewpoint";
 
-// The subject and the text of the notice.
+// Subject and text of the notice that the server could not save the session.
 const NOT_SAVED = "not-saved";
 const NOT_SAVED_TEXT =
   "This session is not saved: it ends with the server, unless the server can save it later.";
@@ -58,13 +58,14 @@ export interface SessionLifeParts {
 
 export class SessionLife implements SessionListener {
   codecs: Codec[] = [Codec.JPEG];
-  // False for a page that joined another person's session, whose picture size must not change.
+  // True if this page sets the session's picture size. False for a page that joined another
+  // person's session.
   setsOutput: boolean;
   readonly #parts: SessionLifeParts;
   readonly #sync: SceneSync;
-  // The key with which the page joins, if it is the presenter's.
+  // The presenter key with which the page joins; undefined if it joins with the viewers' key.
   #presenterKey: string | undefined;
-  // True until the first presence of a session that this page opened.
+  // True after this page has opened a session, until the first presence message of this session.
   #opened = false;
   readonly #resumption = new ControlResumption();
   #newestProblem: Problem | undefined;
@@ -96,7 +97,7 @@ export class SessionLife implements SessionListener {
   }
 
   // Returns true once the picture of this time is on the screen. Before this page sends its first
-  // scene, the frame shown has the scene's time.
+  // scene, every frame counts, because the frame on the screen has the scene's time.
   isTimeShown(index: number): boolean {
     if (this.#sync.unsettled || this.#parts.screen().shown === undefined) return false;
     return (this.#parts.ledger.shownTimeIndex ?? index) === index;
@@ -121,8 +122,8 @@ export class SessionLife implements SessionListener {
     if (frame.sceneRevision >= this.#sync.revision) this.#parts.state.adoptCamera(frame.camera);
   }
 
-  // Adopts the camera if the scene has none, because a frame may arrive before the response that
-  // names its revision.
+  // Adopts the shown frame's camera if the scene's camera has no values. This is needed because a
+  // frame may arrive before the response that names its revision.
   adoptOpenCamera(): void {
     if (poseOfCamera(this.#parts.state.scene.peek().camera) === undefined) this.adoptCamera();
   }
@@ -234,11 +235,11 @@ export class SessionLife implements SessionListener {
 
   refused({ subject, requestId, code, message, reason, retryAfterMs }: Refusal): void {
     const { ownView } = this.#parts.viewpoint();
-    // A refused pointer, acknowledgement or motion does not matter, because it was late or a
-    // duplicate.
+    // A refused pointer, acknowledgement or camera motion needs no notice, because it only came too
+    // late or too often.
     if (subject === "point" || subject === "acknowledge") return;
     if (subject === "moveCamera") {
-      // The server has ended the own view, and this page may not know it yet.
+      // This code means that the server has ended the own view, which this page may not know yet.
       if (code === Code.FailedPrecondition) ownView.end();
       return;
     }
@@ -300,7 +301,8 @@ export class SessionLife implements SessionListener {
     this.#newestProblem = problem;
     if (!problem.ownView) this.#parts.ledger.settled(problem.sceneRevision);
     this.#parts.notes.problem("problem", problem.message);
-    // The storm may no longer exist.
+    // The cause may be that the scene's storm no longer exists, so the list of storms is fetched
+    // again.
     void this.#parts.storms.learn();
   }
 

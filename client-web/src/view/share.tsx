@@ -1,5 +1,5 @@
-// The viewers' link as text and as a QR code for a projector. For the presenter also the rules, and
-// a link with which to present.
+// The panel "Share". It shows the viewers' link as text and as a QR code for a projector. A
+// presenter also sees the session's rules, and a link with which another person can present.
 
 import { useMemo, useState } from "preact/hooks";
 import qrcode from "qrcode-generator";
@@ -22,7 +22,8 @@ const RULES: readonly (readonly [RuleName, string, string])[] = [
   ["freeWhenAway", "Free when away", "Control becomes free once you have been away for a minute."],
 ];
 
-// Width in modules of the quiet zone around the code, which ISO 18004 requires.
+// Width of the empty margin (quiet zone) around the QR code, in modules, as ISO 18004 requires. A
+// module is one square of the code.
 const QUIET = 4;
 
 export function Share({ page }: { page: Page }) {
@@ -60,7 +61,7 @@ interface LinkRowProps {
   copy(): void;
 }
 
-// A link to select or copy.
+// A row with a link as text and a button that copies it.
 function LinkRow({ who, link, copyId, copy }: LinkRowProps) {
   return (
     <div class="link-row">

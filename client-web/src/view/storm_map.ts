@@ -1,5 +1,5 @@
-// The storm from above, as the server computes it. It is fetched while a tool that shows it is
-// open, and again for another time.
+// Fetches the map of the storm from above, which the server computes. The map is fetched only while
+// a tool that shows it is open, and again when another time is shown.
 import { ConnectError } from "@connectrpc/connect";
 import { effect } from "@preact/signals-core";
 import type { PageState } from "../core/state";

@@ -1,5 +1,5 @@
-// Fetches what the server offers: its description, its storms, details of the storm shown. Makes
-// and deletes clouds.
+// Fetches the server's description, its list of storms, and the description of the storm that is
+// shown. Also makes and deletes clouds on the server.
 import { ConnectError } from "@connectrpc/connect";
 import { requestOfCloud } from "../core/cloud";
 import type { PageState } from "../core/state";
@@ -31,12 +31,14 @@ export class StormsOnServer {
         this.#state.adoptScene({ ...scene.value, stormId: first.id });
       }
     } catch {
-      // The stream also notices the lost connection, and this is called again after reconnecting.
+      // This error is ignored. The session's call also detects a lost connection, and this method
+      // is called again after the page has reconnected.
     }
   }
 
-  // Fetches the description of the storm at the time shown. Another storm is described at once,
-  // another time after a delay. It reads signals, so an effect must call it.
+  // Fetches the description of the storm at the time that is shown. After a change of the storm
+  // this happens at once, after a change of the time with a delay. Call this method in an effect,
+  // so that it runs again when a signal changes.
   describeAfterRest(playing: boolean): void {
     const stormId = this.#state.stormId.value;
     const timeIndex = this.#state.timeIndex.value;
@@ -61,8 +63,9 @@ export class StormsOnServer {
     }
   }
 
-  // Returns the description; undefined if the server cannot describe the storm now. The server then
-  // reports the error when the storm is requested.
+  // Returns the storm's description; undefined if the server cannot describe the storm now. The
+  // page then reports no error here, because the server will report it when the storm is requested
+  // in a scene.
   async description(stormId: string, timeIndex: number): Promise<StormDescription | undefined> {
     try {
       return await this.#calls.describeStorm(stormId, timeIndex);
@@ -71,8 +74,8 @@ export class StormsOnServer {
     }
   }
 
-  // Makes the cloud set in the panel. Returns the id of its storm; undefined if it failed or was
-  // stopped.
+  // Makes the cloud that is set in the panel. Returns the id of the new storm; undefined if the
+  // server failed or the person stopped it.
   async makeCloud(): Promise<string | undefined> {
     const making = new AbortController();
     this.#making = making;

@@ -1,5 +1,5 @@
-// The sky from below, with a sun that can be dragged. Its centre is the zenith, its ring the
-// horizon. The wedge shows the camera's direction.
+// The sky dome: a disc with a sun that can be dragged. The disc's centre is the zenith, and the
+// ring is the horizon. The wedge shows the camera's direction.
 
 import { wrapDegrees } from "../core/camera";
 import { clampToLimits } from "../core/limits";

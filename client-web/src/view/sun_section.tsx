@@ -1,4 +1,5 @@
-// The sun, set by the clock with a slider over the day, or by hand on the dome.
+// Controls of the sun. It is set either by the clock, with a slider over the day, or by hand on the
+// sky dome.
 import { standingAzimuthDeg } from "../core/camera";
 import { localClock } from "../core/moment";
 import { LIMITS, withSky, withSun, withSunClock } from "../core/scene";
@@ -28,7 +29,7 @@ export function SunControls({ state }: { state: PageState }) {
   const sun = state.sun.value;
   const byTime = sun?.source === Sun_Source.BY_TIME;
   const direction = state.sunDirection.value;
-  // Moving the sun by hand stops the clock and keeps the other angle.
+  // Moving the sun by hand stops the clock. An angle that the change does not set stays the same.
   const point = (change: { azimuthDeg?: number; elevationDeg?: number }) =>
     state.edit((scene) => withSun(scene, { ...direction, ...change, source: Sun_Source.BY_HAND }));
   const here = state.clockHere.value;
@@ -132,9 +133,10 @@ function DaySlider({ state, here, byTime }: DayProps) {
   );
 }
 
-// Number of sky samples: one every half hour.
+// Number of intervals at which the sky's colour is computed over a day: one per half hour.
 const SKY_STEPS = 48;
-// Heights of the sun with colours of the sky. Colours in between are interpolated.
+// Pairs of the sun's elevation in degrees and the sky's colour (red, green, blue). Colours in
+// between are interpolated.
 const SKY = [
   [-8, [8, 14, 30]],
   [-1, [217, 146, 91]],

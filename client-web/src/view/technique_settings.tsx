@@ -63,7 +63,7 @@ export function TechniqueSettings({ state }: { state: PageState }) {
   );
 }
 
-// The named settings of the papers' frame-rate table.
+// The choice of the presets that reproduce the settings in the papers' table of frame rates.
 function PapersChoice({ state }: { state: PageState }) {
   const presets = (state.server.value?.presets ?? [])
     .map(({ preset }) => preset)
@@ -90,7 +90,8 @@ interface MediumProps {
   readonly technique: TechniqueDescription;
 }
 
-// The settings that several techniques share. Only those that this technique has are shown.
+// The settings that several techniques share. Settings that this technique does not have are left
+// out.
 function MediumControls({ state, settings, technique }: MediumProps) {
   const shared = sharedSettingsOf(settings);
   const transport = transportOf(settings, technique);
@@ -164,7 +165,7 @@ interface OtherProps {
   readonly technique: OtherTechnique;
 }
 
-// The numbers of a technique of a server extension.
+// The numeric settings of a technique that a server extension provides.
 function OtherControls({ state, technique }: OtherProps) {
   return (
     <>

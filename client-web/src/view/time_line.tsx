@@ -8,7 +8,7 @@ import type { StormTime } from "../gen/thunderhead/v1/storm_pb";
 import { Icon } from "./icons";
 import type { Page } from "./page";
 
-// Maximum number of times whose clock is below their tick.
+// Maximum number of ticks with a time of day below them.
 const MAX_LABELS = 6;
 
 export function TimeLine({ page }: { page: Page }) {

@@ -1,5 +1,5 @@
-// The rail of tools, and the panel of the open tool. The panel is next to the rail in a wide
-// window, and a sheet at the bottom in a narrow one.
+// The rail of tools, and the panel of the open tool. In a wide window the panel is next to the
+// rail. In a narrow window it is at the bottom.
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useRef } from "preact/hooks";
 import { TOOL_NAMES, TOOL_TEXTS, type ToolName } from "../core/tools";
@@ -89,7 +89,7 @@ function OpenTool({ page, name }: { page: Page; name: ToolName }) {
   const locked = block !== undefined && STEERED.includes(name);
   const Content = CONTENTS[name];
   const { title, key } = TOOL_TEXTS[name];
-  // This must run before the next key is handled.
+  // A layout effect is used because the focus must change before the next key is handled.
   useLayoutEffect(() => {
     if (page.state.toolTakesFocus) panel.current?.focus();
   }, [page]);

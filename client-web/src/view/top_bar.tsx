@@ -1,5 +1,5 @@
-// A summary of the picture: storm, run, valid time in UTC and local, lead time. Then follow the
-// connection, and the buttons for saving and sharing.
+// The top bar. It shows the storm, the run, the valid time in UTC and local time, the lead time,
+// and the connection. It also has the buttons for saving and sharing.
 
 import type { PanelName } from "../core/tools";
 import { formatElapsed } from "../core/units";

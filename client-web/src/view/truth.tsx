@@ -5,7 +5,7 @@ import type { PageState } from "../core/state";
 import { formatNumber } from "../core/units";
 import type { AccuracyReport, Refinement } from "../gen/thunderhead/v1/frame_pb";
 
-// The bar is full at this error.
+// Relative error (0.5 is 50 %) at which the error bar is full.
 const LARGE_ERROR = 0.5;
 
 export function Truth({ state }: { state: PageState }) {
@@ -56,8 +56,8 @@ function sourceTitle(accuracy: AccuracyReport): string {
     : "The error that the same settings had on other storms; this picture's own is measured while it rests";
 }
 
-// The progress of the reference. It is always visible, because a picture cannot be judged without
-// it.
+// The progress of the reference (the path tracer that refines its picture continually). It is
+// always visible, because the picture's noise cannot be judged without it.
 function RefinementBrief({ refinement }: { refinement: Refinement }) {
   const { samplesPerPixel, relativeError } = refinement;
   return (

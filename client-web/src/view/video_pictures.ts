@@ -1,7 +1,8 @@
 // Decodes the frames of one video stream at a time. Each frame depends on those before it. Every
 // frame is therefore decoded in order of arrival, whether or not it will be shown.
 
-// Profile 0, 8 bits. The level is sufficient for any size that a server sends.
+// The codec string for VP9 profile 0, level 6.2, 8 bits. This level is sufficient for any size that
+// a server sends.
 export const VP9 = "vp09.00.62.08";
 
 // The colours are those of JPEG: sRGB as full-range BT.601.
@@ -24,7 +25,7 @@ interface Waiting {
 export class VideoPictures {
   #decoder: VideoDecoder | undefined;
   #count = 0;
-  // The frames being decoded, by timestamp. The timestamp is only a counter.
+  // The frames that are being decoded, by their timestamps. The timestamps are only counters.
   #waiting = new Map<number, Waiting>();
 
   // Decodes a frame. The caller must close the result. Rejects if the frame depends on one that was

@@ -1,4 +1,5 @@
-// Moves the camera: the session's camera for a viewer who steers, otherwise that of an own view.
+// Moves the camera. If this person steers, the session's camera moves. Otherwise the camera of this
+// person's own view moves.
 import { create } from "@bufbuild/protobuf";
 import { type CameraKind, homeCamera, type Pose, poseOfCamera } from "../core/camera";
 import { azimuthTo, standOf } from "../core/map_frame";
@@ -10,7 +11,7 @@ import { type Camera, CameraSchema } from "../gen/thunderhead/v1/scene_pb";
 import type { SessionClient } from "../transport/session_client";
 import type { Notes } from "./notes";
 
-// Height of the target for a camera that has no target height.
+// Assumed height of the target, if the present camera has no target.
 const TYPICAL_HEIGHT_M = 5000;
 
 export class Viewpoint {

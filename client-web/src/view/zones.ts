@@ -1,5 +1,5 @@
-// The time zones of the storm's place and of the sun's clock. The table of zones is loaded with the
-// first place.
+// Finds the time zones of the storm's place and of the sun's clock. The table of time zones is
+// loaded when the first place is known.
 import { effect } from "@preact/signals-core";
 import { zoneOfLongitude } from "../core/moment";
 import type { PageState } from "../core/state";
@@ -25,7 +25,7 @@ export function followZones(state: PageState): () => void {
     adopt(zoneOfLongitude(longitudeDeg));
     import("@photostructure/tz-lookup").then(
       ({ default: zoneOf }) => adopt(zoneOf(latitudeDeg, longitudeDeg)),
-      // Without the table, the zone of the longitude is used.
+      // If the table cannot be loaded, the nautical zone of the longitude is used.
       () => undefined,
     );
   });

@@ -15,7 +15,7 @@ constexpr double kHeight = 220;
 constexpr double kLeft = 46;
 constexpr double kTop = 24;
 constexpr double kGap = 70;
-constexpr double kLowest = -2;  // in decades
+constexpr double kLowest = -2;  // exponents of 10 at the ends of the axis
 constexpr double kHighest = 4;
 constexpr std::size_t kColumns = 2;
 

@@ -8,8 +8,8 @@
 
 namespace thunderhead::physics {
 
-// Returns an SVG with a panel for each table. The three channels are in colour on a logarithmic
-// scale.
+// Returns an SVG with a panel for each table. Each panel shows the three colour channels in their
+// colours on a logarithmic scale.
 std::string CurvesSvg(const std::vector<PhaseTable>& tables);
 
 }  // namespace thunderhead::physics

@@ -11,8 +11,8 @@
 namespace thunderhead::physics {
 namespace {
 
-// Returns a grid for cloud. It is fine in the forward direction (diffraction), in the backward
-// direction (glory) and between 125 and 150 degrees (cloudbow).
+// Returns an angle grid for cloud droplets. It is fine in the forward direction (diffraction), in
+// the backward direction (glory) and between 125 and 150 degrees (cloudbow).
 std::vector<GridSpan> CloudGrid() {
   return {{2, 0.05}, {6, 0.1},    {10, 0.25}, {30, 0.5},
           {125, 1},  {150, 0.25}, {172, 0.5}, {180, 0.1}};
@@ -23,13 +23,13 @@ std::vector<GridSpan> RainGrid() {
           {120, 1},    {145, 0.1}, {178, 0.5}, {180, 0.1}};
 }
 
-// Returns a grid for ice, which is fine around the halos at 22 and 46 degrees.
+// Returns an angle grid for ice, which is fine around the halos at 22 and 46 degrees.
 std::vector<GridSpan> IceGrid() {
   return {{2, 0.05}, {6, 0.1}, {50, 0.25}, {60, 0.5}, {176, 1}, {180, 0.5}};
 }
 
-// Wavelengths of equal weight that represent a channel's band, relative to its middle. The three
-// channels together cover sunlight from 0.4 to 0.7 um.
+// Wavelengths of equal weight that represent the band of a colour channel, relative to the band's
+// middle. The bands of the three channels together cover sunlight from 0.4 to 0.7 um.
 constexpr std::array kBandShiftsUm = {-0.1 / 3.0, 0.0, 0.1 / 3.0};
 
 PhaseTable TableOf(const std::string& name, const std::vector<double>& angles_deg,

@@ -17,8 +17,8 @@ struct DropletRecipe {
   std::string name;
   DropletSizes sizes;
   std::vector<GridSpan> grid;
-  int radii;   // quadrature points over the sizes
-  int points;  // quadrature points within each step of the grid
+  int radii;   // number of quadrature points over the sizes
+  int points;  // number of quadrature points within each step of the grid
 };
 
 struct IceRecipe {
@@ -33,13 +33,13 @@ struct IceRecipe {
 std::vector<DropletRecipe> DropletRecipes();
 std::vector<IceRecipe> IceRecipes();
 
-// A table, and the lines about its origin at the top of its file.
+// A table, and the lines about its origin for the top of its file.
 struct BuiltTable {
   PhaseTable table;
   std::string provenance;
 };
-// Build tables for sunlight. They are averaged over the sun's disc and, for water, over each
-// channel's band.
+// Build tables for sunlight. The tables are averaged over the sun's disc. Tables of water are also
+// averaged over the band of wavelengths of each colour channel.
 BuiltTable Build(const DropletRecipe& recipe, const WorkPlan& plan);
 BuiltTable Build(const IceRecipe& recipe, const WorkPlan& plan);
 

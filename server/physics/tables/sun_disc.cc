@@ -12,16 +12,19 @@
 namespace thunderhead::physics {
 namespace {
 
-// Rings of equal area, with widths finer than the forward peak of rain.
+// Number of rings of equal area that divide the disc. They are narrower than the forward peak of
+// rain.
 constexpr int kRings = 64;
-constexpr int kDirections = 64;  // half of those around a ring; the other half mirrors them
+// Half of the directions around a ring; the other half mirrors them.
+constexpr int kDirections = 64;
 
-// The error that the quadrature has for light at angles below a hundredth of a degree.
+// Maximum error of the quadrature for light at angles below a hundredth of a degree.
 constexpr double kMeanTolerance = 0.02;
 
 struct DiscPoint {
-  double along;   // cosine of the angle from the middle
-  double across;  // component away from the scattering angle's start
+  double along;  // cosine of the angle from the middle
+  // Component perpendicular to that direction, away from the scattering angle's start.
+  double across;
 };
 
 std::vector<DiscPoint> PointsOfDisc() {

@@ -1,6 +1,6 @@
-// The mean of a phase function over the sun's disc. Renderers and the reference treat the sun as a
-// point. Tables that hold the mean over its disc give them bows, halos and coronas of the right
-// sharpness.
+// The mean of a phase function over the sun's disc. Renderers and the path-traced reference treat
+// the sun as a point. A table that holds the mean over the disc gives bows, halos and coronas the
+// right sharpness.
 #pragma once
 
 #include "physics/phase_table.h"

@@ -18,20 +18,20 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kShadowTexels = 1024;  // along each side
+constexpr int kShadowTexels = 1024;  // number of texels along each side of the shadow map
 constexpr int kGroundShadowTexels = 256;
 constexpr double kBeforeSurface_m = 2.0;  // distance from the sun's eye to the surface
 constexpr int kRoughnessOctaves = 4;
-// Wavelength relative to the radius of the finest bubbles.
+// Wavelength of the roughness relative to the radius of the finest bubbles.
 constexpr double kRoughnessInFinest = 1.6;
-// Relative to the finest radius; prevents a division by zero.
+// Minimum corona thickness relative to the finest radius. It prevents a division by zero.
 constexpr double kMinCorona = 1e-3;
 
 constexpr gl::PieceCost kResolvePixel{"resolve", 50.0};
 constexpr gl::PieceCost kBubbleDepth{"bubble's depth", 1e5};
 constexpr gl::PieceCost kBubbleShade{"bubble", 1e6};
 
-// The layout of cumulus/bubble.glsl.
+// A bubble in the layout of cumulus/bubble.glsl.
 struct DeviceBubble {
   glm::vec4 unit_x;
   glm::vec4 unit_y;
@@ -41,7 +41,7 @@ struct DeviceBubble {
 };
 
 DeviceBubble OnDevice(const clouds::Bubble& bubble, const glm::dvec3& middle_m) {
-  // The columns of the transposed matrix are the rows of the original.
+  // The shader needs the rows of the matrix, which are the columns of its transpose.
   const glm::dmat3 rows = glm::transpose(clouds::UnitFromWorld(bubble));
   const glm::dmat3& axes = bubble.semi_axes_m;
   const double longest_m =
@@ -81,11 +81,11 @@ glm::vec4 SharesOf(scene::CumulusComponent component) {
 
 }  // namespace
 
-// Inputs of both passes over the bubbles.
+// Common inputs of the depth pass and the shading pass over the bubbles.
 struct CumulusRenderer::Pass {
   scene::View view;
   glm::ivec2 size{1};
-  double far_m = 1.0;  // distance of depth 1
+  double far_m = 1.0;  // distance that depth 1 stands for
   double corona_m = 1.0;
   double slack_m = 0.0;  // bubbles up to this far behind the nearest core are still drawn
   const gl::Texture2D* ground_distance = nullptr;
@@ -103,7 +103,7 @@ CumulusRenderer::Pass::Pass(const scene::View& from, const glm::ivec2& target,
                             const CumulusRenderer& renderer)
     : view(from), size(target) {
   const glm::dvec3 eye_m = view.eye_m - renderer.Middle_m();
-  // Parallel rays start on a plane, not at a point.
+  // Parallel rays start on a plane, so the distance is measured along the view direction.
   const double reach_m = glm::length(renderer.HalfExtent_m());
   far_m =
       view.Orthographic() ? glm::dot(view.forward, -eye_m) + reach_m : glm::length(eye_m) + reach_m;
@@ -284,7 +284,7 @@ absl::Status CumulusRenderer::DrawView(const RenderSettings& settings,
   SetShading(*program, settings, light_map, noises);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 0.0F, 0);
   shade_target_.Clear(0.0F, 0.0F, 0.0F, 1.0F, 1);
-  // The shader reads one copy of the depths while the depth test uses the other.
+  // The shader reads the depths while the depth test uses them, so each needs its own copy.
   glCopyImageSubData(core_depth_.Get(), GL_TEXTURE_2D, 0, 0, 0, 0, tested_depth_.Get(),
                      GL_TEXTURE_2D, 0, 0, 0, 0, settings.eye_size.x, settings.eye_size.y, 1);
   shade_target_.Bind();

@@ -1,7 +1,8 @@
 // Neyret's phenomenological shading of cumulus clouds (2000, "A Phenomenological Shader for the
 // Rendering of Cumulus Clouds") in real time. It ray-casts ellipsoids, nearest cores first, and
-// then shades each fragment by section 4. The result is radiance (rgb) and transmittance (a), like
-// that of the medium's renderers. The class owns GL objects, so use it on the context's thread.
+// then shades each fragment as in section 4 of the paper. The result is radiance (rgb) and
+// transmittance (a), like that of the renderers that draw a medium. The class owns GL objects, so
+// use it on the context's thread.
 #pragma once
 
 #include <memory>
@@ -22,7 +23,7 @@ namespace thunderhead::renderers {
 
 class CumulusRenderer {
  public:
-  // `programs` links the programs.
+  // The renderer gets its linked shader programs from `programs`.
   explicit CumulusRenderer(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
@@ -33,10 +34,10 @@ class CumulusRenderer {
   glm::dvec3 Middle_m() const { return (box_.low_m + box_.high_m) / 2.0; }
   glm::dvec3 HalfExtent_m() const { return (box_.high_m - box_.low_m) / 2.0; }
 
-  // Draws the surface's depth as seen from the sun, a shadow map. The surface must not be empty.
+  // Draws a shadow map: the surface's depth as seen from the sun. The surface must not be empty.
   absl::Status CastShadow(const RenderSettings& settings);
-  // Returns the share of sunlight that the surface keeps from the ground, over ShadowFrame around
-  // the middle. Call CastShadow first.
+  // Returns the share of sunlight that the surface blocks from reaching the ground. The texture
+  // covers ShadowFrame around the middle of the surface. Call CastShadow first.
   absl::StatusOr<gl::Texture2D> GroundShadow();
   const LightFrame& ShadowFrame() const { return shadow_frame_; }
 
@@ -55,7 +56,8 @@ class CumulusRenderer {
   void SetShading(const gl::Program& program, const RenderSettings& settings,
                   const std::vector<glm::vec3>& light_map, DetailNoises* noises);
   absl::Status DrawDepth(const Pass& pass, const gl::Framebuffer& target);
-  // `far_m` is the distance of depth 1, `middle_m` that of the surface's middle.
+  // `far_m` is the distance that depth 1 stands for. `middle_m` is the distance of the surface's
+  // middle.
   absl::Status Resolve(double far_m, double middle_m);
   absl::Status DrawBubbles(const gl::Program& program, const Pass& pass,
                            const gl::PieceCost& bubble) const;
@@ -65,13 +67,13 @@ class CumulusRenderer {
   gl::VertexArray no_attributes_ = gl::VertexArray::Empty();
   gl::WholeTarget whole_target_;
 
-  std::vector<glm::vec3> centres_m_;  // relative to the middle
+  std::vector<glm::vec3> centres_m_;  // centres relative to the middle of the surface's box
   std::vector<float> radii_m_;
   int count_ = 0;
   double finest_m_ = 1.0;
   clouds::SurfaceBox box_;
   bool has_base_ = false;
-  float base_m_ = 0.0F;  // relative to the middle
+  float base_m_ = 0.0F;  // height of the base relative to the middle
   gl::Buffer bubbles_;
 
   LightFrame shadow_frame_;

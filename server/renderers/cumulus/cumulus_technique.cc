@@ -67,7 +67,7 @@ class CumulusTechnique final : public Technique {
  private:
   Workspace& workspace_;
   CumulusRenderer renderer_;
-  std::vector<physics::Hydrometeor> fields_;  // from which the surface was made
+  std::vector<physics::Hydrometeor> fields_;  // the storm's fields from which the surface was made
 };
 
 class CumulusFactory final : public TechniqueFactory {

@@ -1,4 +1,4 @@
-// The cumulus as a technique of the registry.
+// The factory of the cumulus technique for the registry (technique_registry.h).
 #pragma once
 
 #include <memory>

@@ -12,7 +12,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Grids with more cells are coarsened first, because the surface is no finer than its ellipsoids.
+// Maximum number of cells for the surface. Larger grids are coarsened first, because the surface is
+// no finer than its ellipsoids.
 constexpr std::size_t kMaxSurfaceCells = 4'000'000;
 constexpr int kMaxSurfaceBalls = 700;
 
@@ -60,7 +61,7 @@ DrawnSurface SurfaceOfStorm(const scene::Scene& scene, const volume::Hydrometeor
   return drawn;
 }
 
-// Returns the box of the storm's condensate, or its domain if there is none.
+// Returns the box of the storm's condensate, or the domain if the storm has no condensate.
 clouds::SurfaceBox PlaceOf(const volume::HydrometeorFields& fields) {
   const volume::RegularGrid& grid = fields.grid;
   const volume::CellBox cells =

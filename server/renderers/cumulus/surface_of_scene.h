@@ -1,5 +1,6 @@
-// The surface that the cumulus renderer draws for a scene. It is that of the storm's cloud water
-// and ice, or is generated from a seed in the storm's place. This code does not use GL.
+// The surface of ellipsoids that the cumulus renderer draws for a scene. It follows the storm's
+// cloud water and ice, or is generated from a seed and fills the storm's box. This code does not
+// use GL.
 #pragma once
 
 #include <vector>
@@ -14,7 +15,7 @@ namespace thunderhead::renderers {
 
 struct DrawnSurface {
   clouds::CumulusSurface surface;
-  std::vector<physics::Hydrometeor> fields;  // from which the surface was made
+  std::vector<physics::Hydrometeor> fields;  // the storm's fields from which the surface was made
 };
 
 absl::StatusOr<DrawnSurface> SurfaceOf(const scene::Scene& scene,

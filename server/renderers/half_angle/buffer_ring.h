@@ -1,5 +1,5 @@
-// A ring of n buffers with dirty rectangles, in which each buffer holds every nth state. It is pure
-// bookkeeping without GL.
+// Bookkeeping for a ring of n buffers, of which each holds every nth state of an image. It records
+// which rectangle of each buffer is outdated. The class does not use GL.
 #pragma once
 
 #include <cstddef>
@@ -10,17 +10,17 @@
 
 namespace thunderhead::renderers {
 
-// Initially all buffers hold state 0. Each state follows from the one before.
+// Initially all buffers hold state 0. Each state is computed from the state before it.
 class BufferRing {
  public:
   explicit BufferRing(std::size_t buffers) : missing_(buffers) {}
 
-  // Returns the buffer that holds a state.
+  // Returns the index of the buffer that holds a state.
   std::size_t Of(std::size_t state) const { return state % missing_.size(); }
 
-  // Returns the rectangle to write in the buffer of `state`. It contains `changed`, where the state
-  // may differ from the one before, and all changes since that buffer was last written. Call it for
-  // each state from 1 on.
+  // Returns the rectangle that must be written in the buffer of `state`. It contains `changed`, in
+  // which the state may differ from the state before. It also contains all changes since that
+  // buffer was last written. Call the function for each state from 1 on.
   PixelRect Write(std::size_t state, const PixelRect& changed) {
     for (PixelRect& rect : missing_) rect = Around(rect, changed);
     return std::exchange(missing_[Of(state)], PixelRect());

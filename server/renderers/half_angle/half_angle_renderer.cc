@@ -19,18 +19,18 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMaxBufferTexels = 256;         // along the longer side of the light buffer
+constexpr int kMaxBufferTexels = 256;  // number of texels along the longer side of the light buffer
 constexpr double kBufferTexelInCells = 0.75;  // size of a light texel
 constexpr int kThicknessSlices = 128;         // slices perpendicular to the light
-// Number of slices drawn to the picture in one pass. A larger slab changes targets less often, but
-// its light takes more memory.
+// Number of slices that one pass adds to the picture. With a larger slab, render targets change
+// less often, but the slab's light takes more memory.
 constexpr int kSlabSlices = 16;
 constexpr gl::PieceCost kSlabPixel{"slab", 15.0 * kSlabSlices};
-// Path length of the light between two exchanges with neighbouring texels, relative to the reach of
-// one exchange (consistent transport).
+// Path length of the light between two exchanges of light with neighbouring texels. It is relative
+// to the distance that one exchange spreads light (consistent transport only).
 constexpr double kExchangeInReach = 3.0;
 
-// Runs the current program for each texel of a rectangle.
+// Runs the current compute program for each texel of a rectangle.
 void Dispatch(const glm::ivec2& size) {
   const glm::ivec2 groups = (size + shaders::kLightGroupSide - 1) / shaders::kLightGroupSide;
   glDispatchCompute(static_cast<GLuint>(groups.x), static_cast<GLuint>(groups.y), 1);
@@ -56,8 +56,9 @@ struct HalfAngleRenderer::Slab {
 
 struct HalfAngleRenderer::CarriedLight {
   BufferRing layers;
-  bool exchanges_late = false;  // light scattered in one call reaches the neighbours in the next
-  PixelRect due{};              // where that exchange is pending
+  // Light scattered in one dispatch reaches the neighbouring texels in the next dispatch.
+  bool exchanges_late = false;
+  PixelRect due{};  // rectangle of texels in which this exchange is pending
 };
 
 struct HalfAngleRenderer::Programs {
@@ -78,10 +79,11 @@ void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m) {
   const double texel_m = std::max(longest_m / kMaxBufferTexels, kBufferTexelInCells * cell_m);
   const glm::ivec2 light_size =
       glm::max(glm::ivec2(glm::ceil(2.0 * frame.half_extent_m / texel_m)), glm::ivec2(1));
-  // The stores of the last frame must complete before the fills below.
+  // The image stores of the last frame must complete before the textures are filled below.
   glMemoryBarrier(GL_TEXTURE_UPDATE_BARRIER_BIT);
   if (light_.Size() != light_size) {
-    // The layers hold the light of a slab's slices and the light that leaves the slab.
+    // The layers hold the light that enters each slice of a slab, and the light that leaves the
+    // slab.
     light_ = gl::Texture2DArray(GL_RG32F, light_size, kSlabSlices + 1);
     light_reach_ = {glm::ivec2(0), light_size};
     thickness_ = gl::Texture2D(GL_R32F, light_size);
@@ -144,7 +146,8 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
       const gl::Program* light,
       programs_->Get(gl::ProgramSource::Compute("half_angle/carry.comp", light_variant.Defines())));
   medium.BindWithBricks(*light);
-  medium.BindPixel(*light, settings.view, settings.eye_size);  // drawn alternately with the eye
+  // The light is drawn alternately with the eye buffer.
+  medium.BindPixel(*light, settings.view, settings.eye_size);
   BindSunRays(*light, slicing, frame);
   light->Set(uniform::light_weights, medium.Weights(weights.light));
   light->Set(uniform::transport_weights, medium.Weights(weights.transport));
@@ -229,7 +232,7 @@ void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& progra
                                      std::size_t at_once, const std::vector<SliceReach>& reach,
                                      CarriedLight* light) {
   program.Use();
-  // The light overwrites layers that the last slab's pass has fetched from.
+  // Light is written to layers that the pass of the last slab has read.
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   for (std::size_t first = slab.begin; first < slab.end; first += at_once) {
     const std::size_t end = std::min(first + at_once, slab.end);

@@ -4,8 +4,9 @@
 // is the medium's radiance towards the eye (rgb) and its transmittance (a), before sky and ground.
 //
 // The method is that of Riley et al. 2003 (Vis), section 4.4. Transport `kPaper` is eq. 14-17 as
-// printed. Transport `kConsistent` is the same idea with the exact exponential of the effective
-// extinction, delta scaling, and a diffusion term (Eddington) for light scattered many times.
+// printed. Transport `kConsistent` replaces the stepwise arithmetic by the exact exponential of the
+// effective extinction. It adds delta scaling and a diffusion term (Eddington) for light scattered
+// many times.
 #pragma once
 
 #include <array>
@@ -27,10 +28,10 @@ namespace thunderhead::renderers {
 
 class HalfAngleRenderer {
  public:
-  // `programs` links the programs.
+  // The renderer gets its linked shader programs from `programs`.
   explicit HalfAngleRenderer(std::shared_ptr<gl::ProgramCache> programs);
 
-  // Draws `medium`, which must not be empty. `light_changed` means that the medium or the sun
+  // Draws `medium`, which must not be empty. `light_changed` must be true if the medium or the sun
   // differs from the last call.
   absl::Status Render(const ResidentMedium& medium, const RenderSettings& settings,
                       bool light_changed);
@@ -38,8 +39,9 @@ class HalfAngleRenderer {
   // Returns the result of the last Render.
   const gl::Texture2D& Eye() const { return eye_[last_eye_].Texture(); }
   const gl::Texture2D& Distances_m() const { return eye_[last_eye_].Distances(); }
-  // Returns the light that leaves the last slice, before a pending exchange with neighbours. It has
-  // four floats a texel of the light buffer, the first of which is the share of sunlight.
+  // Returns the light that leaves the last slice, before neighbouring texels exchange light for the
+  // last time. It has four floats for each texel of the light buffer. The first float is the share
+  // of sunlight.
   std::vector<float> Light() const { return light_.Download(static_cast<int>(last_layer_)); }
   std::size_t Bytes() const;
 
@@ -60,11 +62,11 @@ class HalfAngleRenderer {
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::WholeTarget whole_target_;
-  std::array<CoveredTarget, 2> eye_;  // before and after a slab, alternately
+  std::array<CoveredTarget, 2> eye_;  // the picture before and after a slab, alternately
   std::size_t last_eye_ = 0;
   gl::Texture2DArray light_;    // the light that enters each slice, by layer
   std::size_t last_layer_ = 0;  // layer behind the last slice
-  PixelRect light_reach_;       // where the light may differ from unshaded light
+  PixelRect light_reach_;       // rectangle of texels outside which sunlight is unshaded
   gl::Texture2D ring_depth_;    // optical depth scattered to neighbours since the last exchange
   gl::Texture2D thickness_;
 };

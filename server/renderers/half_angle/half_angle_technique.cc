@@ -6,7 +6,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-// The light is propagated while the view is drawn, because light and view advance together.
+// Half-angle slicing as a technique. It propagates the light in DrawView, because light and view
+// advance together.
 class HalfAngleTechnique final : public Technique {
  public:
   explicit HalfAngleTechnique(Workspace& workspace)
@@ -31,7 +32,7 @@ class HalfAngleTechnique final : public Technique {
     THUNDERHEAD_RETURN_IF_ERROR(Timed(workspace_.Pieces(), scene::FrameStage::kSlices, times, [&] {
       return renderer_.Render(workspace_.medium, settings, light_changed_);
     }));
-    // The flag is not reset after a cancelled Render, because its light may be incomplete.
+    // If Render was cancelled, the flag stays set, because the light may be incomplete.
     light_changed_ = false;
     return absl::OkStatus();
   }

@@ -1,4 +1,4 @@
-// Half-angle slicing as a technique of the registry.
+// The factory of the half-angle slicing technique for the registry (technique_registry.h).
 #pragma once
 
 #include <memory>

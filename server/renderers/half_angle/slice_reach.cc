@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMarginPx = 1.0;
 
-// The texels of the light buffer that boxes of one size shade.
+// Computes which texels of the light buffer are shaded by boxes of one size.
 class Shadow {
  public:
   Shadow(const glm::dvec3& half_extent_m, const LightFrame& frame, const glm::ivec2& size)
@@ -36,7 +36,7 @@ class Shadow {
 
   const LightFrame& frame_;
   glm::ivec2 size_;
-  glm::dvec2 half_m_;  // along the frame's axes
+  glm::dvec2 half_m_;  // half extent of a box along the frame's axes
 };
 
 }  // namespace

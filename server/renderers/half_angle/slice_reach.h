@@ -1,5 +1,5 @@
-// Bounds of each slice: the part of the picture and of the light buffer that the occupied bricks in
-// the slice cover. It is pure geometry without GL.
+// Bounds of each slice in the picture and in the light buffer. They are the rectangles that the
+// occupied bricks in the slice cover. This code is pure geometry without GL.
 #pragma once
 
 #include <vector>
@@ -9,14 +9,14 @@
 
 namespace thunderhead::renderers {
 
-// Both rectangles are empty for a slice that meets no brick.
+// The bounds of one slice. Both rectangles are empty for a slice that meets no brick.
 struct SliceReach {
   PixelRect eye;
-  PixelRect light;  // in texels, with a border of one
+  PixelRect light;  // in texels of the light buffer, with a border of one texel
 };
 
-// Returns the reach of each slice. `boxes` are around `middle_m`, the origin of the slices'
-// coordinates.
+// Returns the bounds of each slice. `boxes` are the occupied bricks. `middle_m` is the origin of
+// the slices' coordinates.
 std::vector<SliceReach> ReachOf(const Slicing& slicing, const Boxes& boxes,
                                 const glm::dvec3& middle_m, const scene::View& view,
                                 const glm::ivec2& eye_px, const LightFrame& frame,

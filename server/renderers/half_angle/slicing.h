@@ -9,9 +9,9 @@
 
 namespace thunderhead::renderers {
 
-// Equidistant parallel planes. Sunlight meets the first one first.
+// Equidistant parallel planes. The first plane is the nearest to the sun.
 struct Slicing {
-  glm::dvec3 normal{0.0, 0.0, 1.0};  // points to the sun's side
+  glm::dvec3 normal{0.0, 0.0, 1.0};  // unit normal of the planes, on the sun's side
   int count = 0;
   double first_m = 0.0;  // distance of the first plane from the origin along the normal
   double spacing_m = 1.0;
@@ -20,13 +20,15 @@ struct Slicing {
   double Distance_m(int slice) const { return first_m - slice * spacing_m; }
 };
 
-// The order in which the rays of a view meet the slices.
+// The order in which the rays of a view meet the slices, relative to the order in which sunlight
+// meets them.
 enum class SliceOrder { kAgainst, kAlong, kBoth };
 SliceOrder OrderOf(const Slicing& slicing, const scene::View& view);
 
-// Cuts `box` into `count` slices. `towards_eye` is the unit vector against the view's axis. If the
-// eye is on the sun's side, the slices face halfway between the two. Otherwise the view direction
-// is reversed, and with it the blend order.
+// Cuts `box` into `count` slices. `towards_eye` is the unit vector opposite to the view direction.
+// If the eye is on the sun's side, the slices' normal lies halfway between `towards_sun` and
+// `towards_eye`. Otherwise it lies halfway between `towards_sun` and the view direction, and the
+// blend order is reversed.
 Slicing SliceBox(const LocalBox& box, const glm::dvec3& towards_sun, const glm::dvec3& towards_eye,
                  int count);
 

@@ -1,5 +1,5 @@
-// The variants of half-angle slicing's shaders. The variants of thickness.comp are those of the
-// medium.
+// The preprocessor variants of the shaders of half-angle slicing. The variants of thickness.comp
+// are those of the medium.
 #pragma once
 
 #include "gl/program.h"
@@ -8,25 +8,25 @@
 
 namespace thunderhead::renderers {
 
-// Variant of half_angle/carry.comp.
+// Preprocessor variant of half_angle/carry.comp.
 struct SliceLightVariant {
   MediumVariant medium;
-  gl::DefineValue consistent;   // the transport is consistent
-  gl::DefineValue translucent;  // neighbouring texels exchange light
+  gl::DefineValue consistent;   // 1 if the transport is consistent
+  gl::DefineValue translucent;  // 1 if neighbouring texels exchange light
 
   gl::Defines Defines() const {
     return gl::Joined(medium.Defines(), {{"CONSISTENT", consistent}, {"TRANSLUCENT", translucent}});
   }
 };
 
-// Variant of half_angle/eye.frag.
+// Preprocessor variant of half_angle/eye.frag.
 struct SliceEyeVariant {
   MediumVariant medium;
-  gl::DefineValue colored;      // groups have colours
-  gl::DefineValue even_albedo;  // one albedo and colour for all groups
+  gl::DefineValue colored;      // 1 if groups have colours
+  gl::DefineValue even_albedo;  // 1 if all groups have the same albedo and colour
   gl::DefineValue translucent;
-  gl::DefineValue consistent;  // the transport is consistent
-  gl::DefineValue ground;      // ground may hide a part of the medium
+  gl::DefineValue consistent;  // 1 if the transport is consistent
+  gl::DefineValue ground;      // 1 if ground may hide a part of the medium
   SliceOrder order;
 
   gl::Defines Defines() const {

@@ -7,7 +7,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMaxGroupsInRow = 65535;  // the minimum that OpenGL 4.5 guarantees along each axis
+// Minimum that OpenGL 4.5 guarantees for the number of work groups along each axis.
+constexpr int kMaxGroupsInRow = 65535;
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Runs work on the blocks of cells that a ray may meet. The shader's side is
+// Runs a compute shader on the blocks of cells that a ray may meet. The shader's side is
 // shaders/light_volume/cell_blocks.glsl.
 #pragma once
 
@@ -8,8 +8,8 @@
 
 namespace thunderhead::renderers {
 
-// Runs `program` with a work group for each block of `medium` from `first` to before `end`. The
-// program's other inputs must be bound.
+// Runs `program` with one work group for each block of `medium` with an index from `first` to `end`
+// - 1. The program's other inputs must be bound.
 absl::Status ForCellBlocks(gl::Pieces& pieces, const gl::PieceCost& block,
                            const ResidentMedium& medium, const gl::Program& program, int first,
                            int end);

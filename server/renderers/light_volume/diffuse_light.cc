@@ -15,28 +15,30 @@ namespace thunderhead::renderers {
 namespace {
 
 constexpr double kSkyTolerance = 2e-4;
-// Maximum factor by which a slanted exit through a face lengthens the path to the surface.
+// Maximum factor by which a slanted direction lengthens the path from a face to the cloud's
+// surface.
 constexpr float kMaxSlant = 4.0F;
 
 // Smaller transmittances of sunlight count as zero.
 constexpr float kDarkTransmittance = 1e-12F;
 
-// Light that faces receive from a sky of radiance a + b (1 - sine of the elevation). The values are
-// weights of its irradiance from above over pi, and of its mean radiance. They are integrals over a
-// hemisphere, and for sides over a quarter of the sphere.
+// Light that the six faces of a cell receive from a sky of radiance a + b (1 - sine of the
+// elevation). Component x is the weight of the sky's irradiance from above over pi, y is the weight
+// of its mean radiance. The weights are integrals over a hemisphere. For the vertical faces they
+// are integrals over a quarter of the sphere.
 constexpr glm::vec2 kSideSees(-0.227F, 0.727F);
 constexpr std::array<glm::vec2, 6> kSkySeen = {kSideSees, kSideSees,       kSideSees,
                                                kSideSees, glm::vec2(0.0F), glm::vec2(1.0F, 0.0F)};
 
-// Largest horizontal step of light, as a share of the medium's height. Diffusion has no free
-// flight. In haze on a thick cloud it would carry light away sideways, although that light leaves
-// upwards after a short distance. Half or twice this value changes the errors of the sample storm
-// by 0.01 to 0.03.
+// Largest horizontal step of light, as a share of the medium's height. In the diffusion equation,
+// light spreads without limit through thin medium. In haze on a thick cloud it would be carried far
+// sideways, although in reality it leaves upwards after a short distance. Half or twice this value
+// changes the errors of the sample storm by 0.01 to 0.03.
 constexpr double kFarthestHop = 0.05;
 constexpr float kMinResistance = 1e-3F;
 
 // Returns the mean of exp(-depth) between the optical depths `from` and `to`. `transmittance` is
-// that of the smaller depth.
+// exp(-depth) at the smaller of the two.
 float MeanTransmittance(float transmittance, float from, float to) {
   return transmittance * physics::glsl::mean_transmittance(std::abs(to - from));
 }
@@ -52,7 +54,8 @@ DiffuseLight::DiffuseLight(DiffusionCells cells)
   FindExits();
   Link();
   SolveSky();
-  // For a sun, extinction is read only by number (optics_), so the values by cell are freed.
+  // While solving for a sun, extinction is read only by number (optics_), so the values by cell are
+  // freed.
   cells_.light_per_m = std::vector<float>();
   cells_.transport_per_m = std::vector<float>();
   cells_.absorption_per_m = std::vector<float>();
@@ -63,7 +66,8 @@ DiffuseLight::DiffuseLight(DiffusionCells cells)
   }
 }
 
-// Adds 1 / depth^2 of the nearer exit along an axis.
+// Adds 1 / depth^2 for each cell, where depth is the optical depth to the nearer of the two exits
+// along `axis`.
 void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all,
                              std::vector<glm::vec3>* outward) {
   const int length = cells_.size[axis];
@@ -107,8 +111,9 @@ void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<floa
   }
 }
 
-// For a plane surface with normal n, the distance out along axis k is t / |n_k|. The squares of the
-// reciprocals therefore sum to that of the shortest distance t, for any direction of the surface.
+// For a plane surface with normal n, the distance to the surface along axis k is t / |n_k|, where t
+// is the shortest distance. The squares of the reciprocal distances therefore add up to 1 / t^2,
+// for any direction of the surface.
 void DiffuseLight::FindExits() {
   std::vector<float> sum(numbered_.AllCells(), 0.0F);
   std::vector<float> all(numbered_.AllCells(), 0.0F);
@@ -122,7 +127,8 @@ void DiffuseLight::FindExits() {
     const std::size_t i = numbered_.CellOf(n);
     exit_root_[i] = std::pow(sum[i], -0.25F);
     sky_seen_[i] /= all[i];
-    // If all depths overflow, no exit counts as nearer than another.
+    // If all depths overflow, outward is the zero vector, so that no exit counts as nearer than
+    // another.
     outward_.push_back(all[i] > 0.0F ? outward[i] / all[i] : glm::vec3(0.0F));
     const float exit = exit_root_[i] * exit_root_[i];
     optics_.push_back({cells_.light_per_m[i], cells_.absorption_per_m[i], exit,
@@ -143,7 +149,7 @@ void DiffuseLight::Link() {
     const std::size_t i = numbered_.CellOf(n);
     const glm::ivec3 cell = cells_.CellAt(i);
     const float here = cells_.transport_per_m[i];
-    const float exit = optics_[n].exit;  // for `light`, as is `out` below
+    const float exit = optics_[n].exit;  // optical depth by `light_per_m`, like `out` below
     for (int side = 0; side < 6; ++side) {
       const int axis = side / 2;
       glm::ivec3 next = cell;
@@ -203,8 +209,8 @@ void DiffuseLight::SolveSkyPart(int part) {
   }
 }
 
-// Computes the transmittance of sunlight to each cell, and its mean on the path to the neighbour up
-// each axis.
+// Computes the transmittance of sunlight to each cell, and its mean on the path to the next cell in
+// the positive direction of each axis.
 void DiffuseLight::FindTransmittances(const std::vector<float>& arrived_root) {
   sun_.resize(numbered_.Count());
   ForShares(sun_.size(), [&](std::size_t begin, std::size_t end) {
@@ -253,7 +259,7 @@ float DiffuseLight::SunlightScattered(std::size_t n, const glm::dvec3& towards_s
       flux = along * (3.0F * between + slack) * transmittance;
     } else {
       const float out = half_m * here.light_per_m;
-      // The optical depth of sunlight at the surface where it enters or leaves.
+      // The optical depth of sunlight where it passes the cloud's surface at this side.
       const float surface = along < 0.0F ? std::max(depth + out / std::min(along, -1e-3F), 0.0F)
                                          : depth + out / std::max(along, 1e-3F);
       const float surface_transmittance = std::exp(-surface);

@@ -1,4 +1,4 @@
-// The input of the diffusion equation: extinction of the medium in cells of one size.
+// The input of the diffusion equation: the extinction of the medium in cells of equal size.
 #pragma once
 
 #include <cstddef>

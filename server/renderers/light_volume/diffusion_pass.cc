@@ -16,11 +16,11 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Media with more cells are solved on a coarser grid.
+// Maximum number of cells. Media with more cells are solved on a coarser grid.
 constexpr double kMaxDiffusionCells = 4e6;
 
-// Memory of DiffuseLight, its inputs and this pass for each cell, and additionally for each
-// non-empty cell.
+// Memory of DiffuseLight, its inputs and this pass: bytes for each cell, and additional bytes for
+// each non-empty cell.
 constexpr std::size_t kBytesPerCell = 56;
 constexpr std::size_t kBytesPerFullCell = 176;
 
@@ -136,8 +136,8 @@ void DiffusionPass::SolveCells(DiffusionCells cells) {
 
 absl::Status DiffusionPass::SampleLight(const gl::Texture3D& arrived) {
   if (arrived.Size() == size_ && arrived.InternalFormat() == GL_R16F) {
-    // The half floats are downloaded unconverted, because converting would be a pass over mostly
-    // empty cells.
+    // Half floats are downloaded without conversion by GL. A conversion would be a pass over cells
+    // that are mostly empty.
     arrived_halves_.resize(arrived_root_.size());
     arrived.Download(GL_RED, GL_HALF_FLOAT, arrived_halves_.size() * sizeof(std::uint16_t),
                      arrived_halves_.data());

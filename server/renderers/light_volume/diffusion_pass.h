@@ -1,7 +1,7 @@
-// The diffusion equation of a resident medium. It reads the medium's cells and the light that has
-// arrived there from the device, solves the equation (diffuse_light.h), and uploads the result as
-// textures for the march. Results that depend only on the cells are kept for all suns. The class
-// owns GL objects, so use it on the context's thread.
+// The diffusion equation of a resident medium. The pass reads from the device the medium's cells
+// and the sunlight that arrives at them. It solves the equation (diffuse_light.h) and uploads the
+// result as textures for march.frag. Results that depend only on the cells are kept for all suns.
+// The class owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <array>
@@ -29,9 +29,9 @@ class DiffusionPass {
   explicit DiffusionPass(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // Solves for one sun. `arrived` is the result of arrive.comp. `tolerance` is that of
-  // DiffuseLight::SolveSun. With `in_turns`, the light of the ground is updated for only a part of
-  // the cells (SunParts).
+  // Solves for one sun. `arrived` is the output of arrive.comp. `tolerance` is passed to
+  // DiffuseLight::SolveSun. If `in_turns` is true, the light of the ground is updated for only a
+  // part of the cells (SunParts).
   absl::Status Solve(const ResidentMedium& medium, const GroupWeights& weights,
                      const gl::Texture3D& arrived, const glm::dvec3& towards_sun, double tolerance,
                      const LitGround& ground, bool in_turns);
@@ -60,22 +60,22 @@ class DiffusionPass {
 
   absl::StatusOr<DiffusionCells> SampleCells(const ResidentMedium& medium,
                                              const GroupWeights& weights);
-  // Solves for the results that depend on the cells alone.
+  // Creates `light_`, which computes the results that do not depend on the sun.
   void SolveCells(DiffusionCells cells);
   absl::Status SampleLight(const gl::Texture3D& arrived);
 
   std::shared_ptr<gl::ProgramCache> programs_;
   Key key_;
-  base::MemoryReservation memory_;  // main memory of the members below
+  base::MemoryReservation memory_;  // main memory of the members below that are not textures
   std::optional<DiffuseLight> light_;
   glm::ivec3 size_{0};
   gl::Texture3D sampled_cells_;
   gl::Texture3D sampled_light_;
-  // Texels hold the square root of the optical depth to the nearest exit, the sky seen
-  // (DiffuseLight::SkySeen), and the x of its net flux.
+  // Texels hold the square root of the optical depth to the nearest exit, DiffuseLight::SkySeen,
+  // and component x of DiffuseLight::SkyInward.
   gl::Texture3D exits_;
-  // Texels hold the net inward flux of sunlight, the fluence from other walls, the y of the sky's
-  // net flux, and LitGround::ShareAt.
+  // Texels hold the net inward flux of sunlight, the fluence from other walls, component y of
+  // DiffuseLight::SkyInward, and LitGround::ShareAt.
   gl::Texture3D net_inward_;
   SunParts ground_parts_;
   std::vector<float> arrived_root_;

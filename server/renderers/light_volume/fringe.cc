@@ -11,8 +11,8 @@ Fringe::Fringe(const DiffusionCells& cells, const std::vector<std::int32_t>& hol
                      static_cast<std::ptrdiff_t>(cells.size.x) +
                  steps[k].x;
   }
-  // A bit for each neighbour that has a value. kHolds marks cells that have a value themselves,
-  // which are not part of the fringe.
+  // Each cell has a bit for each neighbour that has a value. Bit kHolds marks cells that have a
+  // value themselves, which are not part of the fringe.
   constexpr std::uint32_t kHolds = 1U << (kAround / 2);
   std::vector<std::uint32_t> neighbours(cells.transport_per_m.size(), 0);
   for (const std::int32_t cell : holding) {

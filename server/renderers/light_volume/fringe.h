@@ -1,5 +1,5 @@
-// The cells without a value that are next to cells with one. They are set to the mean of those
-// neighbours, so that interpolated values do not fade towards the edge.
+// The cells without a value that are next to cells with a value. They are set to the mean of those
+// neighbours, so that interpolated values do not decrease towards the edge.
 #pragma once
 
 #include <array>
@@ -16,11 +16,11 @@ namespace thunderhead::renderers {
 class Fringe {
  public:
   Fringe() = default;
-  // `holding` are the cells that have a value, in ascending order.
+  // `holding` are the indices of the cells that have a value, in ascending order.
   Fringe(const DiffusionCells& cells, const std::vector<std::int32_t>& holding);
 
   std::size_t Count() const { return cells_.size(); }
-  // Returns cell `f` of the fringe. The cells are in ascending order.
+  // Returns the index of the fringe's cell number `f`. The indices are in ascending order.
   std::int32_t CellOf(std::size_t f) const { return cells_[f].cell; }
 
   // Sets each cell of the fringe to the mean of those of its 26 neighbours that have a value.
@@ -31,7 +31,7 @@ class Fringe {
   static constexpr std::size_t kAround = 27;  // including the cell itself
   struct Cell {
     std::int32_t cell;
-    std::uint32_t neighbours;  // bit k: the cell at cell + around_[k] has a value
+    std::uint32_t neighbours;  // bit k is set if the cell at cell + around_[k] has a value
   };
 
   std::array<std::ptrdiff_t, kAround> around_{};

@@ -1,6 +1,7 @@
-// The medium for propagating light: one texture with one value a cell, computed once for fields and
-// their parameters. It replaces fetching groups and detail at each sample along the sun's rays.
-// Light is stored per cell, so detail finer than cells does not affect it anyway.
+// The medium for propagating light: one texture with one extinction value for each cell, computed
+// once for the fields and their parameters. Samples along the sun's rays read this texture instead
+// of all groups and their detail. Light is stored by cell, so detail finer than cells does not
+// affect it anyway.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,7 @@ class LightMedium {
       : programs_(std::move(programs)) {}
 
   // Computes the texture of `medium`, which must not be empty, unless it is up to date.
-  // `with_transport` adds similarity-scaled extinction to that of the light.
+  // If `with_transport` is true, texels also hold the similarity-scaled extinction.
   absl::Status Update(const ResidentMedium& medium, const GroupWeights& weights,
                       bool with_transport);
 
@@ -33,7 +34,8 @@ class LightMedium {
   // Returns a number that changes each time the texture is computed. It is never 0.
   std::uint64_t Version() const { return version_; }
 
-  // Return the texture and the extinction of a texel value of 1, for checks.
+  // Return the texture, and the extinction that a texel value of 1 stands for. Only checks use
+  // them.
   const gl::Texture3D& Texture() const { return texture_; }
   double PerMetre() const { return per_m_; }
 

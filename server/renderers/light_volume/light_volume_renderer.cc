@@ -17,14 +17,16 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMaxLightTexels = 256;         // along each side, at the usual detail
-constexpr double kLightTexelInCells = 0.75;  // across the sun's rays, at the usual detail
-// Along the sun's rays, relative to the path through a cell.
+constexpr int kMaxLightTexels = 256;  // number of texels along each side, at the usual detail
+// Size of a texel across the sun's rays, at the usual detail.
+constexpr double kLightTexelInCells = 0.75;
+// Length of a layer along the sun's rays, relative to the path through a cell.
 constexpr double kLayerInCells = 1.5;
 constexpr std::array kCorrectionUnits = {shaders::kCorrectionRedUnit, shaders::kCorrectionGreenUnit,
                                          shaders::kCorrectionBlueUnit};
-constexpr double kNearInTexels = 1.5;  // length of the path next to a cell that is sampled
-// Distance in texels beyond the end of that path within which the carried light is read.
+// Length, in texels, of the path next to a cell along which the medium is sampled.
+constexpr double kNearInTexels = 1.5;
+// The carried light is read up to this distance, in texels, beyond the end of that path.
 // Interpolation adds one texel along each axis.
 constexpr double kReadBeyond = 1.74;
 constexpr double kMarchedSample_ns = 15.0;  // guessed cost of a sample of the medium
@@ -40,9 +42,10 @@ bool Diffuses(const RenderSettings& settings) {
   return settings.Medium().transport == scene::Transport::kDiffusion;
 }
 
-// Returns the limits of the march's step near the eye, in cells and relative to the distance.
-// Inside or close to a cloud, steps that are long relative to their distance show as plates that
-// slide as the eye moves. Frames with few samples also have longer steps there.
+// Returns the limits of the march's step near the eye. The first limit is in cells, the second is
+// relative to the distance from the eye. Inside or close to a cloud, steps that are long relative
+// to their distance are visible as plates, which move as the eye moves. Frames with few samples
+// also have longer steps there.
 glm::vec2 NearStep(int slices) {
   constexpr double kInCells = 0.25;
   constexpr double kByDistance = 1.0 / 24.0;
@@ -52,14 +55,16 @@ glm::vec2 NearStep(int slices) {
 
 }  // namespace
 
-// The box of the carried light, across and along the sun's rays, around the medium's middle.
+// The box in which light is carried. Its axes are across and along the sun's rays, and its centre
+// is the medium's middle.
 struct LightVolumeRenderer::LightBox {
   LightFrame frame;
   double reach_m = 0.0;  // half the depth of the box
-  double near_m = 0.0;   // length of the path next to a cell, towards the sun, that is sampled
-  double read_m = 0.0;   // distance from scattering cells within which the carried light is read
+  // Length of the path from a cell towards the sun along which the medium is sampled.
+  double near_m = 0.0;
+  double read_m = 0.0;  // the carried light is read up to this distance from scattering cells
   glm::ivec3 size{1};
-  int half_layer_steps = 1;  // samples of the medium in half a layer
+  int half_layer_steps = 1;  // number of samples of the medium in half a layer
 
   LightBox(const ResidentMedium& medium, const RenderSettings& settings);
   // Returns the transformation from local metres to texture coordinates.
@@ -91,12 +96,13 @@ LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
       glm::clamp(glm::ivec2(glm::ceil(across_m / texel_m)), glm::ivec2(1), glm::ivec2(max_texels)),
       layers_of(settings.quality.light_layer * layer_m));
   if (settings.Medium().transport == scene::Transport::kPaper) {
-    // The paper's transport depends on the number of its steps, so they are the scene's slices.
+    // The paper's transport depends on the number of its steps, so the steps are the scene's
+    // slices.
     const int slices = *scene::SlicesOf(settings.technique);
     size.z = usual_layers = std::clamp((slices + 1) / 2, 1, max_texels);
     half_layer_steps = std::max(1, (slices + size.z) / (2 * size.z));
   }
-  // Layers longer than usual do not change the length of the path sampled next to a cell.
+  // The path sampled next to a cell keeps its length even if layers are longer than usual.
   near_m = kNearInTexels * std::max(texel_m, 2.0 * reach_m / usual_layers);
   read_m = near_m + kReadBeyond * std::max(texel_m, 2.0 * reach_m / size.z);
 }
@@ -118,11 +124,11 @@ void LightVolumeRenderer::Resize(const glm::ivec3& carried, const glm::ivec3& ce
   }
   if (arrived_.Size() != cells || light_format_ != format) {
     arrived_ = gl::Texture3D(format, cells);
-    // The march gives unwritten texels no weight, but it may multiply them by zero, so they must be
+    // The march gives unwritten texels the weight 0. It may multiply them by it, so they must be
     // finite.
     arrived_.Clear();
-    // The texture is allocated now, so that a lack of memory shows now and not later, while the
-    // camera or the sun moves.
+    // The texture is allocated now, so that a lack of memory is reported now and not later, while
+    // the camera or the sun moves.
     if (!gl::ComputesWholeTargets() && near_ratio_.Size() != cells) {
       near_ratio_ = {};
       near_ratio_ = gl::Texture3D(GL_R8, cells);

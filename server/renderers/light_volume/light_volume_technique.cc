@@ -58,7 +58,7 @@ class LightVolumeTechnique final : public Technique {
   }
 
  private:
-  // CarryLight has already computed the ground's shadow.
+  // LightVolumeRenderer::CarryLight has already computed the shadow on the ground, so it is reused.
   void ShareShadow(const glm::dvec3& towards_sun) {
     const ResidentMedium& medium = workspace_.medium;
     if (towards_sun.z <= 0.0) return workspace_.ground.ClearShadow();

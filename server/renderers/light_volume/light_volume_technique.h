@@ -1,4 +1,4 @@
-// The light volume as a technique of the registry.
+// The factory of the light volume technique for the registry (technique_registry.h).
 #pragma once
 
 #include <memory>

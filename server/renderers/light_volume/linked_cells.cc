@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMaxIterations = 200;
 
-// Adds up the sums of parts in order, so that the total does not depend on the number of threads.
+// Adds up partial sums in order, so that the total does not depend on the number of threads.
 double Total(const std::vector<double>& sums) {
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
@@ -34,9 +34,9 @@ LinkedCells::LinkedCells(std::vector<Links> down, std::vector<Links> up,
   Factor();
 }
 
-// Incomplete Cholesky factorisation without fill, in which only the diagonal of a matrix with these
-// links changes. Links between blocks are omitted. They connect columns, between which the
-// resistance is larger than within a column.
+// Incomplete Cholesky factorisation without fill-in. For a matrix with these links, only the
+// diagonal changes. Links between blocks are omitted. They connect columns of cells, and the
+// resistance between columns is larger than within a column.
 void LinkedCells::Factor() {
   inverse_pivot_.resize(diagonal_.size());
   tbb::parallel_for(std::size_t{1}, blocks_.size(), [&](std::size_t block) {
@@ -77,7 +77,8 @@ double LinkedCells::Precondition(const std::vector<float>& from, std::vector<flo
     x[n] += sum * inverse_pivot_[n];
     return static_cast<double>(from[n] * x[n]);
   };
-  // Each cell depends on the one before it. Interleaving two blocks keeps a processor busy.
+  // Each cell depends on the cell before it, so one block alone would keep a processor waiting. Two
+  // blocks are therefore interleaved.
   const std::size_t blocks = blocks_.size() - 1;
   std::vector<double> products((blocks + 1) / 2);
   tbb::parallel_for(std::size_t{0}, products.size(), [&](std::size_t pair) {
@@ -126,7 +127,7 @@ double LinkedCells::Apply(const std::vector<float>& from, std::vector<float>* to
   return Total(products);
 }
 
-// Preconditioned conjugate gradients.
+// Solves the system by preconditioned conjugate gradients.
 int LinkedCells::Solve(const std::vector<float>& right, double tolerance,
                        std::vector<float>* solution) {
   const std::size_t count = right.size();

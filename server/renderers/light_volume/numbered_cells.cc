@@ -19,7 +19,7 @@ NumberedCells::NumberedCells(const DiffusionCells& cells) {
       static_cast<float>(std::min({cells.cell_m.x, cells.cell_m.y, cells.cell_m.z}));
   number_.assign(cells.light_per_m.size(), kNone);
   const glm::ivec3& size = cells.size;
-  std::vector<std::int32_t> column_of;  // by number
+  std::vector<std::int32_t> column_of;  // column of each numbered cell
   for (int y = 0; y < size.y; ++y) {
     for (int x = 0; x < size.x; ++x) {
       for (int z = 0; z < size.z; ++z) {
@@ -52,8 +52,8 @@ NumberedCells::NumberedCells(const DiffusionCells& cells) {
   }
 }
 
-// The loop is in the order of cells, because these are contiguous in memory and the values by
-// number are few.
+// The loop follows the order of cells, because the cells are contiguous in memory. The values by
+// number are few and cost little to look up.
 void NumberedCells::SetByCell(const std::vector<float>& by_number,
                               std::vector<float>* by_cell) const {
   ForShares(valued_.size(), [&](std::size_t begin, std::size_t end) {

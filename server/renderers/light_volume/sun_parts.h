@@ -1,5 +1,6 @@
-// Bookkeeping for light that changes little as the sun moves. It is updated for one part of the
-// cells at a time, and kept for the others. The class is a plain value and does not use GL.
+// Bookkeeping for light that changes little as the sun moves. The cells are divided into kCount
+// parts. In turns, only one part of the cells is updated at a time, and the others keep their
+// light. The class is a plain value and does not use GL.
 #pragma once
 
 #include <array>
@@ -14,14 +15,14 @@ namespace thunderhead::renderers {
 class SunParts {
  public:
   static constexpr std::size_t kCount = 8;
-  // A part is updated if the sun is farther than this from the sun of its last update.
+  // A part is updated if the sun is farther than this angle from the sun of the part's last update.
   static constexpr double kFarthest_deg = 10.0;
   using Parts = std::bitset<kCount>;
 
-  // Returns the parts to update for a sun in direction `towards_sun`, of length 1. Without
-  // `in_turns` it returns all parts. With `in_turns` it returns the next part, and those whose last
-  // sun was too far away. It also returns all parts if the sun has not moved, because something
-  // else has changed.
+  // Returns the parts to update for a sun in the unit direction `towards_sun`. If `in_turns` is
+  // false, it returns all parts. Otherwise it returns the next part, and the parts whose last sun
+  // was too far away. It also returns all parts if the sun has not moved, because then another
+  // input has changed.
   Parts Next(const glm::dvec3& towards_sun, bool in_turns) const;
 
   // Records that `parts` have been updated.
@@ -31,7 +32,8 @@ class SunParts {
   void Forget() { suns_ = {}; }
 
  private:
-  std::array<std::optional<glm::dvec3>, kCount> suns_;  // the sun of each part's last update
+  // The sun's direction at each part's last update.
+  std::array<std::optional<glm::dvec3>, kCount> suns_;
   std::optional<glm::dvec3> last_sun_;
   std::size_t turn_ = 0;
 };

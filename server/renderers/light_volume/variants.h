@@ -1,4 +1,4 @@
-// The variants of the light volume's shaders.
+// The preprocessor variants of the light volume's shaders.
 #pragma once
 
 #include "gl/program.h"
@@ -6,22 +6,23 @@
 
 namespace thunderhead::renderers {
 
-// Variant of carry.comp.
+// Preprocessor variant of carry.comp.
 struct CarryVariant {
-  gl::DefineValue consistent;   // the transport is consistent
-  gl::DefineValue translucent;  // scattered light continues
-  gl::DefineValue diffuse;      // multiple scattering in closed form
+  gl::DefineValue consistent;   // 1 if the transport is consistent
+  gl::DefineValue translucent;  // 1 if light scattered forward continues
+  gl::DefineValue diffuse;      // 1 if multiple scattering is computed in closed form
 
   gl::Defines Defines() const {
     return {{"CONSISTENT", consistent}, {"TRANSLUCENT", translucent}, {"DIFFUSE", diffuse}};
   }
 };
 
-// Variant of arrive.comp.
+// Preprocessor variant of arrive.comp.
 struct ArriveVariant {
   MediumVariant medium;
   CarryVariant carry;
-  // 1: stores a depth ratio; 2: uses it instead of sampling the medium next to a cell
+  // With 1, the shader stores the ratio of optical depths next to each cell. With 2, it uses the
+  // stored ratio instead of sampling the medium there. With 0, it samples the medium.
   gl::DefineValue near;
 
   gl::Defines Defines() const {
@@ -29,17 +30,17 @@ struct ArriveVariant {
   }
 };
 
-// Variant of march.frag.
+// Preprocessor variant of march.frag.
 struct MarchVariant {
   MediumVariant medium;
-  gl::DefineValue colored;      // groups have colours
-  gl::DefineValue consistent;   // the transport is consistent
-  gl::DefineValue ground;       // ground may hide a part of the medium
-  gl::DefineValue even_albedo;  // one albedo and colour for all groups
-  gl::DefineValue diffusion;    // multiple scattering comes from the diffusion equation
-  gl::DefineValue tinted;       // this light is absorbed or coloured
-  gl::DefineValue corrected;    // radiance is corrected by renderers::LightCorrection
-  gl::DefineValue chosen;       // draws the rays of renderers::ChosenRays
+  gl::DefineValue colored;      // 1 if groups have colours
+  gl::DefineValue consistent;   // 1 if the transport is consistent
+  gl::DefineValue ground;       // 1 if ground may hide a part of the medium
+  gl::DefineValue even_albedo;  // 1 if all groups have the same albedo and colour
+  gl::DefineValue diffusion;    // 1 if multiple scattering comes from the diffusion equation
+  gl::DefineValue tinted;       // 1 if light from the diffusion equation is absorbed or coloured
+  gl::DefineValue corrected;    // 1 if renderers::LightCorrection corrects the radiance
+  gl::DefineValue chosen;       // 1 to draw the rays of renderers::ChosenRays
 
   gl::Defines Defines() const {
     return gl::Joined(medium.Defines(), {{"COLORED", colored},

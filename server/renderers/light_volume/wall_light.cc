@@ -19,15 +19,18 @@ constexpr double kWallSize = 0.05;
 // or twice this value changes the errors of the sample storm by 0.01 to 0.03
 // (docs/decisions/0009-diffusion-transport.md).
 constexpr double kWallDepth = 1.345;
-// Limits within which a wall may belong to the same slope of steps: in shortest paths through a
-// cell, and as a share of a wall's size.
+// Two walls nearer to each other than this may belong to the same slope. A slope is a smooth cloud
+// surface that the grid represents as steps. The first limit is in shortest paths through a cell,
+// the second is a share of a wall's size.
 constexpr double kSameSlopeCells = 1.2;
 constexpr double kSameSlope = 0.3;
-// Height in cells above its own slope from which a wall sees another wall that near.
+// A wall sees such a near wall only if that wall is at least this many cells above the slope of the
+// first wall.
 constexpr double kAboveSlope = 0.5;
 // Transport optical depth of a cell's shortest side at which half of the light of such a near wall
-// counts. In deeper cells the medium between centres is a smooth surface, whose steps are artefacts
-// of the grid. In thinner cells the steps are the cloud's own.
+// counts. In cells with a larger depth, the medium between cell centres is a smooth surface, and
+// its steps are artefacts of the grid. In cells with a smaller depth, the steps belong to the cloud
+// itself.
 constexpr float kSteppedDepth = 1.0F;
 constexpr float kMinTransmittance = 0.02F;
 constexpr int kTurns = 6;  // number of exchanges of light between walls
@@ -37,7 +40,8 @@ constexpr int kRaysInRing = 4;
 
 using Rays = std::array<glm::dvec3, static_cast<std::size_t>(kRings* kRaysInRing)>;
 
-// Returns directions that each carry an equal share of the light of a white face.
+// Returns directions from a face. Each direction represents an equal share of the light that a
+// white face emits.
 Rays RaysFrom(int side) {
   Rays rays;
   const int axis = side / 2;
@@ -74,7 +78,8 @@ class Walk {
 
   const glm::ivec3& Cell() const { return cell_; }
   double Gone_m() const { return gone_m_; }
-  double ShortestWay_m() const { return shortest_m_; }  // through a cell
+  // Shortest path through a cell along the ray, between opposite faces.
+  double ShortestWay_m() const { return shortest_m_; }
 
   // Moves to the next cell. Returns the path length through the cell that it leaves.
   double Leave() {
@@ -149,8 +154,8 @@ void WallLight::Look(const DiffusionCells& cells, std::size_t wall) {
   if (seen_.size() > before) walls_.push_back(static_cast<std::int32_t>(wall));
 }
 
-// Returns the outward direction of the slope that a wall belongs to, of any length, from the walls
-// around it.
+// Returns the outward direction, of any length, of the slope that a wall belongs to. It is computed
+// from the walls around it.
 glm::dvec3 WallLight::Outward(const DiffusionCells& cells, std::size_t wall) const {
   glm::dvec3 outward(0.0);
   const glm::ivec3 middle = cells.CellAt(wall);
@@ -163,7 +168,7 @@ glm::dvec3 WallLight::Outward(const DiffusionCells& cells, std::size_t wall) con
   return outward;
 }
 
-// Returns the share of the light between a wall and a near one at `other` that counts.
+// Returns how much of the light between a wall and a near wall at `other` counts, from 0 to 1.
 float WallLight::NearShare(const DiffusionCells& cells, std::size_t wall, const glm::ivec3& other,
                            const glm::dvec3& outward) {
   const glm::dvec3 way_m = glm::dvec3(other - cells.CellAt(wall)) * cells.cell_m;

@@ -1,5 +1,6 @@
-// A storm as metaballs for drawing: the fit's balls (clouds/metaballs.h) with Wyvill's field, and
-// the shares of the groups in each ball's extinction. The types are plain values and do not use GL.
+// A storm as metaballs for drawing. They are the fitted balls (clouds/metaballs.h) with Wyvill's
+// field function, and the share of each group in a ball's extinction. The types are plain values
+// and do not use GL.
 #pragma once
 
 #include <array>
@@ -13,17 +14,17 @@ namespace thunderhead::renderers {
 struct Ball {
   glm::dvec3 middle_m{0.0};
   double radius_m = 1.0;          // R of Man, eq. 16
-  double extinction_per_m = 0.0;  // at the ball's centre; at least 0
-  // Shares of its extinction by the medium's group. Their sum is 1.
+  double extinction_per_m = 0.0;  // extinction at the ball's centre; at least 0
+  // Share of each of the medium's groups in the ball's extinction. The shares add up to 1.
   std::array<float, volume::kMaxChannels> shares{1.0F};
 };
 
 struct BallCloud {
   std::vector<Ball> balls;
-  double relative_error = 0.0;  // of the fit: sqrt(H / sum of squares), Man's eq. 20
+  double relative_error = 0.0;  // relative error of the fit: sqrt(H / sum of squares), Man's eq. 20
 };
 
-// The bounding box of all balls. It is empty (low above high) without balls.
+// The bounding box of all balls. Without balls it is empty (low_m above high_m).
 struct BallBox {
   glm::dvec3 low_m{1.0};
   glm::dvec3 high_m{-1.0};

@@ -14,12 +14,12 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Storms with more cells are coarsened before the fit. Their balls are far larger than cells, and
-// the cost of a fit grows with the cells.
+// Maximum number of cells for the fit. Storms with more cells are coarsened first. Balls are far
+// larger than cells, and the cost of a fit grows with the number of cells.
 constexpr double kMaxFittedCells = 2e6;
 
-// The paper's u. A larger value fits more closely, but balls then extend farther beyond the cloud's
-// edge, which makes drawing slower (docs/performance.md).
+// The paper's parameter u. A larger value fits more closely. However, balls then extend farther
+// beyond the cloud's edge, which makes drawing slower (docs/performance.md).
 constexpr double kOverlap = 2.0;
 
 glm::ivec3 CoarseningForFit(const volume::HydrometeorFields& fields) {
@@ -30,7 +30,7 @@ glm::ivec3 CoarseningForFit(const volume::HydrometeorFields& fields) {
     return coarse.x * coarse.y * coarse.z;
   };
   while (cells() > kMaxFittedCells) {
-    // Coarsens the axis with the shortest cells.
+    // Coarsens the grid along the axis with the shortest cells.
     const glm::dvec3 size_m = fields.grid.spacing_m * glm::dvec3(factor);
     if (size_m.z <= size_m.x && size_m.z <= size_m.y) {
       ++factor.z;
@@ -43,7 +43,7 @@ glm::ivec3 CoarseningForFit(const volume::HydrometeorFields& fields) {
   return factor;
 }
 
-// Returns the extinction of one group, or of all groups for -1.
+// Returns the extinction of group number `group`, or of all groups if it is -1.
 std::vector<float> ExtinctionOf(const volume::HydrometeorFields& fields, const Medium& medium,
                                 int group) {
   std::vector<float> values(fields.grid.CellCount(), 0.0F);
@@ -57,7 +57,7 @@ std::vector<float> ExtinctionOf(const volume::HydrometeorFields& fields, const M
   return values;
 }
 
-// Sets each ball's shares of the groups from the extinction under it.
+// Sets each ball's shares of the groups from the extinction in the place of the ball.
 void Share(const volume::HydrometeorFields& fields, const Medium& medium,
            const clouds::MetaballCloud& cloud, std::vector<Ball>* balls) {
   const clouds::BasisOperator basis(fields.grid, cloud.balls, cloud.basis, cloud.overlap, 1);
@@ -127,7 +127,7 @@ bool BallFits::Same(const Key& a, const Key& b) {
     return x.field == y.field && x.channel == y.channel && x.by_cell == y.by_cell &&
            x.mass_extinction_m2_per_kg == y.mass_extinction_m2_per_kg;
   };
-  // Comparing owners ensures that another storm at the same address does not match.
+  // Owners are compared instead of addresses, because a later storm can have the same address.
   return !a.fields.owner_before(b.fields) && !b.fields.owner_before(a.fields) &&
          a.count == b.count &&
          std::equal(a.terms.begin(), a.terms.end(), b.terms.begin(), b.terms.end(), same_term);
@@ -155,7 +155,7 @@ absl::StatusOr<std::shared_ptr<const BallCloud>> BallFits::Get(
   const Key key{fields, medium.terms, std::get<scene::Metaballs>(scene.rendering.technique).count};
   if (auto kept = Find(key); kept != nullptr) return kept;
   const std::lock_guard fitting(fitting_);
-  // Another thread may have fitted it meanwhile.
+  // Another thread may have fitted these balls in the meantime.
   if (auto kept = Find(key); kept != nullptr) return kept;
   THUNDERHEAD_ASSIGN_OR_RETURN(BallCloud cloud, FitBalls(medium, *fields, key.count));
   auto balls = std::make_shared<const BallCloud>(std::move(cloud));

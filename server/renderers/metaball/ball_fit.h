@@ -1,6 +1,6 @@
-// Metaballs for a scene's storm: Man's approximator (clouds/rbf_fit.h) on the extinction of the
-// fields that the scene shows. Fits are kept, because each takes a second or more. This code does
-// not use GL and is safe to use from any thread.
+// Fits metaballs to a scene's storm. The fit is Man's approximator (clouds/rbf_fit.h) on the
+// extinction of the fields that the scene shows. Fits are cached, because each takes a second or
+// more. This code does not use GL and is safe to use from any thread.
 #pragma once
 
 #include <list>
@@ -17,8 +17,8 @@
 
 namespace thunderhead::renderers {
 
-// Fits at most `count` balls, none with negative extinction, to the extinction of `medium`. Returns
-// no balls for an empty medium, and fewer balls if there are fewer cells.
+// Fits at most `count` balls to the extinction of `medium`. No ball has a negative extinction.
+// Returns no balls for an empty medium, and fewer balls if there are fewer cells.
 absl::StatusOr<BallCloud> FitBalls(const Medium& medium, const volume::HydrometeorFields& fields,
                                    int count);
 
@@ -27,16 +27,17 @@ class BallFits {
   // Keeps the `max_fits` most recently used fits.
   explicit BallFits(std::size_t max_fits = 64) : max_fits_(max_fits) {}
 
-  // Returns the balls of `scene`. If they are not kept, it fits them, which takes seconds.
+  // Returns the balls of `scene`. If they are not in the cache, the function fits them, which takes
+  // seconds.
   absl::StatusOr<std::shared_ptr<const BallCloud>> Get(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
-  // Returns true if Get has nothing to fit.
+  // Returns true if the cache holds the balls of `scene`.
   bool Has(const scene::Scene& scene,
            const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
  private:
-  // Inputs of the fit.
+  // The inputs that determine a fit.
   struct Key {
     std::weak_ptr<const volume::HydrometeorFields> fields;
     std::vector<volume::ExtinctionTerm> terms;
@@ -52,7 +53,7 @@ class BallFits {
 
   const std::size_t max_fits_;
   std::mutex fitting_;    // one fit at a time, because each uses every core
-  std::mutex mutex_;      // protects `kept_`
+  std::mutex mutex_;      // protects kept_
   std::list<Kept> kept_;  // the most recently used first
 };
 

@@ -9,10 +9,11 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Side in texels of the blocks for finding overlaps. Discs in one block count as overlapping.
+// Side, in texels, of the blocks used to find overlaps. Two discs that touch the same block count
+// as overlapping.
 constexpr int kBlock = 8;
 
-// The blocks of texels that a disc may touch. `high` is included.
+// The range of blocks that a disc may touch. `high` is included.
 struct Blocks {
   glm::ivec2 low{0};
   glm::ivec2 high{0};
@@ -34,7 +35,7 @@ LightOrder OrderFromLight(const std::vector<LightDisc>& discs, const glm::ivec2&
     return discs[a].towards_light > discs[b].towards_light;
   });
   const glm::ivec2 blocks = (size + kBlock - 1) / kBlock;
-  // The first level that is free in each block.
+  // For each block, the first level in which no disc touches it yet.
   std::vector<std::uint32_t> free(static_cast<std::size_t>(blocks.x) *
                                   static_cast<std::size_t>(blocks.y));
   const auto at = [&](int x, int y) -> std::uint32_t& {

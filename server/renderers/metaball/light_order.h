@@ -1,6 +1,7 @@
-// The order in which balls are splatted into a light buffer: the one nearest to the light first
-// (Man, 4.1). Balls that cannot touch the same texels are independent and form a level. Processing
-// level after level gives the same result as processing ball after ball. This code does not use GL.
+// The order in which balls are splatted into a light buffer, from the light outwards (Man, 4.1).
+// Balls that cannot touch the same texels are independent of each other and form a level.
+// Processing level after level gives the same result as processing ball after ball. This code does
+// not use GL.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +11,23 @@
 
 namespace thunderhead::renderers {
 
-// A ball in the light buffer.
+// The disc that a ball covers in the light buffer.
 struct LightDisc {
-  glm::dvec2 middle{0.0};    // in texels
-  double reach = 1.0;        // in texels
-  double towards_light = 0;  // larger is nearer to the light
+  glm::dvec2 middle{0.0};    // centre in texels
+  double reach = 1.0;        // radius in texels
+  double towards_light = 0;  // position along the light's direction; larger is nearer to the light
 };
 
 struct LightOrder {
-  std::vector<std::uint32_t> discs;   // level by level
-  std::vector<std::uint32_t> starts;  // start of each level in `discs`, and the end
+  std::vector<std::uint32_t> discs;  // indices of the balls, level by level
+  // Index in `discs` at which each level starts, and the size of `discs`.
+  std::vector<std::uint32_t> starts;
 
   std::size_t Levels() const { return starts.empty() ? 0 : starts.size() - 1; }
 };
 
-// `size` is the buffer's size in texels. Texels beyond the buffer count as on its edge.
+// Returns the order of `discs`. `size` is the buffer's size in texels. Parts of a disc beyond the
+// buffer count as texels on the buffer's edge.
 LightOrder OrderFromLight(const std::vector<LightDisc>& discs, const glm::ivec2& size);
 
 }  // namespace thunderhead::renderers

@@ -21,17 +21,19 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMinBallLightTexels = 64;  // along the longer side
+// Number of texels along the longer side of the light buffer.
+constexpr int kMinBallLightTexels = 64;
 constexpr int kMaxBallLightTexels = 1024;
-constexpr double kTexelsAcrossBall = 8.0;  // texels across the smaller balls
+constexpr double kTexelsAcrossBall = 8.0;  // number of texels across the smaller balls
 
-constexpr double kWaveInRadii = 1.5;  // wavelength of the longest wave of surfaces
+// Wavelength of the surfaces' longest wave, in radii of the mean ball.
+constexpr double kWaveInRadii = 1.5;
 
 constexpr gl::PieceCost kSplatPixel{"splat", 1000.0};
 constexpr gl::PieceCost kBallLevel{"balls' light", 2e5};
 constexpr gl::PieceCost kDiffuseBall{"balls' diffuse light", 5000.0};
 
-// The layout of shaders/metaball/balls.glsl.
+// A ball in the layout of shaders/metaball/balls.glsl.
 struct DeviceBall {
   glm::vec4 middle_radius;
   glm::vec4 optics;
@@ -62,8 +64,8 @@ absl::Status Check(const std::vector<Ball>& balls) {
   return absl::OkStatus();
 }
 
-// Returns the factor t of Man, eq. 18: densities rho = t v. The paper does not specify t. Here the
-// mean ball has the density 1, which is also the upper limit.
+// Returns the factor t of Man, eq. 18: densities rho = t v. The paper does not specify t. With the
+// factor used here, the mean ball has the density 1, which is also the upper limit.
 double PaperDensityFactor(const std::vector<Ball>& balls) {
   double sum = 0.0;
   for (const Ball& ball : balls) sum += ball.extinction_per_m;
@@ -129,7 +131,7 @@ LightPlane LightPlaneOf(const std::vector<Ball>& balls, const BallBox& box,
 }
 
 gl::Buffer BufferOf(const std::vector<std::uint32_t>& values) {
-  // An empty buffer is an error in GL. This element is never read.
+  // GL does not allow an empty buffer. This single element is never read.
   if (values.empty()) return {sizeof(std::uint32_t), nullptr, 0};
   return {values.size() * sizeof(std::uint32_t), values.data(), 0};
 }
@@ -140,8 +142,8 @@ std::vector<MetaballRenderer::Light> MetaballRenderer::LightsOf(const RenderSett
   const Illumination& from = settings.illumination;
   std::vector<Light> lights = {{from.towards_sun, glm::vec3(1.0F), false}};
   if (IsPaper(settings)) {
-    // The paper has only directional lights, so a light at the middle represents each half of the
-    // sky.
+    // The paper has only directional lights. Each half of the sky is therefore represented by a
+    // light from its middle.
     const float half_sky = std::numbers::pi_v<float>;
     lights.push_back({{0.0, 0.0, 1.0}, half_sky * from.from_sky, false});
     lights.push_back({{0.0, 0.0, -1.0}, half_sky * from.from_ground, false});
@@ -187,7 +189,7 @@ void MetaballRenderer::Upload(const BallCloud& cloud, const Medium& content,
 std::vector<int> MetaballRenderer::KeepArrived(const std::vector<Light>& lights) {
   const std::size_t bytes = balls_.size() * sizeof(glm::vec2);
   gl::Buffer arrived(lights.size() * bytes, nullptr, 0);
-  // Waits for the shaders that wrote the data copied below.
+  // The buffer copies below need the results of earlier shaders.
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   std::vector<int> missing;
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -238,7 +240,7 @@ absl::Status MetaballRenderer::Carry(const Light& light, int index,
   const LightOrder order = OrderFromLight(discs, plane.size);
   order_ = BufferOf(order.discs);
   if (light_.Size() != plane.size) light_ = gl::Texture2D(GL_RG32F, plane.size);
-  // Depths begin at 0, and the paper's light begins at white.
+  // Optical depths begin at 0. The paper's light begins at 1 (white).
   const float clear[2] = {paper ? 1.0F : 0.0F, 0.0F};
   glClearTexImage(light_.Get(), 0, GL_RG, GL_FLOAT, clear);
   light_.BindImage(shaders::kBallLightImage, GL_READ_WRITE);
@@ -300,7 +302,8 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
   const bool paper = IsPaper(settings);
   std::vector<glm::vec3> towards;
   std::vector<glm::vec3> irradiance;
-  // A change of haze changes the lights' colours, but not the share of them that arrives.
+  // The lights' colours are read again, because a change of haze changes them. The share of a light
+  // that arrives at each ball is not affected.
   for (const Light& light : LightsOf(settings)) {
     if (light.diffuse) continue;
     towards.emplace_back(light.towards);
@@ -337,8 +340,8 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
   return absl::OkStatus();
 }
 
-// The longest wave is shorter than the diameter of the mean ball. The finest level is the one whose
-// texels are as large as the pixels of the nearest ball.
+// Sets the noise of the balls' surfaces. Its longest wave is shorter than the diameter of the mean
+// ball. The finest level is the one whose texels are as large as the pixels of the nearest ball.
 void MetaballRenderer::BindNoise(const gl::Program& program, const RenderSettings& settings,
                                  float share) const {
   double mean_radius_m = 0.0;
@@ -366,7 +369,7 @@ void MetaballRenderer::BindNoise(const gl::Program& program, const RenderSetting
 
 absl::Status MetaballRenderer::Splat(const RenderSettings& settings, const scene::Detail& detail,
                                      DetailNoises* noises) {
-  // Balls carry all fields at once, so one noise represents those of all fields.
+  // A ball holds all fields at once, so the noise of one field represents all fields.
   const bool rough = noises != nullptr && detail.share > 0.0F && !IsPaper(settings);
   if (rough) noise_ = noises->Get(detail.octaves, detail.seed);
   const SplatVariant variant{

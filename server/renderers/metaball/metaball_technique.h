@@ -1,4 +1,4 @@
-// Metaballs as a technique of the registry.
+// The factory of the metaball technique for the registry (technique_registry.h).
 #pragma once
 
 #include <memory>

@@ -15,7 +15,8 @@ constexpr int kMinBallTile_px = 16;
 // Maximum number of entries in all lists together: 16 MB on the device.
 constexpr std::size_t kMaxListed = std::size_t{1} << 22U;
 
-// The rectangle around a ball in normalised device coordinates. It is empty if low is above high.
+// The rectangle around a ball in normalised device coordinates. It is empty if `low` is above
+// `high`.
 struct BallCover {
   glm::dvec2 low{-1.0};
   glm::dvec2 high{1.0};
@@ -23,8 +24,8 @@ struct BallCover {
 
 constexpr BallCover kNothing = {glm::dvec2(1.0), glm::dvec2(-1.0)};
 
-// Returns the interval of tangents under which a ball is seen along one axis, with `x` across and
-// `z` forward of the eye. The whole ball must be in front of the eye.
+// Returns the interval of tangents of the angles at which a ball is seen along one axis. `x` is
+// across the view direction and `z` along it. The whole ball must be in front of the eye.
 glm::dvec2 Tangents(double x, double z, double radius) {
   const double root = radius * std::sqrt(std::max(x * x + z * z - radius * radius, 0.0));
   return glm::dvec2(x * z - root, x * z + root) / (z * z - radius * radius);
@@ -47,7 +48,7 @@ BallCover CoverOf(const Ball& ball, const scene::View& view) {
   return {{across.x, upwards.x}, {across.y, upwards.y}};
 }
 
-// The tiles that a cover touches. `high` is included.
+// The range of tiles that a ball's rectangle touches. `high` is included.
 struct TileRange {
   glm::ivec2 low{0};
   glm::ivec2 high{-1};
@@ -63,7 +64,7 @@ TileRange RangeOf(const BallCover& cover, const glm::ivec2& size_px, int tile_px
       cover.low.y >= 1.0 || cover.high.x <= -1.0 || cover.high.y <= -1.0) {
     return {};
   }
-  // One more pixel on each side makes up for rounding.
+  // One more pixel on each side compensates for rounding errors.
   const glm::dvec2 low_px =
       (glm::clamp(cover.low, {-1.0, -1.0}, {1.0, 1.0}) * 0.5 + 0.5) * glm::dvec2(size_px) - 1.0;
   const glm::dvec2 high_px =

@@ -1,5 +1,5 @@
-// The balls that may lie over each tile of a picture, the nearest to the eye first. The lists
-// replace sorting and blending the balls one by one. It is pure geometry without GL.
+// For each tile of a picture, the list of balls that may cover it, nearest to the eye first. The
+// lists replace sorting and blending the balls one by one. This code is pure geometry without GL.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,14 @@ struct BallTiles {
   int tile_px = 16;
   glm::ivec2 tiles{1};
   std::vector<std::uint32_t>
-      starts;  // start of each tile in `balls`, row by row from the bottom, and the end
+      // Index in `balls` at which each tile's list starts, row by row from the bottom, and the size
+      // of `balls`.
+      starts;
   std::vector<std::uint32_t> balls;
 };
 
-// Returns the lists, with tiles as small as the limit on the lists' length allows.
+// Returns the lists. Their total length is limited, and the tiles are as small as this limit
+// allows.
 BallTiles TilesOf(const std::vector<Ball>& balls, const scene::View& view,
                   const glm::ivec2& size_px);
 

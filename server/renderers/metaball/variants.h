@@ -1,27 +1,27 @@
-// The variants of the metaballs' shaders.
+// The preprocessor variants of the metaballs' shaders.
 #pragma once
 
 #include "gl/program.h"
 
 namespace thunderhead::renderers {
 
-// Variant of metaball/light.comp.
+// Preprocessor variant of metaball/light.comp.
 struct BallLightVariant {
-  gl::DefineValue paper;    // transport as printed in the paper
-  gl::DefineValue pass;     // 0 splats, 1 computes the light scattered many times
-  gl::DefineValue diffuse;  // the light of sky and ground instead of a beam
+  gl::DefineValue paper;    // 1 for the transport as printed in the paper
+  gl::DefineValue pass;     // 0 splats the balls, 1 computes the light scattered many times
+  gl::DefineValue diffuse;  // 1 for the light of sky and ground instead of a beam
 
   gl::Defines Defines() const { return {{"PAPER", paper}, {"PASS", pass}, {"DIFFUSE", diffuse}}; }
 };
 
-// Variant of metaball/source.comp.
+// Preprocessor variant of metaball/source.comp.
 struct BallSourceVariant {
   gl::DefineValue lights;  // number of beams
   gl::DefineValue groups;
-  gl::DefineValue colored;    // groups have colours
-  gl::DefineValue paper;      // transport as printed in the paper
-  gl::DefineValue isotropic;  // isotropic phase function
-  gl::DefineValue parallel;   // parallel view rays
+  gl::DefineValue colored;    // 1 if groups have colours
+  gl::DefineValue paper;      // 1 for the transport as printed in the paper
+  gl::DefineValue isotropic;  // 1 for an isotropic phase function
+  gl::DefineValue parallel;   // 1 for parallel view rays
 
   gl::Defines Defines() const {
     return {{"LIGHTS", lights},    {"GROUPS", groups},
@@ -31,11 +31,11 @@ struct BallSourceVariant {
   }
 };
 
-// Variant of metaball/splat.frag.
+// Preprocessor variant of metaball/splat.frag.
 struct SplatVariant {
-  gl::DefineValue paper;   // transport as printed in the paper
-  gl::DefineValue ground;  // ground may hide balls
-  gl::DefineValue detail;  // surfaces have noise
+  gl::DefineValue paper;   // 1 for the transport as printed in the paper
+  gl::DefineValue ground;  // 1 if ground may hide balls
+  gl::DefineValue detail;  // 1 if surfaces have noise
 
   gl::Defines Defines() const { return {{"PAPER", paper}, {"GROUND", ground}, {"DETAIL", detail}}; }
 };

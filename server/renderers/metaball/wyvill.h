@@ -1,5 +1,5 @@
-// Wyvill's field function from the shaders, compiled as C++ so that tests check the code that the
-// GPU runs.
+// Wyvill's field function from the shaders, compiled as C++. Tests therefore check the code that
+// the GPU runs.
 #pragma once
 
 #include "glm/common.hpp"

@@ -1,5 +1,5 @@
-// The reference as a technique of the registry. It is traced on the CPU outside the renderers, for
-// sessions that choose it (drawing/truth_source.h).
+// The factory of the path-traced reference for the registry (technique_registry.h). The reference
+// is traced on the CPU outside the renderers, for sessions that choose it (drawing/truth_source.h).
 #pragma once
 
 #include <memory>

@@ -11,9 +11,9 @@
 
 namespace thunderhead::scene {
 
-// The source of the surface: the storm's cloud water and ice, a hierarchy of bubbles, the
-// ellipsoids of one of the generator's presets, or a single ellipsoid. A source other than the
-// storm fills the storm's place.
+// The source of the surface: the storm's cloud water and ice, a generated hierarchy of bubbles
+// (kCauliflower), the ellipsoids of another preset of the generator, or a single ellipsoid. A
+// generated surface is scaled and placed to fill the storm's box.
 enum class CumulusSource {
   kStorm,
   kCauliflower,
@@ -23,8 +23,8 @@ enum class CumulusSource {
   kEllipsoid
 };
 
-// The part of the light that is shown. kBalls shades bare ellipsoids by Lambert's law, as the
-// baseline for the cost of the shading.
+// The part of the light that is shown. kBalls shades bare ellipsoids by Lambert's law. Its cost is
+// the baseline for the cost of the full shading.
 enum class CumulusComponent { kAll, kDirect, kInterReflection, kAmbient, kCorona, kBalls };
 
 struct Cumulus {
@@ -33,12 +33,13 @@ struct Cumulus {
 
   CumulusSource source = CumulusSource::kStorm;
   std::uint32_t seed = 1;
-  int scales = 3;                        // levels of ellipsoids
-  float least_extinction_per_m = 2e-3F;  // extinction of a storm that counts as inside the surface
-  // Thickness relative to the radius of the finest ellipsoids.
+  int scales = 3;  // number of size levels of the ellipsoids
+  // Extinction above which a point of the storm is inside the surface.
+  float least_extinction_per_m = 2e-3F;
+  // Thickness of the translucent rim, relative to the radius of the finest ellipsoids.
   float corona = 0.45F;
-  float trap = 0.45F;          // share of the sky that the deepest valley hides
-  float transmission = 0.05F;  // share of sunlight that passes through
+  float trap = 0.45F;          // share of the sky that is hidden from the deepest valley
+  float transmission = 0.05F;  // share of sunlight that passes through the cloud
   float roughness = 0.6F;
   CumulusComponent component = CumulusComponent::kAll;
 
@@ -47,8 +48,8 @@ struct Cumulus {
   const MediumSettings* Medium() const { return nullptr; }
   FieldLook Look() const { return {}; }
 
-  // Returns the number of fragments over a pixel, which is about the same for any surface of
-  // several scales.
+  // Returns the number of surface fragments that cover a pixel. It is about the same for any
+  // surface with several size levels.
   double SamplesPerPixel(double /*slice_share*/) const { return 20.0; }
 
   Stage DirtiedSince(const Cumulus& before) const {

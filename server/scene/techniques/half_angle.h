@@ -1,5 +1,5 @@
-// Settings of half-angle slicing (Riley et al. 2003). Light and view advance together through
-// slices halfway between sun and eye.
+// Settings of half-angle slicing (Riley et al. 2003). Light and view are accumulated together
+// through slices perpendicular to the bisector of the directions to sun and eye.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct HalfAngle {
                                               .slices = true,
                                               .transports = kTransports};
 
-  // kDiffusion is drawn as kConsistent.
+  // The renderer draws kDiffusion as kConsistent.
   MediumSettings medium{.transport = kTransports.front()};
   int slices = 128;
 

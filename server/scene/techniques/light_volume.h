@@ -14,8 +14,8 @@ namespace thunderhead::scene {
 // When path tracing corrects the light (docs/decisions/0012-traced-light.md).
 enum class TracedLight {
   kOff,
-  kAtRest,   // in a session, while the view is at rest
-  kAwaited,  // as kAtRest; an image outside a session waits for the correction
+  kAtRest,   // in a session, while the view is at rest (does not change)
+  kAwaited,  // like kAtRest; in addition, an image outside a session waits for the correction
 };
 
 struct LightVolume {
@@ -47,7 +47,7 @@ struct LightVolume {
   }
 
   // Returns kOff unless the light is computed by diffusion, because path tracing corrects only
-  // that.
+  // diffuse light.
   TracedLight TracedLightShown() const {
     return medium.transport == Transport::kDiffusion ? traced_light : TracedLight::kOff;
   }

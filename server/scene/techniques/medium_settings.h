@@ -5,9 +5,9 @@
 
 namespace thunderhead::scene {
 
-// The fields' own properties that a picture shows.
+// Which properties of the single fields a picture shows.
 struct FieldLook {
-  bool per_field_phase = true;  // false: every field has the phase function of cloud water
+  bool per_field_phase = true;  // if false, every field has the phase function of cloud water
   bool detail = false;          // turbulent detail finer than the grid
   bool false_colors = false;
 
@@ -16,7 +16,8 @@ struct FieldLook {
 
 struct MediumSettings {
   Transport transport = Transport::kConsistent;
-  // Light scattered by less than half of this angle counts as unscattered (theta_f of the paper).
+  // Light scattered by less than half of this angle counts as unscattered. The angle is theta_f of
+  // Riley et al. 2003.
   double theta_f_deg = 20.0;
   FieldLook look;
 

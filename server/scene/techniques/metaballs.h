@@ -21,7 +21,8 @@ struct Metaballs {
                                               .transports = kTransports};
 
   MediumSettings medium{.transport = kTransports.front()};
-  int count = 1200;  // upper limit; the default is that of the paper's first scene
+  // Upper limit of the number of balls; the default is that of the paper's first scene.
+  int count = 1200;
   bool isotropic = false;
   double albedo = 0.9;         // a of Man's eq. 26; only for Transport::kPaper
   double optical_depth = 8.0;  // tau of Man's eq. 26; only for Transport::kPaper
@@ -31,8 +32,8 @@ struct Metaballs {
   const MediumSettings* Medium() const { return &medium; }
   FieldLook Look() const { return medium.look; }
 
-  // Returns the number of balls that cover a pixel. The balls fill the volume, so it grows with the
-  // cube root of their count.
+  // Returns the number of balls that cover a pixel. The balls fill a volume, so this number grows
+  // with the cube root of the number of balls.
   double SamplesPerPixel(double /*slice_share*/) const { return 3.0 * std::cbrt(count); }
 
   Stage DirtiedSince(const Metaballs& before) const {

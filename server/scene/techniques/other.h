@@ -1,5 +1,5 @@
-// Settings of a technique that was added as an extension (docs/extending.md): named numbers. Its
-// name and capabilities are in the registry of techniques (renderers/technique_registry.h).
+// Settings of a technique that was added as an extension (docs/extending.md). The settings are
+// named numbers. The technique's name and capabilities are in renderers/technique_registry.h.
 #pragma once
 
 #include <map>
@@ -12,8 +12,8 @@
 namespace thunderhead::scene {
 
 struct OtherTechnique {
-  // The capabilities that apply until the registry entry gives others. A change of the lights
-  // reruns the technique.
+  // The capabilities that apply until the registry entry gives others. `lights` is true so that a
+  // change of the scene's lights reruns the technique.
   static constexpr Capabilities kCapabilities{.lights = true};
 
   std::string name;

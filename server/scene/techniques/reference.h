@@ -1,4 +1,4 @@
-// Settings of the Monte Carlo reference as a technique. It is traced progressively on the CPU.
+// Settings of the Monte Carlo reference as a technique. It is path-traced progressively on the CPU.
 #pragma once
 
 #include <string_view>

@@ -35,7 +35,7 @@ scene::TopDownCamera ToTopDown(const v1::TopDownCamera& message) {
   return {{message.x_m(), message.y_m()}, message.width_m()};
 }
 
-// Clamps the length to the field's limits.
+// Clamps `value` to the limits of the message's field.
 float WithinLimits(const google::protobuf::Descriptor& message, const char* field, double value) {
   const auto& limits = message.FindFieldByName(field)->options().GetExtension(v1::number);
   return static_cast<float>(std::clamp(value, limits.minimum(), limits.maximum()));
@@ -53,7 +53,7 @@ void Frame(v1::OrbitCamera& camera, const volume::WorldBox& box, double aspect_r
   camera.set_distance_m(WithinLimits(*camera.GetDescriptor(), "distance_m", framing.distance_m));
 }
 
-// Returns the default position and direction of a spotter without a given position.
+// Returns the default position and direction of a spotter camera whose message gives no position.
 scene::SpotterCamera Placed(const v1::SpotterCamera& message,
                             const volume::HydrometeorFields& fields, const volume::StormCore& core,
                             physics::SizeSource sizes, const v1::Sun& sun, double aspect_ratio) {

@@ -1,5 +1,5 @@
-// Converts cameras between messages and values, and frames the storm where a camera message sets no
-// position.
+// Converts cameras between messages and values. If a camera message sets no position, places the
+// camera so that it frames the storm.
 #pragma once
 
 #include "scene/scene.h"
@@ -17,7 +17,7 @@ bool NeedsFraming(const v1::Scene& scene);
 // part of `fields` (volume::VisibleBox).
 void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields);
 
-// Returns the value of a camera whose defaults are filled in.
+// Converts a camera message whose defaults are filled in.
 scene::Camera ToCamera(const v1::Camera& message);
 
 void ToMessage(const scene::Camera& camera, v1::Camera& message);

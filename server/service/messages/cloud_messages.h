@@ -10,8 +10,8 @@ namespace thunderhead::service {
 
 clouds::CloudOrigin OriginOf(const v1::GenerateCloudRequest& request);
 
-// Returns the preset's shape with the request's overrides, or INVALID_ARGUMENT if the values
-// contradict each other. Limits must have been checked before.
+// Returns the preset's shape with the values that the request overrides. Returns INVALID_ARGUMENT
+// if the values contradict each other. The limits must have been checked before.
 absl::StatusOr<clouds::CloudShape> ShapeOf(const v1::GenerateCloudRequest& request);
 
 }  // namespace thunderhead::service

@@ -1,9 +1,11 @@
-// Tables of pairs (enumerator of a message, value), looked up in both directions.
+// Tables of pairs: an enumerator of a message and the corresponding value. They are looked up in
+// both directions.
 #pragma once
 
 namespace thunderhead::service {
 
-// Returns the value paired with `message`, or that of the first row if there is none.
+// Returns the value paired with `message`. Returns the value of the first row if no row has
+// `message`.
 template <typename Table, typename Message>
 auto ValueOf(const Table& table, Message message) {
   for (const auto& [from, to] : table) {

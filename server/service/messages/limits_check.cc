@@ -35,8 +35,9 @@ std::string Range(const v1::NumberLimits& limits) {
   return text;
 }
 
-// The text of a value and whether it is within its limits. The limits are rounded to the value's
-// type: 0.1 as a float is above 0.1 as a double, but must pass.
+// A value as text, and whether it is within its limits. The limits are rounded to the value's type
+// before the comparison. Otherwise 0.1 as a float would exceed a limit of 0.1, because it is larger
+// than 0.1 as a double.
 struct Checked {
   std::string text;
   bool within = false;
@@ -49,7 +50,7 @@ Checked Check(Number value, const v1::NumberLimits& limits) {
   return {Text(value), within};
 }
 
-// Checks a number; `index` is below zero for a field that is not repeated.
+// Checks a number; `index` is negative if the field is not repeated.
 Checked CheckNumber(const Message& message, const FieldDescriptor& field, int index,
                     const v1::NumberLimits& limits) {
   const Reflection& get = *message.GetReflection();
@@ -187,7 +188,8 @@ void SetNumber(Message& message, const FieldDescriptor& field, double value) {
   }
 }
 
-// Sets the default of `field`, a single value that is absent. An enumerator of 0 counts as absent.
+// Sets `field`, which is not repeated and is absent, to its default. An enumerator with the value 0
+// counts as absent.
 void FillDefault(Message& message, const FieldDescriptor& field) {
   const google::protobuf::FieldOptions& options = field.options();
   if (options.HasExtension(v1::default_on)) {

@@ -10,12 +10,12 @@
 
 namespace thunderhead::service {
 
-// The keyword of the whole scene as JSON, from which the same picture can be drawn again.
+// The keyword of the scene as JSON, from which the same picture can be drawn again.
 inline constexpr char kSceneText[] = "thunderhead.scene";
 
-// The keywords of the storm's data. They are its valid time and the start of the run (ISO 8601,
-// UTC), and its map projection in PROJ's notation. The last one is the latitude and longitude of
-// the middle of its domain. Data that the storm lacks is omitted.
+// The keywords of facts about the storm: its valid time and the start of the run (ISO 8601, UTC),
+// and its map projection in PROJ's notation. The last keyword is for the latitude and longitude of
+// the middle of its domain. A fact that the storm does not have is omitted.
 inline constexpr char kValidText[] = "thunderhead.valid";
 inline constexpr char kRunText[] = "thunderhead.run";
 inline constexpr char kProjectionText[] = "thunderhead.projection";
@@ -24,8 +24,8 @@ inline constexpr char kMiddleText[] = "thunderhead.middle_deg";
 // The keyword of the View as JSON: the mapping from the picture's pixels to the world.
 inline constexpr char kViewText[] = "thunderhead.view";
 
-// The keywords of the estimated error, which is a number in an OpenEXR file. If the error was
-// measured, a PNG file also has the ends of its 95 % interval.
+// The keywords of the estimated error, which is stored as a number in an OpenEXR file. If the error
+// was measured, a PNG file also has the two ends of its 95 % confidence interval.
 inline constexpr char kErrorText[] = "thunderhead.estimated_error";
 inline constexpr char kErrorLowText[] = "thunderhead.error_low";
 inline constexpr char kErrorHighText[] = "thunderhead.error_high";

@@ -13,7 +13,7 @@
 namespace thunderhead::service {
 namespace {
 
-// Maximum number of names in an error message, because there may be thousands of storms. It is
+// Maximum number of storms that an error message lists, because there may be thousands. So many are
 // enough to recognise a typing error.
 constexpr std::size_t kMaxNamesListed = 10;
 
@@ -61,7 +61,7 @@ absl::Status CheckTime(const storm_store::StormInfo& storm, std::uint32_t time_i
 
 absl::Status PrepareScene(const storm_store::StormStore& store,
                           const std::vector<scene::TechniqueInfo>& techniques, v1::Scene& scene) {
-  // Unknown fields would be stored and sent to every viewer.
+  // Unknown fields are removed, because they would be stored and sent to every viewer.
   scene.DiscardUnknownFields();
   THUNDERHEAD_RETURN_IF_ERROR(CheckScene(scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRendering(scene.rendering(), techniques));

@@ -13,21 +13,21 @@
 
 namespace thunderhead::service {
 
-// The reason of errors that name a storm that does not exist.
+// The reason in errors about a storm that does not exist.
 inline constexpr char kStormNotFound[] = "STORM_NOT_FOUND";
 
-// Returns the storm with that id, or the first storm for an empty id. The error NOT_FOUND lists the
-// storms.
+// Returns the storm with that id, or the first storm if the id is empty. The error NOT_FOUND lists
+// the available storms.
 absl::StatusOr<storm_store::StormInfoPtr> FindStorm(const storm_store::StormStore& store,
                                                     const std::string& id);
 
-// Returns INVALID_ARGUMENT, which names the range, if the storm has no such time. `path` is the
-// request's field.
+// Returns INVALID_ARGUMENT, with the allowed range, if the storm has no time with that index.
+// `path` is the request's field with the index.
 absl::Status CheckTime(const storm_store::StormInfo& storm, std::uint32_t time_index,
                        const std::string& path);
 
-// Checks a scene, whose limits must have been checked, and fills in every default that needs no
-// fields. `techniques` are the available ones.
+// Checks a scene, and fills in every default that does not depend on the storm's fields. The
+// scene's limits must have been checked before. `techniques` are the available techniques.
 absl::Status PrepareScene(const storm_store::StormStore& store,
                           const std::vector<scene::TechniqueInfo>& techniques, v1::Scene& scene);
 

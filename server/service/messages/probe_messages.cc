@@ -173,7 +173,7 @@ void ToMessage(const volume::StormMap& map, const StormPlaces& places,
                                      glm::dvec2(high_m), glm::dvec2(low_m.x, high_m.y)}) {
     if (const auto earth = places.OnEarth(corner_m)) *message.add_corners() = *earth;
   }
-  // A map that reaches a pole has no corners there, so all are omitted.
+  // The corners are set only if all four exist. A map that reaches a pole has none there.
   if (message.corners_size() < 4) message.clear_corners();
   if (const auto middle = places.Middle()) *message.mutable_middle() = *middle;
   message.mutable_terrain_height_m()->Assign(map.terrain_height_m.begin(),

@@ -16,7 +16,7 @@
 
 namespace thunderhead::service {
 
-// Computes the heights of places in a storm, and their places on Earth.
+// Computes the heights and the geographic positions of places in a storm.
 class StormPlaces {
  public:
   // Both arguments must outlive it.

@@ -23,15 +23,17 @@
 namespace thunderhead::service {
 namespace {
 
-// More than 8K UHD; a limit on the memory that one request can ask for.
+// Maximum number of pixels, a little more than 8K UHD. It limits the memory that one request can
+// use.
 constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 25;
 
-// HYDROMETEOR_UNSPECIFIED is 0, so the enumerators are offset by one.
+// Returns the hydrometeor's index from 0. HYDROMETEOR_UNSPECIFIED is 0, so the enumerators begin at
+// 1.
 std::size_t IndexOf(v1::Hydrometeor hydrometeor) {
   return static_cast<std::size_t>(hydrometeor) - 1;
 }
 
-// Returns the message's enumerator of each kind, found by its name.
+// Returns the enumerator of the message for each kind of phase function. Both have the same names.
 const std::map<physics::PhaseKind, v1::PhaseFunction::Kind>& PhaseKindMessages() {
   static const auto* const messages = [] {
     auto* found = new std::map<physics::PhaseKind, v1::PhaseFunction::Kind>;
@@ -49,7 +51,8 @@ v1::PhaseFunction::Kind KindMessage(physics::PhaseKind kind) {
   return PhaseKindMessages().at(kind);
 }
 
-// Returns the first kind if the message has none, which can happen in a damaged record of a scene.
+// Converts a kind of phase function. An unknown enumerator, which a damaged record can have,
+// becomes the first kind.
 physics::PhaseKind ToPhaseKind(v1::PhaseFunction::Kind message) {
   for (const auto& [kind, its_message] : PhaseKindMessages()) {
     if (its_message == message) return kind;
@@ -130,8 +133,8 @@ std::optional<int> FirstWith(const Repeated& fields, v1::Hydrometeor hydrometeor
   return std::nullopt;
 }
 
-// Copies a message's settings to `field`, which must have the message's hydrometeor and the scene's
-// particle sizes.
+// Copies the settings in `message` to `field`. `field` must already have the message's hydrometeor
+// and the scene's source of particle sizes.
 void SetField(const v1::FieldParameters& message, scene::FieldParameters& field) {
   field.visible = message.visible();
   if (message.sizes() != v1::PARTICLE_SIZES_UNSPECIFIED) {
@@ -270,7 +273,7 @@ void FillSizesDefault(v1::Scene& scene) {
 
 namespace {
 
-// Fills in the ground. The particle sizes must be known.
+// Fills in the ground's defaults. The source of the particle sizes must have been filled in before.
 void FillGroundDefaults(v1::Scene& scene, const storm_store::StormInfo& storm) {
   v1::Ground& ground = *scene.mutable_ground();
   if (ground.cover() == v1::Ground::COVER_UNSPECIFIED) {

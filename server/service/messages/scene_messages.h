@@ -1,5 +1,5 @@
-// Converts scenes and storms between messages and values. The limits of numbers are checked
-// elsewhere (limits_check.h). This file checks the rules that those limits cannot express.
+// Converts scenes and storms between messages and values. Also checks the rules that the limits of
+// limits_check.h cannot express.
 #pragma once
 
 #include <optional>
@@ -13,30 +13,31 @@
 
 namespace thunderhead::service {
 
-// Checks the rules that limits do not express: each hydrometeor occurs at most once, the sun's date
+// Checks the rules that limits cannot express: each hydrometeor occurs at most once, the sun's date
 // is valid, and the number of pixels is allowed.
 absl::Status CheckScene(const v1::Scene& scene);
 
-// Fills in the source of the particle sizes; a preset of the papers implies their constants. It
-// must be called before the technique's defaults are filled in, because they replace the preset.
+// Fills in the source of the particle sizes. For a preset of the papers it is
+// PARTICLE_SIZES_PAPERS. Must be called before the technique's defaults are filled in, because
+// these replace the preset.
 void FillSizesDefault(v1::Scene& scene);
 
 // Fills in every default except those that depend on the storm's fields.
 void FillSceneDefaults(v1::Scene& scene, const storm_store::StormInfo& storm);
 
-// Returns the source of the particle sizes of a scene whose defaults are filled in.
+// Returns the source of the particle sizes. The scene's defaults must be filled in.
 physics::SizeSource SizesOf(const v1::Scene& scene);
 
-// Returns the value of a scene whose defaults are filled in.
+// Converts a scene whose defaults are filled in.
 scene::Scene ToScene(const v1::Scene& message);
 
 v1::Hydrometeor ToMessage(physics::Hydrometeor hydrometeor);
 void ToMessage(const scene::Ground& ground, v1::Ground& message);
 void ToMessage(const storm_store::StormInfo& storm, v1::StormSummary& message);
-// Describes a storm, and reads the state of the files of its times.
+// Describes a storm at one time. Reads the current sizes and modification times of its files.
 void ToMessage(const storm_store::StormInfo& storm, const volume::HydrometeorFields& fields,
                int time_index, v1::StormDescription& message);
-// Describes the current state of the file at `path`; returns false if there is none.
+// Describes the current state of the file at `path`. Returns false if there is no such file.
 bool ToMessage(const std::string& path, v1::StormFile& message);
 
 }  // namespace thunderhead::service

@@ -52,7 +52,7 @@ void FillSunDefaults(v1::Sun& sun, const storm_store::StormInfo& storm, int time
   v1::SunClock& clock = *sun.mutable_clock();
   FillClockDefaults(clock, storm);
   const std::optional<absl::Time> first = base::ParseUtcTime(clock.date_time());
-  if (!first.has_value()) return;  // CheckSun reports it
+  if (!first.has_value()) return;  // CheckSun reports the error
   const double unix_s = absl::ToDoubleSeconds(*first - absl::UnixEpoch()) +
                         storm.times[static_cast<std::size_t>(time_index)].elapsed_s;
   const physics::SunPosition position =

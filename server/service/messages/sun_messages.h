@@ -1,5 +1,5 @@
-// The sun of a scene message: the source of its direction, and its position by date, time and
-// place.
+// Converts the sun of a scene message: the source of its direction, and its position by date, time
+// and place.
 #pragma once
 
 #include "absl/status/status.h"
@@ -12,8 +12,8 @@ namespace thunderhead::service {
 // Returns INVALID_ARGUMENT if the clock's date is malformed.
 absl::Status CheckSun(const v1::Sun& sun);
 
-// Fills in the source. For a sun that follows the clock it also fills in time and place, and
-// replaces the message's direction by the direction at `time_index`.
+// Fills in the source of the direction. If the sun follows the clock, also fills in the clock's
+// time and place. The sun's direction at `time_index` then replaces the message's direction.
 void FillSunDefaults(v1::Sun& sun, const storm_store::StormInfo& storm, int time_index);
 
 // Fills in the storm's time and place if they are absent.

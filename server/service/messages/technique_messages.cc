@@ -54,7 +54,7 @@ constexpr std::array kPresets = {
               accuracy::Preset::kPerFieldPhaseDetailTranslucent},
 };
 
-// Checks the transport. `path` is the field of the technique, whose settings have the type
+// Checks the transport of the technique whose field is `path` and whose settings have the type
 // `Settings`.
 template <typename Settings>
 absl::Status CheckTransport(const std::string& path, v1::Transport given) {
@@ -255,7 +255,7 @@ void FillTechniqueDefaults(v1::Rendering& rendering) {
   if (rendering.technique_case() != v1::Rendering::kPreset) {
     const bool traced_light_given =
         rendering.light_volume().traced_light() != v1::TRACED_LIGHT_UNSPECIFIED;
-    // The given settings replace the defaults. An enumerator of 0 counts as absent.
+    // The given settings replace the defaults. An enumerator with the value 0 counts as absent.
     filled.MergeFrom(rendering);
     const bool diffuses = filled.light_volume().transport() == v1::TRANSPORT_DIFFUSION;
     if (filled.has_light_volume() && !traced_light_given && !diffuses) {

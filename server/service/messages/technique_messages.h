@@ -11,23 +11,22 @@
 
 namespace thunderhead::service {
 
-// Returns INVALID_ARGUMENT, which names a transport that the technique does not support, or a
-// technique that is not in `known`. The settings of extension techniques are checked when they
-// draw.
+// Returns INVALID_ARGUMENT if the technique does not support the requested transport or is not in
+// `known`. The settings of extension techniques are not checked here, but when they draw.
 absl::Status CheckRendering(const v1::Rendering& rendering,
                             const std::vector<scene::TechniqueInfo>& known);
 
-// Replaces a preset by its technique, and an absent technique by the default preset's. Then fills
-// in the technique's defaults.
+// Replaces a preset by its technique. Without a technique, uses the default preset's. Then fills in
+// the technique's defaults.
 void FillTechniqueDefaults(v1::Rendering& rendering);
 
 // Returns true if the rendering names a preset of the papers.
 bool IsOfThePapers(const v1::Rendering& rendering);
 
-// Returns the value of a technique whose defaults are filled in.
+// Converts a technique whose defaults are filled in.
 scene::Technique ToTechnique(const v1::Rendering& rendering);
 
-// Sets every field of the technique's message.
+// These functions set every field of the technique's message.
 void ToMessage(const scene::Technique& technique, v1::Rendering& message);
 void ToMessage(const scene::TechniqueInfo& technique, v1::TechniqueDescription& message);
 

@@ -1,9 +1,9 @@
-// Computes the light that the storm's shadow takes from the air. For each ray of a coarse picture, a layer holds the
-// missing share of airlight_before from the eye up to one of several distances. One more layer holds that of the whole
-// sky. The first layer is at `near_m` and holds nothing.
+// Computes the light that the storm's shadow removes from the air's light. Each texel column is a ray of a coarse
+// picture. Each layer holds the missing share of airlight_before from the eye up to one of several distances. The last
+// layer holds the missing share of the whole sky's airlight. The first layer is at the distance `near_m` and is zero.
 //
-// A step's part of airlight_before is proportional to the extinction of its air. The missing share of that part is the
-// missing share of the light that sun and sky make the step scatter. The result therefore never exceeds
+// The contribution of a step to airlight_before is proportional to the extinction of its air. Of this contribution, the
+// missing share is that of the sunlight and skylight which the step scatters. The result therefore never exceeds
 // airlight_before. Rays continue below the ground, so that shares change smoothly across the picture. Coordinates are
 // metres from the eye.
 #include "common/bindings.glsl"
@@ -16,33 +16,33 @@
 
 layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 layout(binding = kAirShadeImage, rgba16f) uniform writeonly image3D shade;
-// Light of the air by height. Row 0 is the sunlight, row 1 the mean radiance of light that air has scattered.
+// Light of the air by height. Row 0 is the sunlight, row 1 the mean radiance of the skylight.
 layout(binding = kAirLightUnit) uniform sampler2D air_light;
 
 uniform ivec3 shade_size;
 uniform mat3 local_from_world;
 uniform vec3 towards_sun;
-uniform vec3 level_irradiance;  // irradiance of clear sky and sun on level ground
-uniform vec3 level_skylight;  // of the clear sky on level ground
+uniform vec3 level_irradiance;  // irradiance of sun and clear sky on level ground
+uniform vec3 level_skylight;  // irradiance of the clear sky on level ground
 uniform float turbidity;
 uniform float altitude_m;
-uniform vec2 air_densities;  // at the eye
+uniform vec2 air_densities;  // densities of air and haze at the eye
 uniform float ground_curvature_per_m;
 uniform float horizon_sine;
-uniform float lowest_air_m;  // height above sea level
+uniform float lowest_air_m;  // lowest height above sea level at which there is air
 uniform float near_m;  // distance of the first layer along the rays
 uniform float far_m;
 uniform float air_light_per_m;  // texture coordinates per metre of height
 
 const float kInversePi = 0.318309886;
-const float kBelowGround_m = 4000.0;  // how far below the ground the air continues
+const float kBelowGround_m = 4000.0;  // the air continues down to this depth below the ground
 const float kSkysEnd_m = 2e6;
-// Limit for the light that a storm adds to the air, relative to the air's own light. It is needed in the Earth's
-// shadow, where the air's light almost vanishes.
+// Upper limit of the light that a storm adds to the air, relative to the air's own light. It is needed in the Earth's
+// shadow, where the air's own light almost vanishes.
 const float kMostAdded = 1.0;
 
-// Returns the mean over several places along a step around a point. With one place per step, the shadow's edge would
-// show one edge for each step.
+// Returns the mean share of blocked sunlight over several places along the step around a point. With one place for each
+// step, the shadow's edge would appear as one edge for each step.
 float mean_blocked(vec3 point_m, vec3 step) {
   const int kPlaces = 4;
   float sum = 0.0;
@@ -61,7 +61,7 @@ void main() {
   int steps = shade_size.z - 2;
   float step_m = (far_m - near_m) / float(steps);
   vec2 size = vec2(textureSize(air_light, 0));
-  vec3 missing = vec3(0.0);  // in units of airlight_before for endless air
+  vec3 missing = vec3(0.0);  // in units of airlight_before for air of infinite length
   vec3 air_per_m = air_optical_depth() / kAirScaleHeight_m;
   vec3 haze_per_m = haze_optical_depth(turbidity) / kHazeScaleHeight_m;
   AirPath path = AirPath(altitude_m, sine, ground_curvature_per_m, near_m);
@@ -79,8 +79,8 @@ void main() {
     vec3 sunlight = texture(air_light, vec2(column, 0.25)).rgb;
     vec3 skylight = texture(air_light, vec2(column, 0.75)).rgb;
     StormInSky storm = storm_in_sky(point_m);
-    // In its shadow, the storm shows the light that passes through it. Elsewhere it shows half of that, and the light
-    // that it reflects.
+    // Towards a place in its shadow, the storm sends the light that passes through it. Towards other places, it sends
+    // half of that light, and the light that it reflects.
     float blocked = mean_blocked(point_m, step_m * ray);
     vec3 through = storm.through * level_irradiance;
     vec3 reflected = light_of_faces(storm, towards_sun, level_skylight);

@@ -1,11 +1,13 @@
-// Computes the storm in the sky of each point of a coarse lattice around it, in the format of common/sky_hidden.glsl.
-// The values are means over directions spread uniformly over the upper hemisphere. The first is the storm's opacity.
-// The second is the opacity times the transmittance for diffuse light of a level layer of the same vertical depth.
+// Computes how the storm appears in the sky of each point of a coarse lattice around it, in the format of
+// common/sky_hidden.glsl. The values are means over directions spread uniformly over the upper hemisphere. The first
+// value is the storm's opacity. The second value is the opacity times a transmittance for diffuse light, which is that
+// of a level layer of the same vertical depth.
 //
-// The layer is two-stream: (1 - a / r) exp(-sqrt(3 a r)) / (1 + 3/4 r) for the depths r of transport (similarity
-// scaled) and a of absorption. The layer's reflectance is 1 minus its transmittance without absorption, times the
-// reflectance of a semi-infinite layer. That is (1 - s) / (1 + s) with s = sqrt(a / r). Its mean over directions is
-// kept as a vector. Variants: GROUPS, DETAILS (none: the noise has a mean of 1).
+// The transmittance of the layer is the two-stream solution (1 - a / r) exp(-sqrt(3 a r)) / (1 + 3/4 r). Here r is the
+// similarity-scaled depth of transport, and a is the depth of absorption. The layer's reflectance is 1 minus its
+// transmittance without absorption, times the reflectance of a semi-infinite layer. The latter is (1 - s) / (1 + s)
+// with s = sqrt(a / r). The reflectance's mean over directions is stored as a vector. Variants: GROUPS, DETAILS (always
+// 0, because the noise has a mean of 1).
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
@@ -26,7 +28,7 @@ const int kDirections = 16;
 const int kMaxSamples = 512;
 const float kGoldenAngle = 2.39996323;
 
-// Optical depths per step of the light's extinction, of transport and of absorption.
+// Factors from a texel to the optical depths per step of the light's extinction, of transport and of absorption.
 struct Depths {
   vec4 light[PLANES];
   vec4 transport[PLANES];
@@ -62,8 +64,8 @@ void main() {
   vec2 sum = vec2(0.0);
   vec4 sum_of_faces = vec4(0.0);
   for (int i = 0; i < kDirections; ++i) {
-    // The directions follow a Fibonacci spiral. It is rotated differently at each point, so that all points together
-    // cover all directions.
+    // The directions follow a Fibonacci spiral. The spiral is rotated differently at each point, so that all points
+    // together cover all directions.
     float sine = 1.0 - (float(i) + 0.5) / float(kDirections);
     float azimuth = kGoldenAngle * (float(i) + float(point.x) + 3.0 * float(point.y) + 7.0 * float(point.z));
     float cosine = sqrt(1.0 - sine * sine);
@@ -78,7 +80,7 @@ void main() {
     sum += opacity * vec2(1.0, diffuse);
     sum_of_faces += reflected * vec4(direction, 1.0);
   }
-  // The outermost points are beyond the region where air is shaded.
+  // The outermost points of the lattice are beyond the region in which air is shaded, so they are set to zero.
   bvec3 first = equal(point, ivec3(0));
   bvec3 last = equal(point, point_count - 1);
   bool rim = first.x || first.y || last.x || last.y || last.z;

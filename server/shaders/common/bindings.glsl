@@ -1,20 +1,21 @@
-// Numbers that shaders share with the C++ that runs them: texture units, image units, bindings of storage buffers, and
-// sizes of work groups. The file compiles as GLSL and as C++ (shaders/bindings.h). A technique's own numbers are in its
-// folder (e.g. half_angle/bindings.glsl). Within a program, each number of a kind is used once, which tests check
-// (gl/strict_programs.h). Programs of different techniques may use the same numbers.
+// Numbers that shaders share with the C++ code that runs them: texture units, image units, bindings of storage buffers,
+// and sizes of work groups. The file compiles as GLSL and as C++ (shaders/bindings.h). The numbers of a single
+// technique are in its own folder (e.g. half_angle/bindings.glsl). Within a program, no two textures, images or buffers
+// have the same number, which tests check (gl/strict_programs.h). Programs of different techniques may use the same
+// numbers.
 
-// A ray of paper or consistent transport ends below this transmittance.
+// Transmittance below which a ray ends in paper or consistent transport.
 const float kOpaqueTransmittance = 5e-3F;
 
-// Units of a medium.
-const int kMediumPlaneUnit = 0;  // also the next one
+// Texture units and bindings of a medium.
+const int kMediumPlaneUnit = 0;  // also the next unit, for plane 1
 const int kBricksUnit = 2;
 const int kPhaseCurvesUnit = 3;
-const int kDetailNoiseUnit = 8;  // also the next ones, one for each noise
+const int kDetailNoiseUnit = 8;  // also the following units, one for each noise
 const int kDetailControlUnit = 16;
-const int kBlocksBinding = 0;  // cells that a ray may meet
+const int kBlocksBinding = 0;  // list of cell blocks that a ray may meet
 
-// Units of the ground and the picture.
+// Texture units of the ground and the picture.
 const int kGroundDistanceUnit = 7;
 const int kTerrainUnit = 8;
 const int kGroundShadowUnit = 9;
@@ -40,21 +41,22 @@ const int kChosenPlacesUnit = 18;
 const int kAureoleUnit = 4;
 const int kPackedUnit = 4;
 
-// Units of whole targets that are computed.
+// Units of whole targets that are drawn by compute shaders.
 const int kTargetLimitUnit = 17;
-const int kTargetImages = 6;  // also the next one
+const int kTargetImages = 6;  // also the next image unit
 
-// Table of sunlight by height, up to 24 km. Above that height, air attenuates little.
+// Size of the table of sunlight by height, which ends at 24 km. Above that height, air attenuates little.
 const int kSunlightLevels = 33;
 const float kSunlightStep_m = 750.0f;
 
-// Layout of packed rays (renderers::ChosenRays): the pixels of a block, which software GL draws together, and the
-// number of blocks in a row.
+// Layout of packed rays (renderers::ChosenRays): the size of a block in pixels and the number of blocks in a row.
+// Software GL draws the pixels of a block together.
 const int kPackedBlockWidth = 4;
 const int kPackedBlockHeight = 2;
 const int kPackedBlocksInRow = 128;
 
-// Invocations in a work group, along each of two sides or in total.
+// Numbers of invocations in a work group. A name with Side is the number along each of two sides, a name with Size the
+// total.
 const int kLightGroupSide = 8;
 const int kMeterGroupSize = 64;
 const int kTargetGroupSide = 8;

@@ -1,4 +1,4 @@
-// Rays through a medium that skip its empty bricks (volume/brick_map.h).
+// Rays through a medium that skip the medium's empty bricks, which are empty blocks of cells (volume/brick_map.h).
 #include "common/bindings.glsl"
 #include "common/box.glsl"
 #include "common/medium_box.glsl"
@@ -20,10 +20,10 @@ struct MediumRay {
   vec3 brick_step;
   vec3 per_brick_step;
   vec3 highest_brick;
-  vec3 per_brick;  // texture coordinates per brick
+  vec3 per_brick;  // size of a brick in texture coordinates
 };
 
-// `direction` must be safe.
+// Returns the ray. `direction` must come from safe_direction.
 MediumRay medium_ray(vec3 origin_m, vec3 direction) {
   MediumRay ray;
   ray.start = origin_m * texture_from_local_scale + texture_from_local_offset;
@@ -36,8 +36,8 @@ MediumRay medium_ray(vec3 origin_m, vec3 direction) {
   return ray;
 }
 
-// Returns the part of the ray that is in the medium's box extended by `margin_m`. If the ray misses it, x > y.
-// `direction` must be safe.
+// Returns the part of the ray that is in the medium's box extended by `margin_m`. If the ray misses the box, x > y.
+// `direction` must come from safe_direction.
 vec2 path_in_medium(vec3 origin_m, vec3 direction, float margin_m) {
   return path_through_box(medium_low_m - margin_m, medium_high_m + margin_m, origin_m, direction);
 }
@@ -46,17 +46,19 @@ vec3 medium_place(MediumRay ray, float distance_m) { return ray.start + distance
 
 vec3 brick_place(MediumRay ray, float distance_m) { return ray.brick_start + distance_m * ray.brick_step; }
 
-// Returns the middle of the brick at a place, or that of the nearest brick outside of all bricks.
+// Returns the middle of the brick at a place. For a place outside all bricks, it returns the middle of the nearest
+// brick.
 vec3 brick_middle(MediumRay ray, vec3 place) { return floor(clamp(place, vec3(0.0), ray.highest_brick)) + 0.5; }
 
-// Returns the brick's content. It uses texture(), because texelFetch takes twice as long in software.
+// Returns the content of the brick at a place. It uses texture(), because texelFetch takes twice as long in software
+// GL.
 uint brick_content(MediumRay ray, vec3 place) { return texture(bricks, brick_middle(ray, place) * ray.per_brick).r; }
 
 // Returns true if the brick is not empty.
 bool is_filled(uint content) { return content == kThickBrick || content == kThinBrick; }
 
-// Returns the distance along the ray from `place` (in bricks) to the end of the cube of empty bricks around it, whose
-// size is `content`. With 1, it is the distance to the end of the brick itself.
+// Returns the distance along the ray from `place` (in bricks) to the end of the cube of empty bricks around it.
+// `content` is the size of that cube in bricks. If it is 1, the distance is that to the end of the brick itself.
 float empty_path(MediumRay ray, vec3 place, uint content) {
   vec3 across = abs(ray.per_brick_step);  // path length through a brick along each axis
   vec3 path = (brick_middle(ray, place) - place) * ray.per_brick_step + (float(content) - 0.5) * across;

@@ -1,2 +1,2 @@
-// Writes only the depth.
+// Writes no colour, only the depth.
 void main() {}

@@ -1,17 +1,17 @@
-// The intersection of a view ray with the ground, in metres from the origin that the uniforms define, such as the
-// middle of the medium's box. The ground is level (RELIEF 0) or the terrain, whose edge values continue beyond the
-// domain. The ground falls away from the point where the world's plane touches the Earth (scene/view.h). A curvature of
-// 0 is a plane.
+// The intersection of a view ray with the ground. Coordinates are in metres from an origin that the uniforms define,
+// such as the middle of the medium's box. With RELIEF 0 the ground is level. With RELIEF 1 it is the terrain, whose
+// edge values continue beyond the domain. The ground falls away from the point where the plane of world coordinates
+// touches the Earth (scene/view.h). A curvature of 0 is a plane.
 #include "common/bindings.glsl"
 
 uniform float lowest_ground_m;
 uniform float ground_curvature_per_m;
-uniform vec2 touch_m;  // where the world's plane touches the Earth
+uniform vec2 touch_m;  // the point where the plane of world coordinates touches the Earth
 
 const float kFarthestGround_m = 5e5;
 
-// Returns the distance along a ray of the level surface with the given height where the plane touches. It is negative
-// if a ray from above misses the surface, and 0 below the surface.
+// Returns the distance along a ray to the level surface that has the height `level_m` at touch_m. It is negative if a
+// ray from above misses the surface, and 0 if the ray starts below the surface.
 float level_distance_m(vec3 origin_m, vec3 ray, float level_m) {
   vec2 off_m = origin_m.xy - touch_m;
   float above_m = origin_m.z - level_m + 0.5 * ground_curvature_per_m * dot(off_m, off_m);
@@ -48,9 +48,9 @@ vec3 ground_normal(vec2 place_m) {
 }
 #endif
 
-// Returns the distance of the ground along the ray. It is negative if the ray misses the ground or starts below it. No
-// step is longer than the steepest slope allows, so that no mountain is missed. A ray that grazes the ground for very
-// long ends where the steps run out.
+// Returns the distance along the ray to the ground. It is negative if the ray misses the ground or starts below it. No
+// step is longer than the steepest slope allows, so that no mountain is missed. The number of steps is limited. A ray
+// that grazes the ground for very long ends at its last step.
 float ground_distance_m(vec3 origin_m, vec3 ray) {
   float lowest = level_distance_m(origin_m, ray, lowest_ground_m);
 #if !RELIEF

@@ -1,21 +1,22 @@
-// The ground's cover at the intersection with a view ray. Coordinates are metres from the eye. Variants: COVER (0
-// plain, 1 fields, 2 land use), BORDERS, RINGS.
+// The ground's cover where a view ray meets it. Coordinates are metres from the eye. Variants: COVER (0 plain, 1 crop
+// fields, 2 land use), BORDERS, RINGS.
 #include "common/bindings.glsl"
 #include "common/ground.glsl"
 #include "physics/ground_cover.glsl"
 #include "physics/sky.glsl"
 #include "physics/water.glsl"
 
-uniform vec3 ground_reflectance;  // radiance per irradiance; for land use, that of a reflectance of 1
+// Radiance divided by irradiance; for land use, this is the value for a reflectance of 1.
+uniform vec3 ground_reflectance;
 
 #if COVER != 0 || BORDERS || RINGS
-uniform vec2 pixel_width;  // width of a pixel at the eye, and its increase per metre of distance
+uniform vec2 pixel_width;  // width of a pixel at the eye (x), and its increase per metre of distance (y)
 #endif
 
 #if COVER != 0
 layout(binding = kGroundGrainUnit) uniform sampler2D fields;  // physics::FieldPattern
 
-uniform vec2 pattern_origin_m;  // place of the eye in the pattern
+uniform vec2 pattern_origin_m;  // position of the eye in the pattern, in metres
 uniform float ground_contrast;
 #endif
 
@@ -27,7 +28,7 @@ uniform vec2 land_scale;  // texture coordinates per metre
 uniform vec2 land_offset;
 uniform vec3 land_mean;  // mean reflectance of all land
 uniform float land_fades_cells;  // distance beyond the domain's edge at which land fades by a factor e
-uniform float coast_cells;       // width of a coast
+uniform float coast_cells;  // width of a coast, in cells
 #endif
 
 #if BORDERS
@@ -44,7 +45,7 @@ uniform vec2 ring_middle_m;
 
 struct Cover {
   vec3 reflectance;  // radiance per irradiance
-  float water;  // share of water
+  float water;  // share of the place that is water
 };
 
 #if COVER != 0 || BORDERS || RINGS
@@ -71,7 +72,8 @@ Cover cover_of(vec2 place_m, vec2 footprint_m) {
   return Cover(ground_reflectance * relative * grain_at(place_m, footprint_m), 0.0);
 }
 #elif COVER == 2
-// Beyond the domain, the coast continues from its edge, and land fades to its mean colour (volume/land_surface.h).
+// Returns the cover from the file's land use. Beyond the domain, the coast continues from the domain's edge, and land
+// fades to its mean colour (volume/land_surface.h).
 Cover cover_of(vec2 place_m, vec2 footprint_m, vec2 from_eye_m) {
   vec2 place = from_eye_m * land_scale + land_offset;
   vec2 cells = vec2(textureSize(land, 0));
@@ -79,7 +81,7 @@ Cover cover_of(vec2 place_m, vec2 footprint_m, vec2 from_eye_m) {
   vec2 footprint = abs(land_scale) * footprint_m * cells;
   vec4 texel = textureLod(land, place, mip_level(footprint));
   texel.rgb = mix(texel.rgb, land_mean, 1.0 - exp(-max(outside.x, outside.y) / land_fades_cells));
-  // The coast is where half of the texel is water.
+  // The coast is the line where the interpolated share of water is one half.
   float softness = clamp(max(footprint.x, footprint.y), coast_cells, 1.0);
   float water = clamp((texel.a - 0.5) / softness + 0.5, 0.0, 1.0);
   return Cover(ground_reflectance * texel.rgb * grain_at(place_m, footprint_m), water);
@@ -96,7 +98,7 @@ vec3 sky_of_ground(vec3 direction, vec3 towards_sun) {
 #endif
 
 #if BORDERS || RINGS
-// Paints a share of the ground with a reflectance.
+// Mixes paint of the given reflectance into the cover. `share` is the share of the ground that the paint covers.
 void paint(inout Cover cover, vec3 reflectance, float share) {
   cover.reflectance = mix(cover.reflectance, reflectance / 3.14159265, share);
   cover.water *= 1.0 - share;

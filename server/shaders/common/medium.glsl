@@ -1,10 +1,11 @@
-// The extinction of a medium's groups at a point. A group is a channel: 0-3 of plane 0, 4-7 of plane 1. Channels that a
-// plane does not have must have the weight zero.
+// The extinction of a medium's groups at a point. Each group is a channel: groups 0-3 are the channels of plane 0,
+// groups 4-7 those of plane 1. Unused channels of a plane must have the weight zero.
 //
-// GROUPS is the number of groups. DETAILS is the number of noises that change shares of them (physics/detail.glsl). The
-// first noise displaces the medium, and all multiply it. Without noises there is no code for them.
+// GROUPS is the number of groups. DETAILS is the number of noises that change shares of the groups
+// (physics/detail.glsl). The first noise displaces the medium, and every noise multiplies it. With DETAILS 0 the code
+// for noises is not compiled.
 //
-// Uniforms needed in a loop are read before the loop. Inside a loop some invocations may have ended, and Mesa's
+// Uniforms needed in a loop are read before the loop. Inside a loop, some invocations may already have ended. Mesa's
 // software renderer then reads a uniform once for every invocation (gallivm 22.3).
 #include "common/bindings.glsl"
 #include "common/medium_box.glsl"
@@ -20,25 +21,26 @@ layout(binding = kMediumPlaneUnit) uniform sampler3D medium_plane_0;
 layout(binding = kMediumPlaneUnit + 1) uniform sampler3D medium_plane_1;
 #endif
 
-uniform vec4 extinction_weights[PLANES];  // from texel to extinction in 1/m; zero for unused channels
+uniform vec4 extinction_weights[PLANES];  // factors from a texel to extinction in 1/m; zero for unused channels
 
 #if DETAILS > 0
 layout(binding = kDetailNoiseUnit) uniform sampler3D detail_noise[DETAILS];
 layout(binding = kDetailControlUnit) uniform sampler3D detail_control;  // one texel a cell, like the medium
 uniform vec3 detail_tile_size[DETAILS];  // size of a tile in the medium's texture coordinates
 uniform vec3 detail_tile_corner[DETAILS];  // corner of a tile, which drifts with the wind
-uniform mat3 detail_fibres;  // from tiles of billows to tiles of fibres
+uniform mat3 detail_fibres;  // transformation from tiles of billows to tiles of fibres
 uniform vec3 detail_warp;  // full displacement in the medium's texture coordinates
 uniform vec4 detail_shares[DETAILS * PLANES];  // share of each channel that noise multiplies
-uniform float detail_left_out[DETAILS];  // share of the noise that is missing from its texture
-uniform float detail_fade_at_start[DETAILS];  // share of the rest that fades at a distance of 0
-uniform float detail_fade_per_m[DETAILS];  // increase of that share per metre
+uniform float detail_left_out[DETAILS];  // share of the noise that is missing from its texture because it is too fine
+// Share of the remaining noise that is faded out at a distance of 0 from the eye.
+uniform float detail_fade_at_start[DETAILS];
+uniform float detail_fade_per_m[DETAILS];  // increase of the faded share per metre of distance
 
 vec3 tiles_scale[DETAILS];
 vec3 tiles_offset[DETAILS];
 #endif
 
-// Must be called first.
+// Prepares the noises' coordinates. Call it before the other functions.
 void begin_medium() {
 #if DETAILS > 0
   for (int i = 0; i < DETAILS; ++i) {
@@ -52,7 +54,7 @@ struct Medium {
   vec4 plane[PLANES];
 };
 
-// Returns the texel values at `place` in texture coordinates, `distance_m` from the eye.
+// Returns the texel values at `place`, which is in texture coordinates and `distance_m` from the eye.
 Medium medium_at_place(vec3 place, float distance_m) {
 #if DETAILS > 0
   // An amplitude of 0 is stored as 128 of 255.
@@ -92,7 +94,7 @@ Medium mixed(Medium a, Medium b, float at) {
   return a;
 }
 
-// Returns the sum over groups of weight times value.
+// Returns the sum over all groups of weight times texel value.
 float weigh(Medium medium, vec4 weights[PLANES]) {
   float sum = dot(medium.plane[0], weights[0]);
 #if PLANES > 1
@@ -101,7 +103,7 @@ float weigh(Medium medium, vec4 weights[PLANES]) {
   return sum;
 }
 
-// Returns `weights` times `factor`, to be used instead of `weights` in a loop.
+// Returns `weights` times `factor`. Computing them before a loop avoids reading uniforms in the loop.
 vec4[PLANES] scaled(vec4 weights[PLANES], float factor) {
   for (int plane = 0; plane < PLANES; ++plane) weights[plane] *= factor;
   return weights;

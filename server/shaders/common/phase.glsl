@@ -3,11 +3,11 @@
 #include "common/bindings.glsl"
 #include "physics/phase_curve.glsl"
 
-// One row a group over phase_curve_place: red, green, blue.
+// One row for each group. Columns are spaced by phase_curve_place. Texels hold the values for red, green and blue.
 layout(binding = kPhaseCurvesUnit) uniform sampler2D phase_curves;
 
 uniform float phase_cut;  // haversine of the angle within which phase functions are cut
-uniform vec2 phase_display[GROUPS];  // offset and slope of the paper's display normalisation
+uniform vec2 phase_display[GROUPS];  // offset and slope with which the paper normalises phase functions for display
 uniform vec3 group_color[GROUPS];
 
 const float kFourPi = 12.5663706;
@@ -19,8 +19,8 @@ float haversine_between(vec3 a, vec3 b) {
   return 0.25 * dot(apart, apart);
 }
 
-// Returns the phase function of a group for red, green and blue, with a mean of 1 over the sphere. It uses two fetches
-// and a mix, because filtering units round weights to 8 bits, which is visible in steep peaks.
+// Returns the phase function of a group for red, green and blue, with a mean of 1 over the sphere. It interpolates
+// between two fetches, because filtering units round weights to 8 bits, which is visible in steep peaks.
 vec3 group_phase(int group, float haversine) {
   int last = textureSize(phase_curves, 0).x - 1;
   float place = phase_curve_place(haversine) * float(last);

@@ -1,5 +1,6 @@
-// The place of a pixel's ray in the picture, `position`, from (-1, -1), left and bottom, to (1, 1). Call begin_place
-// first. Variant: CHOSEN (the rays of renderers::ChosenRays instead of the picture's).
+// The place in the picture of a pixel's ray. `position` ranges from (-1, -1) at the lower left to (1, 1) at the upper
+// right. Call begin_place first. With the variant CHOSEN, the rays are those of renderers::ChosenRays instead of the
+// picture's pixels.
 #include "common/bindings.glsl"
 
 #if CHOSEN
@@ -9,13 +10,13 @@ vec2 position;
 
 void begin_place() { position = texelFetch(chosen_places, ivec2(gl_FragCoord.xy), 0).rg; }
 
-// Returns the texel of a picture of the same rays.
+// Returns the texel of this pixel's ray. `picture` must have been drawn with the same rays.
 vec4 at_pixel(sampler2D picture) { return texelFetch(picture, ivec2(gl_FragCoord.xy), 0); }
 #else
 in vec2 position;
 
 void begin_place() {}
 
-// The lookup interpolates, because the picture may have another size.
+// The lookup interpolates, because the picture may have a different size.
 vec4 at_pixel(sampler2D picture) { return texture(picture, 0.5 * position + 0.5); }
 #endif

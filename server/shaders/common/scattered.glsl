@@ -1,21 +1,22 @@
 // Light scattered towards the eye along a ray, summed by group. Phase functions, albedo and colour depend only on the
-// ray or the group, so they are multiplied in after the last sample. This file needs common/medium.glsl and
+// ray or the group, so they are applied after the last sample. This file needs common/medium.glsl and
 // common/phase.glsl.
 //
-// Variants: GROUPS, COLORED (groups have colours), CONSISTENT (transport), EVEN_ALBEDO (one albedo and colour for all),
-// GLOWS (the radiance includes the light of add_isotropic).
-uniform vec4 scattering_weights[PLANES];  // from texel to scattering in 1/m
+// Variants: GROUPS, COLORED (groups have colours), CONSISTENT (consistent transport), EVEN_ALBEDO (all groups have the
+// same albedo and colour), GLOWS (the radiance includes the light of add_isotropic).
+uniform vec4 scattering_weights[PLANES];  // factors from a texel to scattering in 1/m
 uniform float albedo;  // albedo of every group
 uniform vec3 ambient;                     // mean radiance from sky and ground
 
 struct Scattered {
-  vec4 direct[PLANES];  // texel values times the arriving share of sunlight and the visible share of their light
+  vec4 direct[PLANES];  // texel values times the arriving share of sunlight times the visible share of the sample
 #if EVEN_ALBEDO
-  float ambient;  // visible share of the ambient light; summed, because differences lose thin slices
-  float multiple;  // mean intensity of multiply scattered light times its visible share
+  // Visible share of the ambient light. It is summed up, because a difference of transmittances would lose thin slices.
+  float ambient;
+  float multiple;  // mean intensity of multiply scattered light times the visible share
 #else
-  vec4 ambient[PLANES];  // texel values over extinction, times the visible share of the ambient light
-  vec4 multiple[PLANES];  // as ambient, for multiply scattered light
+  vec4 ambient[PLANES];  // texel values divided by the extinction, times the visible share of the ambient light
+  vec4 multiple[PLANES];  // as `ambient`, for multiply scattered light
 #endif
 };
 
@@ -52,8 +53,8 @@ void add_direct(inout Scattered scattered, Medium medium, float factor) {
   for (int plane = 0; plane < PLANES; ++plane) scattered.direct[plane] += factor * medium.plane[plane];
 }
 
-// Adds a sample whose light is visible by the share `seen`. `mean_intensity` is that of multiply scattered light.
-// `extinctions` are the weights of a texel's extinction.
+// Adds a sample of isotropic light. `seen` is the sample's visible share. `mean_intensity` is that of multiply
+// scattered light. `extinctions` are the factors from a texel to extinction.
 void add_isotropic(inout Scattered scattered, Medium medium, vec4 extinctions[PLANES], float seen, float mean_intensity) {
 #if EVEN_ALBEDO
   scattered.ambient += seen;
@@ -67,8 +68,8 @@ void add_isotropic(inout Scattered scattered, Medium medium, vec4 extinctions[PL
 #endif
 }
 
-// Returns the radiance of a ray whose extinctions were per `step_m`. `sunlight` is the sun's irradiance. `haversine` is
-// that of the scattering angle of sunlight.
+// Returns the radiance of a ray from its sums. The extinctions in the sums are per `step_m`. `sunlight` is the sun's
+// irradiance. `haversine` is that of the scattering angle of sunlight.
 vec3 radiance_of(Scattered scattered, vec3 sunlight, float step_m, float haversine) {
   vec3 radiance = vec3(0.0);
   for (int group = 0; group < GROUPS; ++group) {

@@ -1,4 +1,4 @@
-// The clear sky as the eye sees it, from its table. Below the horizon it is the light of the air in front of the
+// The clear sky as the eye sees it, from its table. Below the horizon, it is the light of the air in front of the
 // ground.
 #include "common/bindings.glsl"
 #include "physics/sky.glsl"
@@ -12,7 +12,7 @@ struct Sky {
   vec2 air_mass;  // air masses of air and haze along the whole ray
 };
 
-// Returns the sky in the unit vector `direction` (z up).
+// Returns the sky in the direction of the unit vector `direction` (z up).
 Sky sky_at(vec3 direction, vec3 towards_sun) {
   vec2 size = vec2(2 * kSkyAzimuths, kSkyElevations);
   vec2 cell = sky_cell(direction, towards_sun, horizon_sine) + 0.5;

@@ -1,4 +1,4 @@
-// Looks up the storm in a point's sky (air/sky_hidden.comp).
+// Looks up how the storm appears in the sky of a point (air/sky_hidden.comp).
 #include "common/bindings.glsl"
 
 layout(binding = kSkyHiddenUnit) uniform sampler3D sky_hidden;
@@ -13,8 +13,8 @@ struct StormInSky {
   // Mean radiance of the storm to a point in its shadow, times pi. The irradiance on level ground
   // by the sun and the clear sky is 1.
   float through;
-  float reflects;  // share that the storm reflects of light from outside
-  vec3 faces;  // mean of that share times the direction where it is seen
+  float reflects;  // share of light from outside that the storm reflects
+  vec3 faces;  // mean of the reflected share times the direction in which it is seen
 };
 
 StormInSky storm_in_sky(vec3 point_m) {
@@ -24,17 +24,18 @@ StormInSky storm_in_sky(vec3 point_m) {
   return StormInSky(shares.x, shares.y, reflected.a, reflected.rgb);
 }
 
-// Returns the mean radiance over the sky, times pi, of the light that the storm's faces reflect to a point outside its
-// shadow. Faces are oriented like those of a white sphere. At the angle a from the sun, a sphere has (sin a + (pi - a)
-// cos a) / pi of its full brightness, which is 2/3 of a flat face's. Here that is approximated by 3/8 + cos(a) / 2.
-// `skylight` is the irradiance on level ground. The faces get half of it.
+// Returns the mean radiance over the sky, times pi, of the light that the storm's faces reflect to a point outside the
+// storm's shadow. Faces count as oriented like those of a white sphere. A sphere seen at the angle a from the sun has a
+// share of its full brightness. The share is (sin a + (pi - a) cos a) / pi, and the full brightness is 2/3 of that of a
+// flat face. The function approximates the product by 3/8 + cos(a) / 2. `skylight` is the irradiance on level ground,
+// of which the faces get half.
 vec3 light_of_faces(StormInSky storm, vec3 towards_sun, vec3 skylight) {
   float sunlit = max(storm.reflects / 4.0 - dot(storm.faces, towards_sun) / 3.0, 0.0);
   return sunlit * faces_sunlight + 0.5 * storm.reflects * skylight;
 }
 
-// Returns the irradiance of that light on level ground. Each direction contributes by the sine of its elevation, which
-// is 1/2 in the mean over the sky.
+// Returns the irradiance on level ground of the light that the storm's faces reflect. Each direction contributes in
+// proportion to the sine of its elevation, whose mean over the sky is 1/2.
 vec3 light_of_faces_on_ground(StormInSky storm, vec3 towards_sun, vec3 skylight) {
   float raised = 2.0 * storm.faces.z / max(storm.reflects, 1e-6);
   return raised * light_of_faces(storm, towards_sun, skylight);

@@ -1,8 +1,9 @@
-// The sun's irradiance by height on a plane that faces the sun. The air above attenuates it, and it is zero in the
+// The sun's irradiance by height on a plane that faces the sun. It is attenuated by the air above, and zero in the
 // Earth's shadow.
 #include "common/bindings.glsl"
 
-uniform vec3 sunlight_levels[kSunlightLevels];  // at 0, kSunlightStep_m ... above sea level
+// Irradiance at heights above sea level that begin at 0 and are kSunlightStep_m apart.
+uniform vec3 sunlight_levels[kSunlightLevels];
 uniform float middle_height_m;  // height above sea level of the coordinates' origin
 
 vec3 sunlight_at(float z_m) {

@@ -1,14 +1,14 @@
-// The end of a fragment shader of gl::WholeTarget that runs as a compute shader (gl/computed_target.h). Each invocation
-// draws one pixel.
+// The last part of the compute shader that runs the code of a fragment shader (gl/computed_target.h). Each invocation
+// draws one pixel of a gl::WholeTarget.
 #include "common/bindings.glsl"
 
 layout(local_size_x = kTargetGroupSide, local_size_y = kTargetGroupSide) in;
 
-layout(binding = kTargetLimitUnit) uniform sampler2D target_limit;  // depth of a cover
+layout(binding = kTargetLimitUnit) uniform sampler2D target_limit;  // depth texture of a cover
 uniform ivec2 target_size;
 uniform ivec2 first_pixel;
 uniform ivec2 end_pixel;
-uniform int limited_to;  // pixels to draw; 1: depth above 0.5, -1: below 0.5, 0: all
+uniform int limited_to;  // selects pixels by that depth: 1 above 0.5, -1 below 0.5, 0 all
 
 bool is_drawn(ivec2 pixel) {
   if (any(greaterThanEqual(pixel, end_pixel))) return false;

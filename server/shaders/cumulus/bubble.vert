@@ -1,7 +1,7 @@
-// Draws a quadrangle for each bubble that covers its silhouette exactly, because the tangent cone of the eye touches
-// the unit ball in a circle. Its depth is that of the nearest possible point of the bubble minus slack_m, so that
-// hidden bubbles are rejected before they are shaded. `order` has the farthest bubble first. The variant FRONT_FIRST
-// draws it backwards.
+// Draws for each bubble a quadrangle that covers the bubble's silhouette exactly. This is possible because the tangent
+// cone from the eye touches the unit ball in a circle. The quadrangle's depth is that of the nearest possible point of
+// the bubble minus slack_m, so that hidden bubbles are rejected before they are shaded. In `order`, the farthest bubble
+// is first. With the variant FRONT_FIRST, bubbles are drawn in the reverse of this order.
 #include "common/view.glsl"
 #include "cumulus/bindings.glsl"
 #include "cumulus/bubble.glsl"
@@ -12,7 +12,7 @@ uniform mat4 clip_from_local;
 uniform vec4 eye;  // renderers::EyeOf
 uniform int last_rank;
 uniform int first_bubble;  // first bubble of this draw, in the order of drawing
-uniform float per_far;  // 1 over the distance of depth 1
+uniform float per_far;  // 1 divided by the distance that depth 1 stands for
 uniform float slack_m;
 
 const float kRounding = 2e-6;
@@ -35,7 +35,7 @@ void main() {
   unit_z = bubble.unit_z.xyz;
   centre_m = bubble.centre_m.xyz;
   vec2 corner = vec2((gl_VertexID & 1) * 2 - 1, (gl_VertexID & 2) - 1);
-  // The vector points from the bubble's middle to the eye, or against parallel rays.
+  // to_eye points from the bubble's middle to the eye, or against the view direction if rays are parallel.
   vec3 to_eye = to_unit(unit_x.xyz, unit_y, unit_z, eye.xyz - centre_m * eye.w);
   if (eye.w == 0.0) to_eye = -to_eye;
   float distance = length(to_eye);
@@ -45,7 +45,7 @@ void main() {
   }
   vec3 towards = to_eye / distance;
   float sine = eye.w == 0.0 ? 0.0 : 1.0 / distance;
-  float radius = sqrt(1.0 - sine * sine) * 1.002;  // of the circle, with a margin for rounding
+  float radius = sqrt(1.0 - sine * sine) * 1.002;  // radius of the circle, with a margin for rounding
   vec3 right = normalize(cross(towards, abs(towards.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
   vec3 up = cross(right, towards);
   vec3 on_unit = sine * towards + radius * (corner.x * right + corner.y * up);

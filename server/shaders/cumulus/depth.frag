@@ -1,11 +1,11 @@
-// Writes the distance of the nearest core, which is the part deeper than the corona. Variants are those of
-// cumulus/meeting.glsl.
+// Writes the distance of the nearest core, which is the part of a bubble deeper than the corona. The variants are those
+// of cumulus/meeting.glsl.
 #include "cumulus/meeting.glsl"
 
 layout(depth_greater) out float gl_FragDepth;
 
 uniform float corona_m;
-uniform float per_far;  // 1 over the distance of depth 1
+uniform float per_far;  // 1 divided by the distance that depth 1 stands for
 
 void main() {
   Meeting meeting;

@@ -1,14 +1,15 @@
-// Computes the surface's shadow from the sun's depths, in the format of common/storm_shadow.glsl.
+// Computes the surface's shadow on the ground from its depths as seen from the sun, in the format of
+// common/storm_shadow.glsl.
 #include "cumulus/bindings.glsl"
 
 layout(binding = kSunDepthUnit) uniform sampler2D depth;
 
-uniform vec2 place_of_depth;  // slope and offset from depth to place
+uniform vec2 place_of_depth;  // slope and offset of the linear function from depth to the place on the sun ray
 
 in vec2 position;
 out vec4 shadow;
 
-const int kAlong = 4;  // depths per texel along each side
+const int kAlong = 4;  // number of depth texels for each texel of the shadow, along each side
 
 void main() {
   vec2 size = vec2(textureSize(depth, 0));

@@ -1,10 +1,10 @@
 // The intersection of the fragment's ray with its bubble. Variants: BASE (the surface is cut off below base_m), GROUND
-// (parts hidden by the ground are omitted).
+// (the parts that the ground hides are omitted).
 #include "common/ground_distance.glsl"
 #include "common/view.glsl"
 #include "cumulus/bubble.glsl"
 
-uniform vec2 per_pixel;  // 2 over the target's size
+uniform vec2 per_pixel;  // 2 divided by the target's size in pixels
 uniform float base_m;
 
 flat in vec4 unit_x;
@@ -16,21 +16,21 @@ flat in int index;
 struct Meeting {
   vec3 origin_m;
   vec3 ray;
-  float entry_m;  // along the ray; 0 if it starts inside
+  float entry_m;  // distance along the ray; 0 if the ray starts inside the bubble
   float exit_m;
   float depth_m;  // depth below the surface at the ray's deepest point
-  vec3 normal;    // at the entry
+  vec3 normal;  // normal of the surface at the entry
 };
 
-// Returns false if the ray misses the bubble.
+// Computes the intersection. Returns false if the ray misses the bubble.
 bool meet(out Meeting meeting) {
   vec2 place = gl_FragCoord.xy * per_pixel - 1.0;
   meeting.ray = ray_direction(place);
   meeting.origin_m = ray_origin(place);
   vec3 o = to_unit(unit_x.xyz, unit_y, unit_z, meeting.origin_m - centre_m);
   vec3 d = to_unit(unit_x.xyz, unit_y, unit_z, meeting.ray);
-  // The intersection is computed from the point nearest to the middle. The discriminant of the original quadratic
-  // suffers from cancellation for small bubbles far away.
+  // The quadratic is solved from the ray's point nearest to the bubble's middle. Solved from the ray's origin, its
+  // discriminant would suffer from cancellation for small bubbles far away.
   float square = dot(d, d);
   float nearest_m = -dot(o, d) / square;
   vec3 nearest = o + nearest_m * d;
@@ -48,7 +48,7 @@ bool meet(out Meeting meeting) {
   if (entry_m > until_ground(entry_m)) return false;
   meeting.entry_m = entry_m;
   meeting.exit_m = exit_m;
-  // In the unit ball, surfaces of constant depth are balls. The normal's image gives the length of a metre there.
+  // In the unit ball, surfaces of constant depth are balls. The gradient there converts the depth to metres.
   vec3 deepest = o + clamp(nearest_m, entry_m, exit_m) * d;
   float away = max(length(deepest), 1e-6);
   vec3 gradient = from_unit_normal(unit_x.xyz, unit_y, unit_z, deepest) / away;

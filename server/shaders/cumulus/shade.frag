@@ -1,7 +1,8 @@
 // Neyret's shading of a cumulus (2000, section 4): Lambert's law on a rough surface, light traps between bubbles, the
-// light map of sky and ground, and a corona that scatters forwards. Core and corona are mixed by the density rho at the
-// ray's deepest point, which is 0 to 1 through the corona. If two bubbles are closer than its thickness, their cores
-// are mixed too. The output is the weighted cores that lie together, and a layer of everything in front of them.
+// light map of sky and ground, and a corona that scatters forwards. The corona is a translucent rim around the opaque
+// core of a bubble. Core and corona are mixed by the density rho at the ray's deepest point, which grows from 0 to 1
+// through the corona. If two bubbles are closer to each other than the corona's thickness, their cores are mixed too.
+// The output is the weighted sum of the cores close to the nearest one, and a layer of everything in front of them.
 // Variants: PLAIN (only Lambert's law), and those of cumulus/meeting.glsl.
 #include "common/sunlight.glsl"
 #include "cumulus/bindings.glsl"
@@ -11,20 +12,21 @@ layout(binding = kCoreDepthUnit) uniform sampler2D core_depth;  // from depth.fr
 layout(binding = kSunDepthUnit) uniform sampler2D shadow_depth;  // from depth.frag, as seen from the sun
 layout(binding = kRoughnessNoiseUnit) uniform sampler3D roughness_noise;
 
-uniform float corona_m;  // dR of the paper
+uniform float corona_m;  // thickness of the corona, dR of the paper
 uniform float per_far;
 uniform vec3 towards_sun;
-uniform vec3 light_map[9];  // radiance of a white surface in the light of sky and ground, by its normal's harmonics
+// Harmonics of the radiance of a white surface in the light of sky and ground, as a function of its normal.
+uniform vec3 light_map[9];
 uniform vec4 component;  // weights of direct light, inter-reflection, ambient light and corona
-uniform float trap_share;  // share of the sky that the deepest valley of one scale hides
+uniform float trap_share;  // share of the sky that the deepest valley at one scale hides
 uniform float transmission;  // share of sunlight that passes through the cloud
 uniform float roughness;
 uniform float noise_wave_m;   // wavelength of the noise's first octave
-uniform float noise_per_m;  // tiles of noise per metre
+uniform float noise_per_m;  // number of noise tiles in a metre
 uniform vec3 noise_offset;
-uniform float pixel_share;  // size of a pixel over its distance; in metres for parallel rays
+uniform float pixel_share;  // size of a pixel divided by its distance; for parallel rays, the size in metres
 uniform bool parallel;
-uniform vec4 shadow_x;  // from a point to texture coordinates and depth
+uniform vec4 shadow_x;  // rows of the transformation from a point to the shadow's texture coordinates and depth
 uniform vec4 shadow_y;
 uniform vec4 shadow_z;
 uniform float shadow_texel_m;
@@ -33,20 +35,20 @@ layout(location = 0) out vec4 cores;  // radiance times weight, weight
 layout(location = 1) out vec4 layer;  // radiance, transmittance
 
 const float kPi = 3.14159265;
-const float kTrapSharpness = 4.0;       // the paper's k
+const float kTrapSharpness = 4.0;  // k of the paper
 const int kTrapScales = 6;
 const float kCoronaVariance = 0.16;  // variance of the scattering angle at the deepest corona: sigma_max 0.4 rad
-const float kNarrowest = 400.0;  // power of the cosine in the forward lobe of a single droplet
+const float kNarrowest = 400.0;  // exponent of the cosine in the forward lobe of a single droplet
 const int kReliefScales = 3;
-// Wavelengths of the roughness relative to the noise's, and its heights relative to the wavelengths. Light scattered
-// inside the cloud smooths out structure smaller than the distance it travels. The finest scale therefore has the
-// smallest height.
+// Wavelengths of the roughness relative to the wavelength of the noise, and its heights relative to the wavelengths.
+// Light scattered inside the cloud smooths out structure smaller than the distance that light travels there. The finest
+// scale therefore has the smallest height.
 const vec3 kReliefWave = vec3(4.0, 1.0, 0.25);
 const vec3 kReliefHeight = vec3(0.35, 0.2, 0.06);
 
 float noise_root(vec3 point_m) { return texture(roughness_noise, point_m * noise_per_m + noise_offset).r; }
 
-// Returns the share of sunlight that other bubbles transmit, interpolated between a texel of the shadow and its
+// Returns the share of sunlight that passes other bubbles. It is interpolated between a texel of the shadow map and its
 // neighbours.
 float lit_texels(vec2 texel, float depth) {
   ivec2 size = textureSize(shadow_depth, 0);
@@ -62,7 +64,7 @@ float lit_texels(vec2 texel, float depth) {
   return mix(rows.x, rows.y, share.y);
 }
 
-// Returns the texel of the shadow (xy) and the depth from the sun of a point.
+// Returns the texel of the shadow map (xy) and the depth from the sun (z) of a point.
 vec3 shadow_place(vec3 point_m) {
   vec4 p = vec4(point_m, 1.0);
   return vec3(vec2(dot(shadow_x, p), dot(shadow_y, p)) * vec2(textureSize(shadow_depth, 0)) - 0.5, dot(shadow_z, p));
@@ -74,9 +76,9 @@ float lit(vec3 point_m) {
   return lit_texels(place.xy, place.z);
 }
 
-// Returns the share of sunlight that reaches a surface. It is the mean over places on the surface two coronas apart,
-// because light spreads sideways inside the cloud and blurs shadows to that width. `cosine` is that of the sun's angle
-// to the normal.
+// Returns the share of sunlight that reaches a surface. It is the mean over places on the surface that are two corona
+// thicknesses apart, because light spreads sideways inside the cloud and blurs shadows to that width. `cosine` is that
+// of the sun's angle to the normal.
 float lit_softly(vec3 point_m, vec3 normal, float cosine) {
   const float kMinCosine = 0.05;  // on steeper surfaces the places would be too far apart in depth
   vec3 place = shadow_place(point_m);
@@ -97,7 +99,7 @@ vec3 from_surroundings(vec3 n) {
   return max(sum, vec3(0.0));
 }
 
-// Returns the share (0 to 1) of noise of a wavelength that pixels of a size resolve.
+// Returns the share (0 to 1) of noise of the wavelength `wave_m` that pixels of the size `pixel_m` resolve.
 float resolved(float wave_m, float pixel_m) { return clamp(1.5 - 3.0 * pixel_m / wave_m, 0.0, 1.0); }
 
 // Returns the normal of a surface that is rough at all scales. Roughness finer than pixels is omitted.
@@ -120,13 +122,14 @@ vec3 roughened(vec3 normal, vec3 point_m, float pixel_m) {
   return normalize(rough);
 }
 
-// Returns the light reflected between bubbles (section 4.3). At each scale the valley around a bubble hides a share of
-// the sky. The paper's arc tangent gives that share from the height on the bubble. The hidden share 2 pi - Omega sends
-// (2 pi - Omega) / Omega of the mean light that arrives at the valley, by Lambert's law on the underlying surface.
+// Returns the light reflected between bubbles (section 4.3). At each scale, the valley around a bubble hides a share of
+// the sky. The share follows from the height on the bubble by the paper's arc tangent. The hidden solid angle 2 pi -
+// Omega sends (2 pi - Omega) / Omega times the mean light that arrives at the valley, by Lambert's law on the
+// underlying surface.
 //
-// At a coarser scale, the finer scales transmit their share of the sky. Any number of scales therefore sends at most 1
-// / (1 - trap_share) of the light. Uniformly bright surroundings look the same in a valley, because their light is
-// neither lost nor gained.
+// At a coarser scale, the light is multiplied by the share of the sky that the finer scales leave open. Any number of
+// scales therefore sends at most 1 / (1 - trap_share) times the light. In uniformly bright surroundings, a valley is as
+// bright as the rest, because light is neither lost nor gained.
 vec3 trapped(vec3 point_m, vec3 sunlight, out float sky_share) {
   vec3 sum = vec3(0.0);
   sky_share = 1.0;
@@ -156,7 +159,7 @@ vec3 trapped(vec3 point_m, vec3 sunlight, out float sky_share) {
   return sum;
 }
 
-// Returns the radiance of the core.
+// Returns the radiance of the opaque core of a bubble.
 vec3 core(Meeting meeting, vec3 point_m, float pixel_m) {
 #if PLAIN
   return sunlight_at(point_m.z) * (max(dot(meeting.normal, towards_sun), 0.0) / kPi);
@@ -175,8 +178,8 @@ vec3 core(Meeting meeting, vec3 point_m, float pixel_m) {
 #endif
 }
 
-// Returns the radiance of the corona with the sun behind it (section 4.2, appendix A). The variance of the scattering
-// angle grows with the droplets on the path. The lobe is a power of the cosine, scaled to conserve energy.
+// Returns the radiance of the corona, in front of the sun (section 4.2, appendix A). The variance of the scattering
+// angle grows with the number of droplets on the path. The lobe is a power of the cosine, scaled to conserve energy.
 vec3 corona(Meeting meeting, float rho) {
   float mu = dot(meeting.ray, towards_sun);
   if (mu <= 0.0) return vec3(0.0);
@@ -202,7 +205,7 @@ void main() {
   vec3 point_m = meeting.origin_m + meeting.entry_m * meeting.ray;
   float pixel_m = parallel ? pixel_share : pixel_share * meeting.entry_m;
   float rho = min(meeting.depth_m / corona_m, 1.0);
-  // The corona is thinner where the noise is low. Densities of 0 and 1 do not change.
+  // The corona is thinner where the noise is low. Densities of 0 and 1 stay unchanged.
   if (rho < 1.0 && roughness > 0.0) {
     float fine = mix(0.7, noise_root(4.0 * point_m), resolved(0.25 * noise_wave_m, pixel_m));
     rho = pow(rho, exp(3.0 * roughness * (1.4 - noise_root(point_m) - fine)));

@@ -1,5 +1,5 @@
-// Writes the distance of the ground along each pixel's ray, or a very large value if the ray does not meet it.
-// Variants: RELIEF, CHOSEN.
+// Writes the distance of the ground along each pixel's ray. If the ray does not meet the ground, it writes a very large
+// value. Variants: RELIEF, CHOSEN.
 #include "common/ray_place.glsl"
 #include "common/view.glsl"
 #include "common/ground.glsl"

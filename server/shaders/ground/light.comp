@@ -1,5 +1,5 @@
-// Computes the light that reaches level ground, relative to that of open ground (r), and the ground's height above sea
-// level (g). The values are at the points of a lattice in world coordinates. Variant: RELIEF.
+// Computes the light that reaches level ground, relative to the light of open ground (r), and the ground's height above
+// sea level (g). The values are at the points of a lattice in world coordinates. Variant: RELIEF.
 #include "common/bindings.glsl"
 #include "common/ground.glsl"
 #include "common/sky_hidden.glsl"
@@ -14,8 +14,8 @@ uniform ivec3 point_count;
 uniform vec3 lattice_low_m;
 uniform vec3 lattice_size_m;
 uniform vec3 towards_sun;
-uniform float sunlit_share;  // share of the sun in the light of open ground
-uniform float mean_albedo;  // of the ground
+uniform float sunlit_share;  // share of direct sunlight in the light of open ground
+uniform float mean_albedo;  // mean albedo of the ground
 
 void main() {
   ivec3 point = ivec3(gl_GlobalInvocationID);
@@ -29,7 +29,7 @@ void main() {
   float blocked = blocked_behind(place_m);
   StormInSky storm = storm_in_sky(place_m);
   float reflected = light_of_faces_on_ground(storm, towards_sun, vec3(1.0 - sunlit_share)).r;
-  // The ground is lit as in post/composite.frag, plus multiple reflections between ground and storm.
+  // The ground is lit as in post/composite.frag. Multiple reflections between ground and storm are added.
   float share = sunlit_share * (1.0 - blocked) + (1.0 - sunlit_share) * (1.0 - storm.hidden) + mix(reflected, storm.through, blocked);
   share /= 1.0 - mean_albedo * clamp(storm.reflects, 0.0, 1.0);
   imageStore(light, point, vec4(min(share, kMaxShare), place_m.z, 0.0, 0.0));

@@ -1,13 +1,14 @@
-// Computes the medium's shadow with one sun ray a texel, in the format of common/storm_shadow.glsl. Variants: GROUPS,
-// DETAILS.
+// Computes the medium's shadow along one sun ray for each texel, in the format of common/storm_shadow.glsl. Variants:
+// GROUPS, DETAILS.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 
 uniform vec3 towards_sun;
-// Half the picture's width, in metres from the middle of the box; light_up_m: half its height.
+// light_right_m is the vector from the middle of the box to the right edge of the shadow map, light_up_m to its upper
+// edge.
 uniform vec3 light_right_m;
 uniform vec3 light_up_m;
-uniform float half_depth_m;  // of the box along the sun's rays
+uniform float half_depth_m;  // half the depth of the box along the sun's rays
 uniform float step_m;
 uniform vec4 light_weights[PLANES];
 
@@ -27,7 +28,7 @@ void main() {
   float per_step = 1.0 / step_m;
   float distance_m = path.x;
   float depth = 0.0;
-  float before = 1.0;  // transmittance so far
+  float before = 1.0;  // transmittance of the ray so far
   vec2 moments = vec2(0.0);
   for (int i = 0; i < kMaxSamples && distance_m < path.y && depth < kOpaqueDepth; ++i) {
     vec3 place = brick_place(ray, distance_m);

@@ -1,7 +1,8 @@
 // Propagates sunlight through consecutive slices of the light buffer. Each layer holds the light that enters a slice: r
 // is the share of sunlight, g the similarity-scaled optical depth from the sun. Neighbouring texels exchange light once
-// a call. The exchanged light is that scattered since the last call (CONSISTENT) or in the call's only slice (the
-// paper's transport). Variants: GROUPS, CONSISTENT, TRANSLUCENT (there is an exchange).
+// in each dispatch. With CONSISTENT, they exchange the light that was scattered since the last dispatch. With the
+// paper's transport, they exchange the light scattered in the only slice of the dispatch. Variants: GROUPS, CONSISTENT,
+// TRANSLUCENT (texels exchange light).
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
@@ -12,7 +13,7 @@ layout(local_size_x = kLightGroupSide, local_size_y = kLightGroupSide) in;
 #define EXCHANGES (TRANSLUCENT && CONSISTENT)
 layout(binding = kLeavingLightImage) uniform writeonly image2DArray leaving;
 #if EXCHANGES
-// Optical depth scattered into the outer ring since the last exchange.
+// Optical depth of scattering into the outer ring of directions since the last exchange.
 layout(binding = kRingDepthImage, r32f) uniform image2D ring_depth;
 #endif
 
@@ -25,9 +26,9 @@ uniform int slice_count;
 uniform int first_layer;
 uniform vec4 light_weights[PLANES];
 uniform vec4 transport_weights[PLANES];
-uniform vec4 peripheral_weights[PLANES];  // scattering into the outer ring, 1/m
+uniform vec4 peripheral_weights[PLANES];  // factors from a texel to scattering into the outer ring in 1/m
 uniform vec2 cumulative_phase;            // CP(theta_f / 4), CP(theta_f / 2)
-uniform vec2 tap_offset;  // offset of a peripheral sample in texture coordinates
+uniform vec2 tap_offset;  // offset of the samples in the ring, in texture coordinates
 
 float peripheral(vec3 place) {
   float sum = texture(light, place + vec3(tap_offset.x, 0.0, 0.0)).r;
@@ -37,7 +38,7 @@ float peripheral(vec3 place) {
   return 0.25 * sum;
 }
 
-// Returns the light `here` after a slice of the medium. `place` is in the light buffer.
+// Returns the light after a slice of the medium. `here` is the light before it. `place` is in the light buffer.
 vec2 carried(vec2 here, vec3 place, Medium medium, vec4 light_depths[PLANES], vec4 transport_depths[PLANES]) {
   float transmittance = exp(-weigh(medium, light_depths));
 #if TRANSLUCENT && !CONSISTENT
@@ -70,8 +71,8 @@ void main() {
   float distance_m = ray.first_m + float(first_slice) * path_m;
   vec2 here = texelFetch(light, ivec3(texel, layer), 0).rg;
 #if EXCHANGES
-  // A fixed offset and a share that grows with the path make the spread a diffusion, independent of the number of
-  // slices.
+  // The offset of the exchange is fixed, and the exchanged share grows with the path. The spread is therefore a
+  // diffusion that does not depend on the number of slices.
   float ring = end > 0 ? imageLoad(ring_depth, texel).r : 0.0;
   if (ring > 0.0) {
     here.r = mix(here.r, peripheral(vec3(place, float(layer))), 1.0 - exp(-ring));

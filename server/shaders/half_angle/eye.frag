@@ -1,11 +1,12 @@
-// Draws the eye buffer after a slab of consecutive slices: radiance scattered towards the eye (rgb) and the
-// transmittance for light from behind (a). It visits the points at which the ray meets the slices in the order in which
-// sunlight does, and skips those in empty bricks. The method is Riley et al. 2003 (Vis), eq. 5 with the phase of eq.
-// 18. The light comes from carry.comp.
+// Draws the eye buffer after a slab of consecutive slices: radiance scattered towards the eye (rgb) and transmittance
+// for light from behind (a). It visits the points at which the ray meets the slices, in the order in which sunlight
+// meets the slices. Points in empty bricks are skipped. The method is Riley et al. 2003 (Vis), eq. 5 with the phase of
+// eq. 18. The light comes from carry.comp.
 //
-// Variants: GROUND (everything behind it is omitted), GROUPS, COLORED (groups have colours), EVEN_ALBEDO (one albedo
-// and colour for all), TRANSLUCENT, CONSISTENT (transport), ORDER. ORDER is 1 if all rays meet the slices in their
-// order, 0 if all meet them against it, and 2 if a wide view has both.
+// Variants: GROUND (the parts of the medium behind the ground are omitted), GROUPS, COLORED (groups have colours),
+// EVEN_ALBEDO (all groups have the same albedo and colour), TRANSLUCENT, CONSISTENT (consistent transport), ORDER.
+// ORDER is 1 if all rays meet the slices in the order of sunlight, 0 if all meet them in the reverse order, and 2 if a
+// wide view has both kinds.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "common/ground_distance.glsl"
@@ -17,12 +18,12 @@
 #include "half_angle/bindings.glsl"
 #include "physics/light_transport.glsl"
 
-// Light that enters each slice of the slab, with one layer a slice. r is the share of sunlight, g the optical depth
-// towards the sun.
+// Light that enters each slice of the slab, with one layer for each slice. r is the share of sunlight, g the optical
+// depth towards the sun.
 layout(binding = kSliceLightUnit) uniform sampler2DArray light;
 layout(binding = kSliceThicknessUnit) uniform sampler2D thickness;  // r: optical depth along the whole sun ray
 
-layout(binding = kEyeBeforeUnit) uniform sampler2D eye;  // before the slab
+layout(binding = kEyeBeforeUnit) uniform sampler2D eye;  // eye buffer before this slab
 layout(binding = kDistanceBeforeUnit) uniform sampler2D distance_before;
 uniform vec3 towards_sun;
 uniform vec3 slice_normal;  // points to the sun's side
@@ -30,12 +31,12 @@ uniform float first_plane_m;  // distance of the first slice's plane from the mi
 uniform float spacing_m;
 uniform float light_path_m;   // length of a sun ray between two slices
 uniform float slab_begin;     // first slice of the slab
-uniform float slab_end;  // one after the slab's last slice
-uniform float begin_layer;  // first layer of the light
-uniform vec4 eye_weights[PLANES];  // from texel to the extinction along the eye's ray, 1/m
-uniform vec4 light_weights[PLANES];  // from texel to the extinction in the light buffer, 1/m
-uniform vec4 transport_weights[PLANES];  // from texel to similarity-scaled extinction, 1/m
-uniform vec3 light_u;                // light buffer axes, scaled to its texture coordinates
+uniform float slab_end;  // index after the slab's last slice
+uniform float begin_layer;  // layer of the light that enters the slab's first slice
+uniform vec4 eye_weights[PLANES];  // factors from a texel to the extinction along the eye's ray in 1/m
+uniform vec4 light_weights[PLANES];  // factors from a texel to the extinction in the light buffer in 1/m
+uniform vec4 transport_weights[PLANES];  // factors from a texel to the similarity-scaled extinction in 1/m
+uniform vec3 light_u;  // axes of the light buffer, scaled to its texture coordinates
 uniform vec3 light_v;
 
 in vec2 position;
@@ -61,7 +62,7 @@ void main() {
   const bool front_to_back = ORDER == 1;
 #endif
   if (!front_to_back) {
-    // Sunlight meets the slices from behind, so from here on distances are counted towards the eye.
+    // On this ray, sunlight meets the slices from behind, so from here on distances are counted towards the eye.
     safe = -safe;
     path = -path.yx;
   }
@@ -78,7 +79,7 @@ void main() {
   float slice = max(slab_begin, ceil((path.x - first_m) * per_apart));
   float end = min(slab_end, floor((path.y - first_m) * per_apart) + 1.0);
 
-  // The limit is needed for rays parallel to the slices, whose path would be infinite.
+  // The limit is needed for rays parallel to the slices, whose path through a slice would be infinite.
   float path_m = spacing_m / max(falling, 0.05);
   vec4 eye_depths[PLANES] = scaled(eye_weights, path_m);
   vec4 light_depths[PLANES] = scaled(light_weights, light_path_m);
@@ -118,7 +119,7 @@ void main() {
     }
     shown_m += shows * (1.0 - slice_transmittance) * (towards * distance_m);
 #if CONSISTENT
-    // The buffer holds the light that enters the slice. Inside the slice, light and view are both attenuated.
+    // The buffer holds the light that enters the slice. Inside the slice, both the light and the view are attenuated.
     float light_depth = weigh(medium, light_depths);
     float lit_and_seen = front_to_back ? mean_transmittance(depth + light_depth)
                                        : mean_counter_transmittance(depth, light_depth);
@@ -140,7 +141,7 @@ void main() {
     slice += 1.0;
     if (front_to_back && transmittance < kEndTransmittance) end = 0.0;
   }
-  // One height represents the sunlight: the mean height of everything in the slab that the ray shows.
+  // One height represents the sunlight. It is the mean height of everything visible in the slab on this ray.
   float opacity = max((front_to_back ? before.a : 1.0) - transmittance, 1e-30);
   vec3 sunlight = sunlight_at(origin_m.z + shown_m / opacity * direction.z);
   vec3 radiance = radiance_of(scattered, sunlight, path_m, haversine_between(direction, towards_sun));

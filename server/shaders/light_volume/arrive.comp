@@ -1,14 +1,15 @@
-// Computes the light that arrives at the centres of cells that a ray may meet, with one work group for each block of
-// cells (volume::CellBlocks). Close to the cell, the medium is sampled towards the sun. Farther away, the sun-aligned
-// volume of carry.comp holds the light's optical depth.
+// Computes the light that arrives at the centres of cells that a ray may meet. One work group processes one block of
+// cells (volume::CellBlocks). Close to the cell, the medium is sampled towards the sun. Farther away, the optical depth
+// comes from the volume of carry.comp, which is aligned with the sun.
 //
-// r is the square root of the light's optical depth. The interpolated medium has its kinks at cell centres. In a
-// cloud's edge, extinction rises linearly from such a centre, so the square root of the optical depth rises linearly
-// too. g is the mean intensity of multiply scattered light over the sun's irradiance.
+// r is the square root of the optical depth of the arriving light. The interpolated medium has its kinks at cell
+// centres. At a cloud's edge, extinction rises linearly from a cell centre, so the square root of the optical depth
+// also rises linearly. g is the mean intensity of multiply scattered light, divided by the sun's irradiance.
 //
-// Variants: GROUPS, DETAILS, CONSISTENT, TRANSLUCENT, DIFFUSE, NEAR. NEAR concerns the ratio of two optical depths
-// close to a cell: by the medium over by the light's medium (light_medium.comp). The ratio changes little while the sun
-// moves. NEAR 1 stores the ratio, and NEAR 2 uses it instead of sampling the medium.
+// Variants: GROUPS, DETAILS, CONSISTENT, TRANSLUCENT, DIFFUSE, NEAR. NEAR concerns the path close to a cell. Its
+// optical depth in the medium is divided by its optical depth in the light's medium (light_medium.comp). This ratio
+// changes little while the sun moves. With NEAR 1 the ratio is stored. With NEAR 2 the stored ratio is used, and the
+// medium is not sampled.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/box.glsl"
@@ -30,39 +31,40 @@ layout(binding = kNearRatioUnit) uniform sampler3D near_ratio;
 
 uniform mat4x3 light_from_local;
 uniform vec3 towards_sun;
-uniform float near_m;  // length of the path that is sampled next to the cell
+uniform float near_m;  // length of the path next to a cell along which the medium is sampled
 uniform vec4 light_weights[PLANES];
 
-// The samples are at the two Gauss-Legendre points. Compared with 64 samples, no pixel of the mature storm changes by
-// more than 1 of 255.
+// Number of samples, which are at the two Gauss-Legendre points. Compared with 64 samples, no pixel of the mature storm
+// changes by more than 1 of 255.
 const int kNearSamples = 2;
 const float kFirstNearSample = 0.21132487;
 const float kNearSamplesApart = 0.57735027;
 
-// The texel of a ratio of 1, which allows ratios up to nearly 2. kLeastNearDepth is added to both optical depths,
-// because ratios of tiny depths are meaningless.
+// kRatioOne is the texel value of a ratio of 1, so ratios up to nearly 2 can be stored. kLeastNearDepth is added to
+// both optical depths, because ratios of tiny depths are meaningless.
 const float kRatioOne = 128.0 / 255.0;
 const float kLeastNearDepth = 0.01;
 
-// Inputs of give_light that all cells share, in the coordinates of the medium's texture and of the light's volume.
+// Inputs of give_light that all cells have in common. Places are in the coordinates of the medium's texture and of the
+// light's volume.
 struct Surroundings {
   int near_samples;
-  vec3 near_path;  // path that is sampled towards the sun
+  vec3 near_path;  // vector towards the sun along which the medium is sampled
   vec3 per_near_path;
-  vec3 out_place;  // end of the medium's box towards the sun
-  vec4 near_depths[PLANES];  // from texel to a sample's part of that path's optical depth
-  float near_smoother;  // the same factor for the light's medium
+  vec3 out_place;  // end of the medium's box in the sun's direction
+  vec4 near_depths[PLANES];  // factors from a texel to the contribution of a sample to the optical depth of that path
+  float near_smoother;  // the corresponding factor for the light's medium
   float light_layers;
 };
 
-// Computes the light of one cell. `far_place` is the end of the sampled path in the light's volume. `here_place` is the
-// cell's own place there.
+// Computes the light of one cell. `here_place` is the cell's place in the light's volume. `far_place` is the end of the
+// sampled path there.
 void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroundings around) {
-  // Only the part of that path inside the medium's box counts. A block may extend beyond the box.
+  // Only the part of the sampled path inside the medium's box counts. A block of cells may extend beyond the box.
   vec3 inside = (around.out_place - place) * around.per_near_path;
   float share = clamp(min(min(inside.x, inside.y), inside.z), 0.0, 1.0);
-  float depth = 0.0;    // by the medium
-  float smoother = 0.0;  // by the light's medium
+  float depth = 0.0;  // optical depth in the medium
+  float smoother = 0.0;  // optical depth in the light's medium
   for (int i = 0; i < around.near_samples; ++i) {
     vec3 at = place + share * (kFirstNearSample + kNearSamplesApart * float(i)) * around.near_path;
 #if NEAR < 2
@@ -78,7 +80,7 @@ void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroun
   float ratio = texelFetch(near_ratio, cell, 0).r / kRatioOne;
   depth = max(ratio * (smoother + kLeastNearDepth) - kLeastNearDepth, 0.0);
 #endif
-  // Light begins to fade between the sun's side of the volume and the middle of its first layer.
+  // The carried optical depth fades in between the sun's side of the volume and the middle of its first layer.
   float begun = clamp(2.0 * around.light_layers * far_place.z, 0.0, 1.0);
   float far = begun * texture(carried, far_place).r;
   float multiple = 0.0;
@@ -94,7 +96,8 @@ void main() {
   begin_medium();
   Block block = block_of_group();
   if (!block.listed) return;
-  // A thin block has little optical depth near a cell. The paper's transport must use only the steps of carry.comp.
+  // In a thin block, the optical depth near a cell is negligible. The paper's transport must use only the steps of
+  // carry.comp.
   bool looks_near = block.thick && (CONSISTENT == 1 || TRANSLUCENT == 0);
   vec3 direction = safe_direction(towards_sun);
   vec3 box_low = medium_low_m * texture_from_local_scale + texture_from_local_offset;

@@ -1,11 +1,11 @@
-// Propagates sunlight once through the medium into a volume whose depth is along the sun's rays, with one invocation a
-// ray. r is the square root of the light's effective optical depth, -log of the arriving share. g is the
-// similarity-scaled optical depth from the sun, which at the ray's end is its thickness. `shadow` is that of the whole
-// medium (common/storm_shadow.glsl). Layers that arrive.comp does not use stay unchanged.
+// Propagates sunlight once through the medium into a volume whose depth is along the sun's rays, with one invocation
+// for each ray. r is the square root of the light's effective optical depth, which is -log of the arriving share. g is
+// the similarity-scaled optical depth from the sun. At the end of a ray, g is the ray's thickness. `shadow` is the
+// shadow of the whole medium (common/storm_shadow.glsl). Layers that arrive.comp does not use stay unchanged.
 //
-// The light model is that of half_angle/carry.comp without the exchange between neighbouring rays. The width of that
-// exchange (one cell's path at 3/8 theta_f) is below a texel of this volume at the usual angles. Variants: CONSISTENT,
-// TRANSLUCENT, DIFFUSE.
+// The light model is that of half_angle/carry.comp without the exchange of light between neighbouring rays. At the
+// usual angles, the width of that exchange (3/8 theta_f times the path through a cell) is less than a texel of this
+// volume. Variants: CONSISTENT, TRANSLUCENT, DIFFUSE.
 #include "common/bricks.glsl"
 #include "light_volume/light_medium.glsl"
 
@@ -19,21 +19,22 @@ layout(binding = kThicknessImage, r32f) uniform writeonly image2D thickness;
 uniform ivec3 light_size;
 uniform int first_row;  // first row of this dispatch
 uniform vec3 towards_sun;
-uniform vec3 light_right_m;  // half the volume's width in metres; light_up_m: half its height
+// Vector from the volume's middle to its right side; light_up_m is the vector to its upper side.
+uniform vec3 light_right_m;
 uniform vec3 light_up_m;
-uniform float light_reach_m;  // half its depth
-uniform float read_m;  // distance from scattering cells within which arrive.comp reads this volume
-uniform int read_bricks;  // read_m in bricks
+uniform float light_reach_m;  // half the depth of the volume in metres
+uniform float read_m;  // arrive.comp reads this volume up to this distance from scattering cells
+uniform int read_bricks;  // read_m in units of bricks
 uniform int half_layer_steps;  // number of samples in half a layer
 uniform vec2 cumulative_phase;  // CP(theta_f / 4), CP(theta_f / 2)
 
-// Returns the light's optical depth for an optical depth `depth` of the medium. `turned` is the share of scattered
-// light that leaves the beam.
+// Returns the optical depth by which light is attenuated in a medium of the optical depth `depth`. `turned` is the
+// share of scattered light that leaves the beam.
 float lost(float depth, float turned) {
 #if CONSISTENT || !TRANSLUCENT
   return depth;
 #else
-  // Riley et al. 2003 (Vis), eq. 14 to 17 as printed, for light that does not vary across the rays.
+  // Riley et al. 2003 (Vis), eq. 14 to 17 as printed, for light that is the same for neighbouring rays.
   return depth < 1e-3 ? depth * turned : -log(1.0 - turned * (1.0 - exp(-depth)));
 #endif
 }
@@ -55,16 +56,16 @@ void main() {
   float turned = 1.0 - cumulative_phase.y;
   float per_layer = 1.0 / layer_m;
   int most_steps = max(half_layer_steps, 1);
-  float further_m = float(most_steps - 1) * step_m;  // from its first sample to its last
+  float further_m = float(most_steps - 1) * step_m;  // distance from the first sample of a half layer to its last
 
   float depth = 0.0;
   float medium_depth = 0.0;
-  float lit = 1.0;  // transmittance of the medium so far
+  float lit = 1.0;  // transmittance of the medium along the ray so far
   vec2 moments = vec2(0.0);
   float per_reach = 1.0 / light_reach_m;
   float transport = 0.0;
   float distance_m = float(first) * layer_m + 0.5 * step_m;
-  float most_m = half_layer_m + further_m;  // from a layer's first sample to its last
+  float most_m = half_layer_m + further_m;  // distance from the first sample of a layer to its last
   int layer = first;
   if (any(greaterThanEqual(texel, light_size.xy))) return;
   while (layer < last) {
@@ -72,7 +73,7 @@ void main() {
     bool outside = any(lessThan(place, vec3(0.0))) || any(greaterThan(place, ray.highest_brick + 0.5));
     uint content = brick_content(ray, place);
     if (!outside && !is_filled(content) && content > uint(read_bricks)) {
-      // Nothing reads the light this far from scattering cells.
+      // arrive.comp does not read light this far from scattering cells, so these layers are skipped.
       int leap = int(empty_path(ray, place, content - uint(read_bricks)) * per_layer);
       if (leap > 0) {
         layer += leap;

@@ -1,4 +1,5 @@
-// Blocks of cells that a ray may meet (volume::CellBlocks), one for each work group of kBlockGroupSize invocations.
+// Blocks of cells that a ray may meet (volume::CellBlocks). Each work group of kBlockGroupSize invocations processes
+// one block.
 #include "common/bindings.glsl"
 #include "light_volume/bindings.glsl"
 
@@ -13,11 +14,11 @@ uniform int end_block;
 const uint kThickBlock = 1u << 31;
 
 struct Block {
-  bool listed;  // false for surplus groups in the last row
+  bool listed;  // false for surplus work groups in the last row of the dispatch
   bool thick;
   ivec3 first_cell;
   int cells;
-  float per_row;  // reciprocal of the number of cells in a row; per_layer: in a layer
+  float per_row;  // reciprocal of the number of cells in a row; per_layer is that of the number in a layer
   float per_layer;
 };
 
@@ -34,8 +35,8 @@ Block block_of_group() {
   return block;
 }
 
-// Returns cell `i` of a block relative to its first cell. It avoids integer division, which software GL does not
-// vectorize.
+// Returns the position of cell `i` of a block relative to the block's first cell. It avoids integer division, because
+// software GL does not vectorize it.
 ivec3 cell_within(Block block, int i) {
   int row = int((float(i) + 0.5) * block.per_row);
   int layer = int((float(i) + 0.5) * block.per_layer);

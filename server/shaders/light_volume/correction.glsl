@@ -1,5 +1,5 @@
-// The correction of a ray's radiance (renderers::LightCorrection), by direction and by place in the medium's box, 0 to
-// 1.
+// The correction of a ray's radiance (renderers::LightCorrection) by the ray's direction and by a place in the medium's
+// box. Coordinates of the place are from 0 to 1.
 #include "light_volume/bindings.glsl"
 
 layout(binding = kCorrectionRedUnit) uniform sampler3D correction_red;

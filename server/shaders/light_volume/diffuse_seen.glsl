@@ -1,25 +1,25 @@
 // Light scattered many times along a view ray, from the diffusion equation (renderers/light_volume/diffuse_light.h).
-// The equation treats the medium as one that scatters isotropically but less. This light and the background are
+// The equation treats the medium as scattering isotropically but less. The diffuse light and the background are
 // therefore attenuated by the similarity-scaled extinction. Extinctions are per step. This file needs
-// common/medium.glsl, common/phase.glsl and light_volume/segment.glsl. Variant: TINTED (the light is absorbed or
-// coloured).
+// common/medium.glsl, common/phase.glsl and light_volume/segment.glsl. Variant: TINTED (the diffuse light is absorbed
+// or coloured).
 #include "light_volume/bindings.glsl"
 #include "physics/light_transport.glsl"
 
-// Texels hold the root of the optical depth to the nearest surface, the sky seen there, and the x of its net flux
-// (DiffuseLight::SkySeen).
+// Texels hold the square root of the optical depth to the nearest surface, DiffuseLight::SkySeen (x and y), and
+// component x of DiffuseLight::SkyInward.
 layout(binding = kExitsUnit) uniform sampler3D exits;
-// Texels hold the net inward flux of sunlight, the fluence from other walls and the y of the sky's net flux. The last
-// channel is the share of open ground's light that arrives from below.
+// Texels hold the net inward flux of sunlight, the fluence from other walls, and component y of
+// DiffuseLight::SkyInward. The last channel is the share of open ground's light that arrives from below.
 layout(binding = kNetInwardUnit) uniform sampler3D net_inward;
 
-uniform vec4 transport_weights[PLANES];  // from texel to similarity-scaled extinction, 1/m
-uniform vec3 rest_of_sky;                // mean radiance, without the bright sky around the sun
-uniform vec3 rest_of_sky_level;          // its irradiance from above over pi
-uniform vec3 around_sun;  // irradiance from the sun's direction
+uniform vec4 transport_weights[PLANES];  // factors from a texel to the similarity-scaled extinction in 1/m
+uniform vec3 rest_of_sky;  // mean radiance of the sky without the bright region around the sun
+uniform vec3 rest_of_sky_level;  // irradiance of that sky from above over pi
+uniform vec3 around_sun;  // irradiance of the bright region around the sun, from the sun's direction
 uniform vec3 from_ground;                // radiance of open ground
 #if TINTED
-uniform vec4 red_weights[PLANES];  // from texel to similarity-scaled scattering, 1/m
+uniform vec4 red_weights[PLANES];  // factors from a texel to the similarity-scaled scattering in 1/m
 uniform vec4 green_weights[PLANES];
 uniform vec4 blue_weights[PLANES];
 #endif
@@ -31,7 +31,7 @@ vec4 green_depths[PLANES];
 vec4 blue_depths[PLANES];
 #endif
 
-// Must be called first.
+// Prepares the factors for the given step. Call it before the other functions.
 void begin_diffuse(float step_m) {
   transport_depths = scaled(transport_weights, step_m);
 #if TINTED
@@ -42,7 +42,7 @@ void begin_diffuse(float step_m) {
 }
 
 struct DiffuseSample {
-  float transport;  // extinction
+  float transport;  // similarity-scaled extinction
   vec4 exits;
   vec4 inward;
   vec3 tint;  // scattering of red, green and blue
@@ -63,35 +63,35 @@ DiffuseSample mixed(DiffuseSample a, DiffuseSample b, float at) {
                        mix(a.tint, b.tint, at));
 }
 
-// Sums over the ray's segments, weighted by the visible share of each.
+// Sums over the ray's segments. Each segment is weighted by its visible share.
 struct DiffuseSeen {
-  float transmittance;  // for this light and the background
-  vec3 sun;  // fluence over the sun's irradiance
-  vec3 sky;  // relative to the sky's mean radiance
-  vec3 level;  // relative to its irradiance from above
-  vec3 ground;  // relative to open ground's radiance
+  float transmittance;  // transmittance for diffuse light and the background
+  vec3 sun;  // fluence of sunlight divided by the sun's irradiance
+  vec3 sky;  // weight of the sky's mean radiance
+  vec3 level;  // weight of the sky's irradiance from above over pi
+  vec3 ground;  // weight of open ground's radiance
 };
 
 DiffuseSeen no_diffuse_seen() { return DiffuseSeen(1.0, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0)); }
 
-// Returns the fluence of sunlight at the optical depth `sun_depth` from the sun. `scale` is transport's extinction over
-// the eye's.
+// Returns the fluence of sunlight at the optical depth `sun_depth` from the sun. `scale` is the ratio of the
+// similarity-scaled extinction to the extinction for the eye.
 float sun_fluence(DiffuseSample there, float sun_depth, float scale) {
   float exit_depth = there.exits.x * there.exits.x;
   return diffuse_fluence(exit_depth, sun_depth, scale * exit_depth, there.inward.x, there.inward.y) +
          forward_fluence(exit_depth, sun_depth, scale * sun_depth);
 }
 
-// Returns the visible shares of the sky's level and of its mean.
+// Returns the visible shares of the sky's irradiance from above (x) and of its mean radiance (y).
 vec2 sky_shares_of(DiffuseSample there, float scale) {
   float exit_depth = there.exits.x * there.exits.x;
   vec2 shares = there.exits.yz - vec2(there.exits.w, there.inward.z) * (3.0 * scale * exit_depth + 2.0);
   return shares * (clamp(shares.x + shares.y, 0.0, 1.0) / max(shares.x + shares.y, 1e-6));
 }
 
-// Adds a segment. The share of this light that the segment absorbs or scatters is `taken`. The root of the optical
-// depth from the sun is `sun_depth_root`, and the eye's extinction is `extinction`. Both are at the place where half of
-// that share is taken. Returns the segment's weight in the pixel.
+// Adds a segment. The share of the diffuse light that the segment removes is `taken`. The square root of the optical
+// depth from the sun is `sun_depth_root`. The extinction for the eye is `extinction`. The last two are values at the
+// place where half of `taken.share` is reached. Returns the segment's weight in the pixel.
 float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, float sun_depth_root, float extinction) {
   float scale = there.transport / max(extinction, 1e-30);
   float fluence = sun_fluence(there, sun_depth_root * sun_depth_root, scale);
@@ -110,8 +110,8 @@ float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, floa
   return shown;
 }
 
-// Completes a ray that ends before the medium does. Deep in a cloud, diffuse light varies little, so the visible part
-// is extrapolated to the rest.
+// Completes a ray that ended before the medium does. Deep in a cloud, diffuse light varies little. The mean over the
+// visible part is therefore extrapolated to the rest.
 void close_diffuse(inout DiffuseSeen seen) {
   float whole = 1.0 / (1.0 - seen.transmittance);
   seen.sun *= whole;

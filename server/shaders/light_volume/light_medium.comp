@@ -1,8 +1,8 @@
-// Computes the medium for propagating light: one value a cell, independent of groups and detail. A sample along the
-// sun's rays then needs only one texture. With detail, the value is the mean over the cell, which preserves the light's
-// attenuation. The only exception is the part of the mean that spreads into cells of empty bricks, which carry.comp
-// skips. r is the extinction of the light. g is the similarity-scaled extinction, in textures that have this channel.
-// Both are divided by `light_medium_per_m`. Variants: GROUPS, DETAILS.
+// Computes the medium for propagating light, with one value for each cell. A sample along the sun's rays then reads one
+// texture, whatever the number of groups and noises. With detail, the value is the mean over the cell, which preserves
+// the attenuation of light. The only exception is the part of the mean that spreads into cells of empty bricks, which
+// carry.comp skips. r is the extinction for light. g is the similarity-scaled extinction, in textures that have this
+// channel. Both are divided by `light_medium_per_m`. Variants: GROUPS, DETAILS.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "light_volume/cell_blocks.glsl"
@@ -13,8 +13,8 @@ uniform vec4 light_weights[PLANES];  // from the medium's texel to the stored va
 uniform vec4 transport_weights[PLANES];
 
 #if DETAILS > 0
-// Corners of a tetrahedron. Its four samples have the same mean as the eight of a cube, except for products of all
-// three coordinates.
+// Corners of a tetrahedron. The four samples have the same mean as samples at the eight corners of a cube, except for
+// products of all three coordinates.
 const vec3 kWithin[4] = vec3[4](vec3(-0.25, -0.25, -0.25), vec3(0.25, 0.25, -0.25), vec3(0.25, -0.25, 0.25),
                                 vec3(-0.25, 0.25, 0.25));
 #else

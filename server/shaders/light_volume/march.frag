@@ -1,10 +1,10 @@
-// Computes the radiance of the medium (rgb) and the transmittance of the background (a). It marches through the medium
+// Computes the radiance of the medium (rgb) and the transmittance to the background (a). It marches through the medium
 // along the view ray. The light comes from arrive.comp. The method is Riley et al. 2003 (Vis), eq. 5 with the phase of
 // eq. 18.
 //
 // Between two samples, extinction, scattering and the square root of the light's optical depth are linear. A segment's
-// source is evaluated where half of the segment's opacity is reached. That is exact for a source that is linear in
-// opacity, for any optical depth of the segment. Errors relative to many samples are in docs/performance.md.
+// source is evaluated where half of the segment's opacity is reached. For a source that is linear in opacity, this is
+// exact for any optical depth of the segment. docs/performance.md has the errors relative to many samples.
 //
 // With DIFFUSION, multiply scattered light and the background are attenuated as described in
 // light_volume/diffuse_seen.glsl. Singly scattered light keeps the medium's own extinction. Variants: those of
@@ -29,28 +29,30 @@
 #include "light_volume/correction.glsl"
 #endif
 
-layout(binding = kArrivedUnit) uniform sampler3D arrived;  // from arrive.comp; one texel a cell, like the medium
+// The output of arrive.comp, with one texel for each cell, like the medium.
+layout(binding = kArrivedUnit) uniform sampler3D arrived;
 
 uniform vec3 towards_sun;
 uniform float step_m;  // maximum distance between samples
-uniform vec2 near_step;  // step near the eye, in paths through a cell and per metre of distance; the longer one applies
-uniform vec4 eye_weights[PLANES];  // from texel to the extinction along the eye's ray, 1/m
+// Maximum step near the eye, as the larger of two values: x paths through a cell, and y times the distance.
+uniform vec2 near_step;
+uniform vec4 eye_weights[PLANES];  // factors from a texel to the extinction along the eye's ray in 1/m
 
 layout(location = 0) out vec4 radiance_and_transmittance;
 layout(location = 1) out float opacity_distance_m;  // opacity times the mean distance of what is visible
 
 const int kMaxSamples = 16384;
-// Two floating-point steps up: far away, these are larger than the margin of empty_path.
+// Factor of two floating-point steps. Far from the eye, these steps are larger than the margin of empty_path.
 const float kOnwards = 1.0 + 2.4e-7;
 const bool kDiffusion = DIFFUSION == 1;
 const bool kGlows = CONSISTENT == 1 && !kDiffusion;  // samples add multiply scattered light
 const float kEndTransmittance = kDiffusion ? 0.02 : kOpaqueTransmittance;  // a ray ends below this transmittance
 
-// A segment is split if its optical depth and the transmittance in front of it exceed these.
+// A segment is split if its optical depth exceeds kFaceDepth and the transmittance in front of it exceeds kFaceSeen.
 const float kFaceDepth = 1.0;
 const float kFaceSeen = 0.1;
 
-// Weights that give extinctions per step instead of per metre.
+// Factors that give optical depths per step instead of extinctions per metre.
 vec4 eye_depths[PLANES];
 vec4 extinction_depths[PLANES];
 float per_step;
@@ -65,8 +67,8 @@ void begin_march() {
 
 struct Sample {
   Medium medium;
-  float extinction;  // along the eye's ray, per step; below 0: no sample yet
-  vec2 light;  // as written by arrive.comp
+  float extinction;  // extinction along the eye's ray, per step; below 0 as long as there is no sample
+  vec2 light;  // the two channels written by arrive.comp
   DiffuseSample diffuse;
 };
 
@@ -88,10 +90,10 @@ Sample sample_at(vec3 place, float distance_m) {
   return here;
 }
 
-// Sums over the ray so far.
+// Sums over the part of the ray that has been sampled.
 struct Seen {
   Scattered scattered;
-  float transmittance;  // for light scattered once
+  float transmittance;  // transmittance for light scattered once
   float shown;  // sum of the segments' visible weights
   float shown_distance_m;  // sum of weight times distance
   DiffuseSeen diffuse;
@@ -106,11 +108,12 @@ Seen nothing_seen() {
   return seen;
 }
 
-// Returns the transmittance for the background.
+// Returns the transmittance to the background.
 float background_transmittance(Seen seen) { return kDiffusion ? seen.diffuse.transmittance : seen.transmittance; }
 
-// Advances `distance_m` to the next sample, at most `limit_m` inside bricks, and skips empty bricks. Returns the length
-// of the segment that ends there. It is 0 for the first sample and after a skip, where a sample only starts a segment.
+// Advances `distance_m` to the next sample. The step is at most `limit_m` inside bricks, and empty bricks are skipped.
+// Returns the length of the segment that ends at the new sample. The length is 0 for the first sample and after a skip,
+// because there the sample only starts a segment.
 float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, float limit_m, bool first) {
   float from_m = distance_m;
   float sampled_m = min(min(max(near_step.x * cell_m, near_step.y * distance_m), step_m), limit_m);
@@ -120,7 +123,7 @@ float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, 
     uint content = brick_content(ray, place);
     if (content == kThickBrick) break;
     if (content == kThinBrick) {
-      // The step enters the next brick by no more than a sample of thick bricks, because that brick may be thick.
+      // The next brick may be thick, so the step may enter it only by the step length of thick bricks.
       longest_m = min(clamp(empty_path(ray, place, 1u), sampled_m, max(sampled_m, cell_m)), limit_m);
       break;
     }
@@ -131,12 +134,12 @@ float advance(inout float distance_m, float end_m, MediumRay ray, float cell_m, 
   return segment_m;
 }
 
-// Adds the segment between two samples. `end_m` is the distance of the second.
+// Adds the segment between two samples. `end_m` is the distance of the second sample.
 void see_segment(inout Seen seen, Sample before, Sample here, float segment_m, float end_m) {
   float segment = segment_m * per_step;
   float start = max(before.extinction, 0.0);
   Taken taken = taken_on(segment, start, here.extinction);
-  // Cells beyond a cloud's edge hold no light.
+  // Cells beyond the edge of a cloud hold no light.
   bool ends = here.extinction < 1e-3 * before.extinction;
   vec2 light = ends ? before.light : mix(before.light, here.light, taken.at);
   float shown = seen.transmittance * taken.share;
@@ -155,13 +158,14 @@ void see_segment(inout Seen seen, Sample before, Sample here, float segment_m, f
 
 float mean_distance_m(Seen seen) { return seen.shown_distance_m / max(seen.shown, 1e-30); }
 
-// Returns the mean place of what is visible, 0 to 1 in the medium's box.
+// Returns the mean place of everything visible on the ray, in coordinates from 0 to 1 in the medium's box.
 vec3 seen_place(Seen seen, vec3 origin_m, vec3 direction) {
   vec3 place_m = origin_m + direction * mean_distance_m(seen);
   return (place_m - medium_low_m) / (medium_high_m - medium_low_m);
 }
 
-// Returns true for the face of a cloud: a segment with much of the remaining visible opacity that can be shorter.
+// Returns true if a segment lies at the face of a cloud. Such a segment has much of the remaining visible opacity and
+// can be made shorter.
 bool is_face(Seen seen, Sample before, Sample here, float segment_m, float finest_m) {
   float depth = 0.5 * (max(before.extinction, 0.0) + here.extinction) * segment_m * per_step;
   return depth > kFaceDepth && seen.transmittance > kFaceSeen && segment_m > 1.5 * finest_m;
@@ -186,7 +190,7 @@ Seen march(MediumRay ray, float distance_m, float end_m) {
     }
     see_segment(seen, before, here, segment_m, distance_m);
     before = here;
-    limit_m = min(1.3 * limit_m, longest_m);  // increases slowly, because the next wall behind a gap is near
+    limit_m = min(1.3 * limit_m, longest_m);  // increases slowly, because behind a gap the next cloud wall is near
   }
   return seen;
 }
@@ -200,7 +204,7 @@ void main() {
   vec2 path = path_in_medium(origin_m, safe, 0.0);
   Seen seen = march(medium_ray(origin_m, safe), max(path.x, 0.0), until_ground(path.y));
 
-  // One height represents everything that the ray shows.
+  // One height represents everything visible on the ray.
   vec3 sunlight = sunlight_at(origin_m.z + mean_distance_m(seen) * direction.z);
   vec3 radiance = radiance_of(seen.scattered, sunlight, step_m, haversine_between(direction, towards_sun));
   if (kDiffusion) {

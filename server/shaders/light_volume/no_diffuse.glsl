@@ -1,4 +1,5 @@
-// Replaces light_volume/diffuse_seen.glsl if no diffusion is solved. It has the same functions, which add no light.
+// Replaces light_volume/diffuse_seen.glsl if no diffusion equation is solved. Its functions have the same names and add
+// no light.
 struct DiffuseSample {
   float transport;
 };

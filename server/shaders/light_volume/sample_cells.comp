@@ -1,6 +1,6 @@
-// Computes the medium as input of the diffusion equation: the extinction in each of its cells, as the mean over the
-// medium's own cells in it. r is the extinction of the light, g that of transport (similarity scaled), b the
-// absorption. Variants: GROUPS, DETAILS.
+// Computes the medium as input of the diffusion equation. Each texel holds the mean extinction over the medium's own
+// cells in a cell of the equation. r is the extinction for light, g the similarity-scaled extinction of transport, b
+// the absorption. Variants: GROUPS, DETAILS.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "light_volume/bindings.glsl"

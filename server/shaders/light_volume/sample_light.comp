@@ -1,5 +1,5 @@
-// Samples the light that has arrived (arrive.comp) at the cells of the diffusion equation: the root of its optical
-// depth.
+// Samples the light of arrive.comp at the cells of the diffusion equation. The result is the square root of the optical
+// depth of the light that arrives at each cell.
 #include "common/bindings.glsl"
 #include "light_volume/bindings.glsl"
 

@@ -1,7 +1,7 @@
-// A ray's segment between two samples, on which extinction is linear.
+// The opacity of a ray's segment between two samples. Along the segment, extinction is linear.
 
-// A segment's opacity (share), the place on it where half of that is reached (at), and the reciprocal of the extinction
-// there. Lengths are in steps.
+// The opacity of a segment (`share`), and the position from 0 to 1 at which half of this opacity is reached (`at`). The
+// reciprocal of the extinction at that position is `per_extinction`. Lengths are in steps.
 struct Taken {
   float share;
   float at;
@@ -18,7 +18,7 @@ Taken taken_on(float segment, float start, float end) {
   // relative error is below 3e-5.
   float seen_depth =
       share * (0.5 + share * (0.12417144 + share * (0.04885293 + share * (-0.00297576 + share * 0.02306943))));
-  // That place is the root of a quadratic. There the depth grows by `slope` over the segment.
+  // That place is the root of a quadratic equation. `slope` is the extinction there times the segment's length.
   float slope = sqrt(max(start_depth * start_depth + 2.0 * rise * seen_depth, 1e-24));
   float reciprocal = 1.0 / (slope * (start_depth + slope));
   return Taken(share, min(2.0 * seen_depth * slope * reciprocal, 1.0),

@@ -1,16 +1,18 @@
-// The data of the balls that all passes use. Coordinates are metres from the middle of their box.
+// The data of the balls, which all passes use. Coordinates are metres from the middle of the balls' box.
 #include "metaball/bindings.glsl"
 
 struct Ball {
-  vec4 middle_radius;   // metres
-  // At the centre, 1/m: extinction of the eye's ray, of the sun's, similarity scaled; and the albedo.
+  vec4 middle_radius;  // xyz: middle; w: radius; in metres
+  // Values at the centre in 1/m: extinction along the eye's ray (x), along the sun's ray (y), and similarity scaled
+  // (z). w is the albedo.
   vec4 optics;
-  vec4 scattering[2];  // by group: scattering over the eye's extinction
-  vec4 tint;            // rgb: the albedo's colour
+  vec4 scattering[2];  // for each group, its scattering divided by the ball's extinction for the eye
+  vec4 tint;  // rgb: the colour of the albedo
 };
 
 layout(std430, binding = kBallsBinding) readonly buffer Balls { Ball balls[]; };
-layout(std430, binding = kBallOrderBinding) readonly buffer Order { uint order[]; };  // order of drawing
+// Indices of the balls in drawing order.
+layout(std430, binding = kBallOrderBinding) readonly buffer Order { uint order[]; };
 
-// PAPER: returns the optical depth of the ball where its field is 1, Man's tau rho.
+// Returns the optical depth of the ball where its field is 1, which is Man's tau rho. Only for PAPER.
 float paper_depth(Ball ball) { return ball.optics.x; }

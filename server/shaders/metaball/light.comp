@@ -1,11 +1,13 @@
-// The first pass (Man, 4.1): propagates one light through the balls, the nearest to it first. A work group processes
-// one ball of a level, whose balls touch no common texel. It reads the light buffer under the ball, stores the ball's
-// light, and splats the ball into the buffer. The buffer never leaves the device.
+// The first pass of Man's method (4.1). It propagates one light through the balls, beginning with the ball nearest to
+// the light. A work group processes one ball of a level. The balls of a level touch no common texel. The work group
+// reads the light buffer under the ball, stores the light that arrives at the ball, and splats the ball into the
+// buffer. The buffer never leaves the device.
 //
-// Variants: PAPER, PASS, DIFFUSE. PAPER is eq. 26 and 27 as printed. Otherwise the buffer holds optical depths: r of
-// the light's extinction, g similarity scaled. A ball of any thickness then scatters exactly the light that it removes.
-// PASS 0 splats. PASS 1, after all levels, computes multiply scattered light, which also depends on the medium behind
-// the ball. With DIFFUSE (and PASS 1), the light is the sky above and the ground below instead of a beam.
+// Variants: PAPER, PASS, DIFFUSE. PAPER is eq. 26 and 27 as printed. Without PAPER, the buffer holds two optical
+// depths: that of the light's extinction in r, and the similarity-scaled optical depth in g. A ball of any thickness
+// then scatters exactly the light that it removes. PASS 0 splats. PASS 1 runs after all levels and computes multiply
+// scattered light, which also depends on the medium behind the ball. With DIFFUSE and PASS 1, the light is the sky
+// above and the ground below instead of a beam.
 #include "metaball/balls.glsl"
 #include "metaball/bindings.glsl"
 #include "physics/light_transport.glsl"
@@ -13,19 +15,19 @@
 
 layout(local_size_x = kBallGroupSize) in;
 layout(binding = kBallLightImage, rg32f) uniform image2D light;
-// Light by light source and ball. x is the arriving share of the beam, or that of the sky. y is the mean intensity of
-// multiply scattered light over the beam's irradiance. Between the passes, y is the scaled optical depth before the
-// ball's centre.
+// Light that arrives at each ball, by light source and ball. x is the arriving share of the beam, or that of the sky. y
+// is the mean intensity of multiply scattered light, divided by the beam's irradiance. Between the passes, y is the
+// similarity-scaled optical depth in front of the ball's centre.
 layout(std430, binding = kBallArrivedBinding) buffer Arrived { vec2 arrived[]; };
 
-uniform int first;  // first ball of this dispatch in `order`
-uniform int arrived_first;  // first element of this light
+uniform int first;  // index in `order` of the first ball of this dispatch
+uniform int arrived_first;  // index in `arrived` of the first element of this light
 uniform vec3 light_right;   // texels per metre
 uniform vec3 light_up;
 uniform float texels_per_m;
-uniform vec2 light_middle;  // centre in texels
+uniform vec2 light_middle;  // centre of the light buffer in texels
 uniform float paper_albedo;
-uniform float scattered_often;  // 1, or 0 if light that strikes a particle is lost
+uniform float scattered_often;  // 1, or 0 if light that meets a particle is lost
 
 const float kFourPi = 12.5663706;
 const float kForwardPhase = 1.5;  // Rayleigh's function in the forward direction, eq. 25
@@ -45,7 +47,8 @@ void main() {
   ivec2 low = max(ivec2(floor(middle - reach)), ivec2(0));
   ivec2 high = min(ivec2(ceil(middle + reach)), imageSize(light) - 1);
   ivec2 size = max(high - low + 1, ivec2(0));
-  float light_depth = ball.optics.y * radius_m * thinned;  // to be multiplied by the column
+  // Optical depth, to be multiplied by the column in units of the radius.
+  float light_depth = ball.optics.y * radius_m * thinned;
   float scaled_depth = ball.optics.z * radius_m * thinned;
 
   vec3 sum = vec3(0.0);
@@ -59,7 +62,7 @@ void main() {
     sum += vec3(before.r, 0.0, 1.0);
 #elif PASS == 0
     float column = wyvill_column(s);
-    // In the mean over the ball's own matter, the half in front of it attenuates the entering light.
+    // The part of the ball in front of a place attenuates the light that reaches it. This is the mean over the ball.
     float enters = exp(-before.r) * mean_transmittance(column * light_depth);
     sum += column * vec3(enters, before.g + 0.5 * column * scaled_depth, 1.0);
 #else
@@ -82,7 +85,7 @@ void main() {
   float total = mean.x;
   float before = min(arrived[slot].y, total);
 #if DIFFUSE
-  // Both faces are lit, each by its own diffuse light. Eddington's mean intensity between them is linear.
+  // Both faces are lit, each by its own diffuse light. Between the faces, Eddington's mean intensity is linear.
   arrived[slot] = vec2((total - before + 2.0 / 3.0) / (total + 4.0 / 3.0), 0.0);
 #else
   // Diffuse light that leaves a cloud comes from one transport mean free path (2/3 by Eddington) below its surface.

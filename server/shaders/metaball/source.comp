@@ -1,6 +1,6 @@
-// Computes the radiance of each ball per opacity. The phase functions are looked up once a ball (Man, 4.2), because its
-// light comes from one direction and the eye sees it in one. Variants: LIGHTS, GROUPS, COLORED, CONSISTENT (see
-// common/phase.glsl), PAPER, ISOTROPIC, PARALLEL (view rays).
+// Computes the radiance of each ball per unit of opacity. The phase functions are looked up once for each ball (Man,
+// 4.2), because light arrives at a ball from one direction and the eye sees it in one direction. Variants: LIGHTS,
+// GROUPS, COLORED, CONSISTENT (see common/phase.glsl), PAPER, ISOTROPIC, PARALLEL (parallel view rays).
 #include "common/phase.glsl"
 #include "common/sunlight.glsl"
 #include "metaball/balls.glsl"
@@ -15,8 +15,9 @@ uniform int ball_count;
 uniform vec3 eye_forward;
 uniform vec3 eye_m;
 uniform vec3 towards_light[LIGHTS];
-uniform vec3 irradiance[LIGHTS];  // the sun, the first, has its irradiance by height instead
-uniform vec3 sky_radiance;  // means over the upper and the lower hemisphere
+// Irradiance of each light; the first entry, the sun, is unused, because its irradiance depends on height.
+uniform vec3 irradiance[LIGHTS];
+uniform vec3 sky_radiance;  // mean radiance of the upper hemisphere; ground_radiance is that of the lower hemisphere
 uniform vec3 ground_radiance;
 uniform float paper_albedo;
 

@@ -1,11 +1,12 @@
-// The second pass (Man, 4.2): composites the balls over a pixel by eq. 29 from front to back until the pixel is opaque.
-// Each tile of the picture has a list of the balls that may lie over it, in that order. The result equals blending
-// their splats from back to front, without reading and writing the picture for each. A ball's optical depth is the
-// integral of its field along the ray, from the eye up to the ground.
+// The second pass of Man's method (4.2). For each pixel, it composites the balls by eq. 29 from front to back until the
+// pixel is opaque. Each tile of the picture has a list of the balls that may cover it, from front to back. The result
+// equals blending the balls' splats from back to front, but the picture is not read and written for each ball. A ball's
+// optical depth is the integral of its field along the ray, from the eye up to the ground.
 //
 // With DETAIL, noise at all scales that pixels resolve moves the balls' surfaces inwards. A place then shows the mean
-// light of all balls there, weighted by their fields, so that single balls are not recognisable. Variants: GROUND
-// (everything behind it is omitted), PAPER (the field's own value is the depth: eq. 12 splatted unchanged), DETAIL.
+// light of all balls there, weighted by their fields, so that single balls are not recognisable. Variants: GROUND (the
+// parts of balls behind the ground are omitted), PAPER (the optical depth is the field's own value, so eq. 12 is
+// splatted unchanged), DETAIL.
 #include "common/bindings.glsl"
 #include "common/ground_distance.glsl"
 #include "common/view.glsl"
@@ -14,9 +15,10 @@
 #include "physics/light_transport.glsl"
 #include "physics/wyvill.glsl"
 
-// The first index in `order` of each tile, row by row, and the end.
+// The index in `order` of each tile's first ball, row by row, and finally the length of `order`.
 layout(std430, binding = kBallTilesBinding) readonly buffer TileStarts { uint tile_starts[]; };
-layout(std430, binding = kBallSourcesBinding) readonly buffer Sources { vec4 sources[]; };  // from source.comp
+// Radiance of the balls, from source.comp.
+layout(std430, binding = kBallSourcesBinding) readonly buffer Sources { vec4 sources[]; };
 
 uniform int tile_px;
 uniform int tiles_across;
@@ -35,11 +37,12 @@ layout(location = 1) out float opacity_distance_m;  // opacity times the mean di
 #if DETAIL
 const float kRelief = 0.5;  // depth of the deepest valley, as a share of a ball's squared radius
 const float kDisplaced = 0.5;  // displacement in radii
-// The logarithm of the factor by which noise reduces a ball's optical depth, averaged over its disc, at roughness 1.
+// Factor in the exponent by which noise reduces a ball's optical depth, averaged over its disc, at a roughness of 1.
 const float kEroded = 0.7;
-const float kMinSeen = 0.01;  // a ball with a smaller share of a pixel keeps its own light
+const float kMinSeen = 0.01;  // a ball with a smaller share of a pixel shows its own light instead of the mean
 
-// Returns the ball's w across its middle, 1 - (u / R)^2, after erosion by the noise at its surface.
+// Returns 1 - (u / R)^2 for the ray that passes the ball's middle at the distance u, after the noise has eroded its
+// surface.
 float eroded(float s, vec3 origin_m, vec3 ray, vec3 across_m, float surface_m, float per_radius) {
   vec4 here = texture(noise, (origin_m + surface_m * ray) * noise_per_m + noise_offset);
   vec3 moved = across_m * per_radius + (roughness * kDisplaced) * (here.gba * 2.0 - 1.0);
@@ -49,8 +52,9 @@ float eroded(float s, vec3 origin_m, vec3 ray, vec3 across_m, float surface_m, f
 // Returns the distance by which balls are sorted (renderers/metaball/tiles.cc).
 float ordered_by_m(vec3 off_m, vec3 ray) { return ray_right == vec3(0.0) ? dot(off_m, ray) : length(off_m); }
 
-// Adds the light of a ball to that of others at a place, weighted by its extinction there. Returns false if neither the
-// ball nor any ball beyond it in the order can contain the place, because it is farther away than the largest radius.
+// Adds the light of a ball at a place to the sum over balls, weighted by the ball's extinction there. Returns false if
+// neither this ball nor any later ball in the order can contain the place, because its distance exceeds the largest
+// radius.
 bool add_light(uint index, vec3 origin_m, vec3 ray, float place_distance_m, inout vec4 sum) {
   vec4 middle_radius = balls[index].middle_radius;
   vec3 from_eye_m = middle_radius.xyz - origin_m;
@@ -63,8 +67,8 @@ bool add_light(uint index, vec3 origin_m, vec3 ray, float place_distance_m, inou
   return true;
 }
 
-// Returns the mean light at a place of the ray of the tile's balls from `first` to `end`, weighted by their extinctions
-// there. The place is in ball `i` of the order.
+// Returns the mean light at a place on the ray. It is the mean over the balls from `first` to `end` of the tile's list,
+// weighted by their extinctions at the place. The place is in ball `i` of the list.
 vec3 light_at(vec3 origin_m, vec3 ray, float distance_m, uint i, uint first, uint end) {
   vec4 sum = vec4(0.0);
   uint at = i;
@@ -96,8 +100,8 @@ void main() {
     vec4 middle_radius = balls[index].middle_radius;
     vec3 off_m = middle_radius.xyz - origin_m;
     float along_m = dot(off_m, ray);
-    // The component across the ray is computed first. In the square of the whole vector, rounding would lose a small
-    // ball that is far away.
+    // The component across the ray is computed first. The square of the whole vector would lose a small ball that is
+    // far away by rounding.
     vec3 across_m = off_m - along_m * ray;
     float per_radius = 1.0 / middle_radius.w;
     float s = 1.0 - dot(across_m, across_m) * (per_radius * per_radius);
@@ -131,10 +135,10 @@ void main() {
     vec3 light = source.rgb;
 #if DETAIL
     if (transmittance * taken > kMinSeen) {
-      // At this place about half of the ball's visible light is in front. Fields rise as the square of the depth below
-      // the surface.
+      // At this place about half of the ball's visible light is in front. Fields grow with the square of the depth
+      // below the surface.
       float before = half_chord * min(pow(1.4 / max(depth, 1e-6), 1.0 / 3.0), 1.0);
-      // Only half of that light is used, because deeper balls, which have more weight there, are darker than the
+      // The mean light counts only half. Deeper balls have more weight at this place, and they are darker than the
       // surface.
       light = 0.5 * (light + light_at(origin_m, ray, along_m + (before - half_chord) * middle_radius.w, i, first, end));
     }

@@ -1,17 +1,19 @@
-// The reference's medium (reference/medium.h) with open sides and linear interpolation, and rays through it from brick
-// to brick (reference/brick_walk.h, reference/tracking.h). Places are in bricks from the first brick's lower corner,
-// directions are unit vectors, distances are in metres. Functions with the argument `similar` work with the exact
-// medium and with the similar one (decision 56).
+// The medium of the path-traced reference (reference/medium.h), with open sides and linear interpolation. Rays pass
+// through it from brick to brick (reference/brick_walk.h, reference/tracking.h). Places are in units of bricks from the
+// first brick's lower corner, directions are unit vectors, distances are in metres. The argument `similar` selects the
+// exact medium (false) or the similar medium (true), see decision 56.
 #include "paths/bindings.glsl"
 #include "paths/random.glsl"
 #include "paths/roulette.glsl"
 
-layout(binding = kPathExtinctionUnit) uniform sampler3D extinctions;  // of cells, 1/m: x exact, y similar
-layout(binding = kPathMajorantUnit) uniform sampler3D majorants;  // upper bounds by brick; x exact, y similar
+// Extinction of cells in 1/m; x exact medium, y similar medium.
+layout(binding = kPathExtinctionUnit) uniform sampler3D extinctions;
+// Upper bounds of extinction by brick in 1/m; x exact medium, y similar medium.
+layout(binding = kPathMajorantUnit) uniform sampler3D majorants;
 uniform ivec3 cell_count;
 uniform ivec3 brick_count;
 uniform ivec3 first_cell;  // first cell of the first brick
-uniform vec3 box_low;      // in bricks
+uniform vec3 box_low;  // corners of the medium's box, in units of bricks
 uniform vec3 box_high;
 uniform vec3 bricks_per_m;
 
@@ -21,8 +23,8 @@ float cell_extinction(ivec3 cell, bool similar) {
   return of_optics(texelFetch(extinctions, clamp(cell, ivec3(0), cell_count - 1), 0).xy, similar);
 }
 
-// In a brick, extinction is one trilinear function. This struct holds its values at the four edges along x, and their
-// slopes.
+// The extinction in a brick, which is one trilinear function. The struct holds its values at the four edges parallel to
+// x, and their slopes along x.
 struct Edges {
   vec4 low;
   vec4 slope;
@@ -37,7 +39,8 @@ Edges edges_of(ivec3 brick, bool similar) {
   return Edges(low, high - low);
 }
 
-// Returns the extinction at a place in the brick, relative to its lower corner.
+// Returns the extinction at a place in the brick. `share` is the place relative to the brick's lower corner, from 0 to
+// 1.
 float extinction_in(Edges edges, vec3 share) {
   vec4 along_x = edges.low + share.x * edges.slope;
   vec2 along_y = along_x.xz + share.y * (along_x.yw - along_x.xz);
@@ -46,13 +49,13 @@ float extinction_in(Edges edges, vec3 share) {
 
 struct Walk {
   vec3 from;  // place where the ray enters the box
-  vec3 per_m;  // bricks per metre along each axis
+  vec3 per_m;  // change of the place, in bricks, per metre along the ray
   vec3 m_per;
   ivec3 stride;
   ivec3 brick;
   vec3 faces_m;  // distances to the faces of the brick through which the ray can leave
-  float before_m;  // distance to the box
-  float at_m;  // distance travelled in the box
+  float before_m;  // distance from the ray's origin to the box
+  float at_m;  // distance travelled inside the box
   float leaves_m;  // distance at which the ray leaves the brick
   float end_m;
 };
@@ -65,7 +68,7 @@ void find_faces(inout Walk walk) {
 Walk begin_walk(vec3 place, vec3 direction, float limit_m) {
   Walk walk;
   walk.per_m = direction * bricks_per_m;
-  // The minimum avoids division by zero. A ray along an axis never reaches the faces parallel to it.
+  // The minimum avoids a division by zero. A ray parallel to an axis never reaches the faces parallel to it.
   walk.per_m = mix(walk.per_m, vec3(1e-15), lessThan(abs(walk.per_m), vec3(1e-15)));
   walk.m_per = 1.0 / walk.per_m;
   vec3 to_low = (box_low - place) * walk.m_per;
@@ -100,11 +103,11 @@ void next_brick(inout Walk walk) {
 
 float majorant_of(ivec3 brick, bool similar) { return of_optics(texelFetch(majorants, brick, 0).xy, similar); }
 
-// Returns the distance to the first collision with a particle, or -1 if there is none within `limit_m`. It uses null
-// collisions (Woodcock et al. 1965).
+// Returns the distance to the first collision with a particle. Returns -1 if there is no collision within `limit_m`. It
+// uses null collisions (Woodcock et al. 1965).
 float distance_to_collision(vec3 place, vec3 direction, float limit_m, bool similar) {
   Walk walk = begin_walk(place, direction, limit_m);
-  float depth = random_exponential();  // remaining optical depth of the majorant
+  float depth = random_exponential();  // remaining optical depth, by the majorant, to the next possible collision
   while (goes_on(walk)) {
     float majorant = majorant_of(walk.brick, similar);
     float at_m = walk.at_m;
@@ -122,8 +125,8 @@ float distance_to_collision(vec3 place, vec3 direction, float limit_m, bool simi
   return -1.0;
 }
 
-// Returns an unbiased estimate of the transmittance to infinity, which is exact unless it is small. Simpson's rule is
-// exact in a brick.
+// Returns an unbiased estimate of the transmittance to infinity, which is exact unless it is small. In a brick,
+// extinction is cubic along the ray, so Simpson's rule is exact.
 float transmittance_to_infinity(vec3 place, vec3 direction, bool similar) {
   Walk walk = begin_walk(place, direction, kEndlessPath_m);
   float end_depth = kRouletteDepth + random_exponential();

@@ -2,9 +2,9 @@
 // only on its key and counter, so results do not depend on how paths are dispatched.
 
 uvec2 random_key;
-uvec4 random_counter;  // counter of the next block; x is incremented
+uvec4 random_counter;  // counter of the next block; x is incremented for each block
 uvec4 random_words;
-int random_left = 0;  // number of unused words
+int random_left = 0;  // number of unused words in random_words
 
 void philox_round(inout uvec4 counter, uvec2 key) {
   uint high_0;
@@ -36,7 +36,8 @@ uint random_word() {
 // Returns a number uniform over (0, 1), in steps of 2^-23. It is never 0 or 1.
 float random_uniform() { return (float(random_word() >> 9) + 0.5) / 8388608.0; }
 
-// Returns an exponential number with mean 1. Optically thin media need very small values.
+// Returns an exponentially distributed number with mean 1. It is accurate for very small values, which optically thin
+// media need.
 float random_exponential() {
   float u = min((float(random_word()) + 0.5) / 4294967296.0, 0.99999994);
   return u < 0.01 ? u * (1.0 + u * (1.0 / 2.0 + u * (1.0 / 3.0 + u / 4.0))) : -log(1.0 - u);

@@ -1,28 +1,29 @@
-// The groups of fields with the same optics, and their phase functions (reference/sampled_phase.h). Angles are given by
-// x, one minus their cosine, which stays accurate for small angles. GROUPS is the number of groups.
+// The groups of fields with the same optics, and their phase functions (reference/sampled_phase.h). Scattering angles
+// are given as x = 1 - cosine, which stays accurate for small angles. GROUPS is the number of groups.
 #include "paths/medium.glsl"
 
 #define GROUP_PLANES ((GROUPS + 3) / 4)
 
 // Optics of a group, either exact or similar.
 struct GroupOptics {
-  vec4 albedo;  // w: mean of the colours, for choosing the group
-  float share;  // share of the group's extinction
+  vec4 albedo;  // w: mean albedo over the colours, for choosing the group
+  float share;  // factor of the group's exact extinction
   float asymmetry;
-  int table;  // index of the first table, in floats after the angles; -1: Henyey and Greenstein's function
+  int table;  // index of the first table, in floats after the angles; -1 for Henyey and Greenstein's function
   int colors;  // number of tables: 1 or 3
 };
 layout(std430, binding = kPathGroupsBinding) readonly buffer Groups { GroupOptics group_optics[]; };
 layout(std430, binding = kPathPhasesBinding) readonly buffer Phases { float phases[]; };
 #if GROUPS > 1
-layout(binding = kPathGroupsUnit) uniform sampler3D group_extinctions[GROUP_PLANES];  // by cell, 1/m, four groups each
+// Extinction by cell in 1/m, four groups in each texture.
+layout(binding = kPathGroupsUnit) uniform sampler3D group_extinctions[GROUP_PLANES];
 #endif
 
 const float kPi = 3.14159265;
 const int kTableFloats = 3 * kPhaseIntervals + 2;
 
-// Returns the group of a collision, chosen in proportion to the groups' scattering. `factor` makes the choice unbiased.
-// Returns -1 if nothing scatters.
+// Returns the index of the group with which light collides, chosen in proportion to the groups' scattering. `factor`
+// makes the choice unbiased. Returns -1 if no group scatters.
 int choose_group(vec3 place, float u, bool similar, out float factor) {
   factor = 1.0;
 #if GROUPS == 1
@@ -76,7 +77,7 @@ vec3 phase_value(GroupOptics optics, float x) {
   }
   float angle = 2.0 * asin(sqrt(clamp(0.5 * x, 0.0, 1.0)));
   int interval = clamp(int(sqrt(angle / kPi) * float(kPhaseIntervals)), 0, kPhaseIntervals - 1);
-  // Devices compute inverse trigonometric functions with limited precision, so the interval may be off by one.
+  // Devices compute inverse trigonometric functions with limited precision, so the computed interval may be off by one.
   if (x < phases[interval]) interval = max(interval - 1, 0);
   if (x > phases[interval + 1]) interval = min(interval + 1, kPhaseIntervals - 1);
   float share = clamp((x - phases[interval]) / (phases[interval + 1] - phases[interval]), 0.0, 1.0);
@@ -88,13 +89,13 @@ vec3 phase_value(GroupOptics optics, float x) {
   return value;
 }
 
-// Samples an angle, as x, from the phase function of `color`. `weight` is the ratio of each colour's function to that
-// one.
+// Samples a scattering angle, given as x, from the phase function of `color`. `weight` is, for each colour, the ratio
+// of its phase function to the sampled function.
 float sample_phase(GroupOptics optics, float u, int color, out vec3 weight) {
   weight = vec3(1.0);
   if (optics.table < 0) {
     float g = optics.asymmetry;
-    // The closed form becomes 0 / 0 at g = 0. Below 1e-3, the first order in g is exact to 1e-6.
+    // The closed form is 0 / 0 at g = 0. For |g| below 1e-3, the first-order expansion in g is exact to 1e-6.
     if (abs(g) < 1e-3) {
       float isotropic = 1.0 - 2.0 * u;
       return clamp(1.0 - isotropic - 1.5 * g * (1.0 - isotropic * isotropic), 0.0, 2.0);
@@ -111,7 +112,7 @@ float sample_phase(GroupOptics optics, float u, int color, out vec3 weight) {
   float high = phases[table + interval + 1];
   float width = phases[interval + 1] - phases[interval];
   float rest = max(u - phases[cumulative + interval], 0.0);
-  // The root of low y + (high - low) y^2 / (2 width) = 2 rest, in a form without cancellation.
+  // y is the root of low y + (high - low) y^2 / (2 width) = 2 rest. This form of the root avoids cancellation.
   float divisor = low + sqrt(max(low * low + 4.0 * (high - low) * rest / width, 0.0));
   float y = divisor > 0.0 ? clamp(4.0 * rest / divisor, 0.0, width) : 0.0;
   if (optics.colors > 1) {
@@ -123,7 +124,8 @@ float sample_phase(GroupOptics optics, float u, int color, out vec3 weight) {
   return phases[interval] + y;
 }
 
-// Returns the unit vector at an angle `x` from `direction`, rotated about it by `azimuth` (radians).
+// Returns the unit vector at an angle from `direction`, rotated about it by `azimuth` (radians). `x` is 1 minus the
+// cosine of the angle.
 vec3 deflected(vec3 direction, float x, float azimuth) {
   float side = direction.z < 0.0 ? -1.0 : 1.0;
   float a = -1.0 / (side + direction.z);

@@ -1,19 +1,20 @@
-// Traces random paths through the medium, with one invocation each. It is the estimator of reference/path_radiance.h,
-// event by event. A pass traces each path for some events, stores it, and lists the paths that continue, so that no
-// pass waits long for the longest path. The host computes the air, the ground and the sky that eyes see
-// (reference/eye_segment.h), and the sky into which a path leaves.
+// Traces random paths through the medium, with one invocation for each path. It performs the same events as the
+// estimator of reference/path_radiance.h. In a pass, each path is traced for a few events and then stored. The paths
+// that continue are listed for the next pass, so that no pass waits long for the longest path. The host computes the
+// air, the ground and the sky that an eye sees (reference/eye_segment.h), and the sky into which a path leaves.
 #include "paths/scattering.glsl"
 
 layout(local_size_x = kPathGroupSize) in;
 
 struct PathState {
-  vec4 place;  // in bricks; w: limit of its first flight in metres
-  vec4 direction;   // unit vector; w: kPath...
-  vec4 throughput;  // w: collisions so far
-  // Weights by colour, because the hero's phase functions are sampled; w: collisions at the next roulette.
+  vec4 place;  // xyz: place in bricks; w: limit of the path's first flight in metres
+  vec4 direction;  // xyz: unit vector; w: one of the constants kPath...
+  vec4 throughput;  // w: number of collisions so far
+  // Weights by colour, which compensate for sampling the hero colour's phase functions. w: number of collisions at
+  // which the path next continues by roulette.
   vec4 spectral;
-  vec4 radiance;  // w: also a distance or a transmittance
-  uvec4 counter;  // counter of its random numbers; x is the next block
+  vec4 radiance;  // w: also the result, if it is a distance or a transmittance
+  uvec4 counter;  // counter of the path's random numbers; x is the index of the next block
 };
 layout(std430, binding = kPathStatesBinding) buffer States { PathState states[]; };
 layout(std430, binding = kPathListBinding) readonly buffer List {
@@ -24,18 +25,18 @@ layout(std430, binding = kPathNextListBinding) buffer NextList {
   uint next_count;
   uint next_listed[];
 };
-// Sunlight at steps of height. After that, for each other light, its direction and its irradiance.
+// The sun's irradiance at steps of height. The direction and the irradiance of each other light follow.
 layout(std430, binding = kPathLightsBinding) readonly buffer Lights { vec4 lights[]; };
 
 uniform int first_path;  // first path of this dispatch
 uniform int end_path;
-uniform bool by_list;  // true: paths are indices into the list
+uniform bool by_list;  // true if paths are indices into the list
 uniform ivec2 key;
 uniform vec3 towards_sun;
 uniform int sun_heights;
 uniform float sun_step_m;
 uniform int other_lights;
-uniform int similar_after;  // number of collisions; 0: never
+uniform int similar_after;  // number of collisions after which the path continues in the similar medium; 0 means never
 uniform vec3 brick_m;
 uniform float low_height_m;  // height of the first brick above sea level
 uniform bool has_ground;
@@ -77,7 +78,7 @@ vec3 sunlight_at(vec3 place) {
   return mix(lights[below].xyz, lights[min(below + 1, sun_heights - 1)].xyz, step - float(below));
 }
 
-// Returns the distance of the ground, as reference/eye_segment.h does.
+// Returns the distance to the ground, computed as in reference/eye_segment.h.
 float ground_distance_m() {
   if (!has_ground) return kEndlessPath_m;
   vec3 off_m = low_from_touch_m + path.place.xyz * brick_m;
@@ -95,7 +96,7 @@ void put_on_ground() {
   path.place.z = -(low_from_touch_m.z + 0.5 * ground_curvature_per_m * dot(off_m, off_m)) / brick_m.z;
 }
 
-// Places of the path after its flight.
+// Where the path is after its flight.
 const int kAtEnd = 0;
 const int kAtParticle = 1;
 const int kAtGround = 2;
@@ -120,7 +121,7 @@ int fly(inout int what) {
   return kAtGround;
 }
 
-// Performs one event. Returns false when the path has ended.
+// Performs one event of the path. Returns false when the path has ended.
 bool advances(inout int what) {
   if (what == kPathFlies && !survives()) {
     what = kPathEnded;
@@ -140,8 +141,8 @@ bool advances(inout int what) {
     int group = choose_group(path.place.xyz, random_uniform(), similar_before, factor);
     ends = group < 0;
     if (!ends) {
-      // This collision uses the optics from before it. After it is counted, all light may count as light of the similar
-      // medium, including this collision's sunlight.
+      // This collision was found with the optics that applied before it. After the collision is counted, all light may
+      // count as light of the similar medium, including the sunlight of this collision.
       optics = group_optics[2 * group + int(similar_before)];
       path.throughput.xyz *= factor * optics.albedo.xyz;
       ends = !survives() || !goes_on_at_length();
@@ -156,7 +157,7 @@ bool advances(inout int what) {
     return false;
   }
 
-  // Adds the light that arrives directly.
+  // Adds the light that arrives directly from the sun and the other lights.
   int count = at == kAtParticle ? 1 + other_lights : 1;
   for (int i = 0; i < count; ++i) {
     int other = sun_heights + 2 * (i - 1);
@@ -184,7 +185,7 @@ bool advances(inout int what) {
   if (at == kAtParticle) {
     vec3 weight;
     float x = sample_phase(optics, random_uniform(), hero, weight);
-    // Wilkie et al. 2014, eq. 8.
+    // Weights by colour: Wilkie et al. 2014, eq. 8.
     path.spectral.xyz *= weight;
     path.spectral.xyz *= 3.0 / (path.spectral.x + path.spectral.y + path.spectral.z);
     path.direction.xyz = deflected(path.direction.xyz, x, 2.0 * kPi * random_uniform());

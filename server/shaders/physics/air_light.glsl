@@ -1,5 +1,5 @@
-// Light that air and haze scatter towards an eye from a place on its ray. A storm's shadow removes it. This file needs
-// physics/air.glsl and physics/sky.glsl. It compiles as GLSL and as C++ (physics/sky.h).
+// Light that air and haze at a place on a ray scatter towards the eye. A storm's shadow removes this light. This file
+// needs physics/air.glsl and physics/sky.glsl. It compiles as GLSL and as C++ (physics/sky.h).
 #ifdef __cplusplus
 #define PHYSICS_FUNCTION inline
 #else
@@ -18,16 +18,17 @@ PHYSICS_FUNCTION vec3 haze_scattering_per_m(float turbidity, vec2 densities) {
   return haze_optical_depth(turbidity) * (kHazeAlbedo * densities.y / kHazeScaleHeight_m);
 }
 
-// Returns Rayleigh's phase function over 4 pi.
+// Returns Rayleigh's phase function, whose integral over the sphere is 1.
 PHYSICS_FUNCTION float air_phase(float mu) { return 0.0596831037f * (1.0f + mu * mu); }
 
-// Returns the radiance per metre of scattered sunlight of irradiance 1, at an angle of cosine `mu`.
+// Returns the radiance that one metre of air adds by scattering sunlight of irradiance 1. `mu` is the cosine of the
+// scattering angle.
 PHYSICS_FUNCTION vec3 sunlight_scattered_per_m(float turbidity, vec2 densities, float mu) {
   return air_phase(mu) * air_scattering_per_m(densities) +
          haze_phase(mu) * haze_scattering_per_m(turbidity, densities);
 }
 
-// Returns the radiance per metre of scattered uniform light of radiance 1 from all directions.
+// Returns the radiance that one metre of air adds by scattering uniform light of radiance 1 from all directions.
 PHYSICS_FUNCTION vec3 skylight_scattered_per_m(float turbidity, vec2 densities) {
   return air_scattering_per_m(densities) + haze_scattering_per_m(turbidity, densities);
 }

@@ -1,6 +1,6 @@
-// The ground's cover at the intersection with a view ray: fields of crops on the section grid of the Great Plains,
-// lines, and distance rings. Everything is averaged over a footprint, the axis-parallel rectangle of ground that a
-// pixel shows, so that nothing is finer than a pixel. Lengths are in metres. The file compiles as GLSL and as C++
+// The ground's cover where a view ray meets it: crop fields on the section grid of the Great Plains, lines, and
+// distance rings. All values are averaged over a footprint, so that nothing is finer than a pixel. The footprint is the
+// axis-parallel rectangle of ground that a pixel shows. Lengths are in metres. The file compiles as GLSL and as C++
 // (physics/field_pattern.h).
 #ifdef __cplusplus
 #define PHYSICS_FUNCTION inline
@@ -8,8 +8,8 @@
 #define PHYSICS_FUNCTION
 #endif
 
-// The Public Land Survey System. Sections of a mile have four quarters, each with four cells of 40 acres, of which
-// fields consist. The map of cells is periodic.
+// Lengths of the Public Land Survey System. A section is a square of one mile. It has four quarters, each with four
+// cells of 40 acres. Fields consist of cells. The map of cells is periodic.
 const float kSection_m = 1609.344f;
 const float kQuarter_m = 804.672f;
 const float kFieldCell_m = 402.336f;
@@ -18,13 +18,13 @@ const int kFieldMapCells = 256;
 const float kRoad_m = 12.0f;          // width of the road on each section line
 const float kPivotRadius_m = 395.0f;  // radius of the circle that a centre pivot waters
 
-// Grain: uneven soil and plants within a field. Its map is that of the cells at another scale, rotated so that it does
-// not follow the roads.
+// Lengths of the grain, which is uneven soil and plants within a field. The grain has the same kind of map as the
+// cells, but smaller and rotated, so that it does not follow the roads.
 const float kGrainCell_m = 0.8f;
 const float kCoarsestGrain_m = 51.2f;
 
-// Returns the rectangle of ground that a pixel `across_m` wide shows. Its ray of unit direction `ray` meets level
-// ground at an angle with the sine `grazing`.
+// Returns the rectangle of ground that a pixel shows. The pixel is `across_m` wide at that distance. Its ray of unit
+// direction `ray` meets level ground at an angle with the sine `grazing`.
 PHYSICS_FUNCTION vec2 ground_footprint(vec3 ray, float grazing, float across_m) {
   float level = length(vec2(ray));
   vec2 along = level > 1e-4f ? abs(vec2(ray)) / level : vec2(1.0f, 0.0f);
@@ -32,34 +32,35 @@ PHYSICS_FUNCTION vec2 ground_footprint(vec3 ray, float grazing, float across_m) 
   return vec2(along_m * along.x + across_m * along.y, along_m * along.y + across_m * along.x);
 }
 
-// Returns where to look up a map of cells with linear filtering, so that each cell is uniform and its edges are as wide
-// as the footprint. All values are in cells.
+// Returns the place at which to look up a map of cells with linear filtering. Each cell then looks uniform, and its
+// edges are as wide as the footprint. All values are in units of cells.
 PHYSICS_FUNCTION vec2 sharp_cell(vec2 place, vec2 footprint) {
   vec2 corner = floor(place - 0.5f);
   vec2 within = (place - 0.5f - corner - 0.5f) / clamp(footprint, vec2(1e-3f), vec2(1.0f)) + 0.5f;
   return corner + 0.5f + clamp(within, vec2(0.0f), vec2(1.0f));
 }
 
-// Returns the level of the mip chain whose texels are as large as the footprint.
+// Returns the level of the mip chain whose texels are as large as the footprint. `footprint` is in texels.
 PHYSICS_FUNCTION float mip_level(vec2 footprint) { return log2(max(max(footprint.x, footprint.y), 1.0f)); }
 
-// Returns the length of [0, x] that stripes cover. There is one of width `stripe` around each multiple of `period`,
-// beginning at -period/2.
+// Returns the length of the interval [0, x] that stripes cover. There is a stripe of width `stripe` around each
+// multiple of `period`. The interval is counted from -period/2.
 PHYSICS_FUNCTION float striped_length(float x, float period, float stripe) {
   float periods = x / period + 0.5f;
   float whole = floor(periods);
   return whole * stripe + clamp((periods - whole - 0.5f) * period + 0.5f * stripe, 0.0f, stripe);
 }
 
-// Returns the share of a footprint that stripes cover.
+// Returns the share of a footprint that stripes cover, along one axis.
 PHYSICS_FUNCTION float stripes(float x, float footprint, float period, float stripe) {
   float width = max(footprint, 0.5f);  // a smaller width would cause rounding errors
-  // The position is relative to the nearest multiple of the period, so that differences are of small numbers.
+  // The position is relative to the nearest multiple of the period, so that the difference below is between small
+  // numbers.
   float near = x - period * floor(x / period + 0.5f);
   return (striped_length(near + 0.5f * width, period, stripe) - striped_length(near - 0.5f * width, period, stripe)) / width;
 }
 
-// Returns the share of the footprint that roads cover. y is that share minus its mean over the world.
+// Returns in x the share of the footprint that roads cover, and in y this share minus its mean over the world.
 PHYSICS_FUNCTION vec2 roads(vec2 place, vec2 footprint) {
   float x = stripes(place.x, footprint.x, kSection_m, kRoad_m);
   float y = stripes(place.y, footprint.y, kSection_m, kRoad_m);
@@ -68,7 +69,8 @@ PHYSICS_FUNCTION vec2 roads(vec2 place, vec2 footprint) {
   return vec2(covered, covered - (2.0f * one - one * one));
 }
 
-// Returns by how much the circle of a centre pivot covers more of the footprint than of its quarter section.
+// Returns the share of the footprint in the circle of a centre pivot, minus the share of the quarter section that the
+// circle covers.
 PHYSICS_FUNCTION float pivot(vec2 place, vec2 footprint) {
   vec2 quarters = place / kQuarter_m;
   vec2 from_middle = (quarters - floor(quarters) - 0.5f) * kQuarter_m;
@@ -79,10 +81,10 @@ PHYSICS_FUNCTION float pivot(vec2 place, vec2 footprint) {
   return (inside - share) * clamp(1.5f - 2.0f * max(footprint.x, footprint.y) / kQuarter_m, 0.0f, 1.0f);
 }
 
-// Returns the reflectance by colour relative to the ground's mean. The mean of all fields differs from the ground's
-// mean in hue, not in luminance. The map's texel, `field`, holds the field's brightness, its ripeness or dryness, and
-// whether a centre pivot waters it, each from 0 to 1. The first two have a mean of 128 / 255, which means no change. A
-// `contrast` of 1 shows the pattern in full.
+// Returns the reflectance in red, green and blue, relative to the ground's mean reflectance. The mean of all fields
+// differs from the ground's mean in hue, not in luminance. `field` is a texel of the map. It holds the field's
+// brightness, its dryness, and whether a centre pivot waters it, each from 0 to 1. The first two have a mean of 128 /
+// 255, which leaves the reflectance unchanged. A `contrast` of 1 shows the full pattern.
 PHYSICS_FUNCTION vec3 field_reflectance(vec3 field, float pivot_circle, vec2 road, float contrast) {
   vec3 brighter = vec3(0.45f, 0.40f, 0.40f);
   vec3 drier = vec3(0.26f, -0.01f, 0.22f);
@@ -94,52 +96,55 @@ PHYSICS_FUNCTION vec3 field_reflectance(vec3 field, float pivot_circle, vec2 roa
   return green * (vec3(1.0f) + contrast * ((1.0f - road.x) * fields + road.y * gravel));
 }
 
-// Returns a place in the grain's map, in cells.
+// Returns the position of a place in the map of the grain, in units of its cells.
 PHYSICS_FUNCTION vec2 grain_cell(vec2 place) {
   return vec2(0.891f * place.x - 0.454f * place.y, 0.454f * place.x + 0.891f * place.y) / kGrainCell_m;
 }
 
-// Returns the grain's factor of reflectance. `grain` is the map's value, with a mean of 128 / 255.
+// Returns the factor of the reflectance from the grain. `grain` is a value of the map, with a mean of 128 / 255.
 PHYSICS_FUNCTION float grain_factor(float grain, float contrast) {
   return 1.0f + contrast * 0.7f * (grain - 128.0f / 255.0f);
 }
 
 const float kLine_m = 120.0f;  // width of a line on the ground
 
-// Returns the width of a line. It is at least a pixel and a half, so that lines are visible from afar. `across_m` is
-// the width of a pixel.
+// Returns the drawn width of a line. It is at least one and a half pixels, so that lines are visible from afar.
+// `across_m` is the width of a pixel on the ground.
 PHYSICS_FUNCTION float line_width(float across_m) { return max(kLine_m, 1.5f * across_m); }
 
-// Returns the share of the footprint that a line of width `line` covers. `off` is the distance of the line's middle.
+// Returns the share of the footprint that a line of width `line` covers. `off` is the distance of the line's middle
+// from the footprint's middle.
 PHYSICS_FUNCTION float line_share(float off, float width, float line) {
   float low = max(off - 0.5f * width, -0.5f * line);
   float high = min(off + 0.5f * width, 0.5f * line);
   return clamp((high - low) / width, 0.0f, 1.0f);
 }
 
-// Returns the share of the footprint that coasts and borders paint. `nearest` is a value of volume::BorderMap, linear
-// between its texels. It holds the offset from the nearest line and the distance to it, in texels, and its strength.
+// Returns the share of the footprint that coasts and borders cover. `nearest` is a value of volume::BorderMap,
+// interpolated between its texels. It holds the offset from the nearest line (x and y) and the distance to that line
+// (z), both in texels, and the line's strength (w).
 PHYSICS_FUNCTION float border_paint(vec4 nearest, float texel_m, vec2 footprint, float across_m) {
   vec2 offset = vec2(nearest.x, nearest.y);
   float near = length(offset);
-  // The offset of a straight line is exact, but offsets from two lines cancel between them. Distances do not cancel.
-  // For a straight line, they exceed the offset by at most half a texel.
+  // For a straight line, the interpolated offset is exact. Between two lines, however, their offsets cancel each other,
+  // while the distances do not. For a straight line, the distance exceeds the length of the offset by at most half a
+  // texel.
   float off = min(near + 2.0f * max(nearest.z - near - 0.5f, 0.0f), max(nearest.z, near));
-  // On the line itself the offset has no direction, so the footprint's mean is used.
+  // On the line itself the offset has no direction, so the mean of the footprint's width over both axes is used.
   vec2 across = near > 1e-3f ? abs(offset) / near : vec2(0.5f, 0.5f);
   float width = max(dot(across, footprint), 0.01f);
   return nearest.w * line_share(texel_m * off, width, line_width(across_m));
 }
 
-// Returns yellow, which differs from crops, water, snow and rings.
+// Returns the colour of borders: yellow, which differs from crops, water, snow and rings.
 PHYSICS_FUNCTION vec3 border_reflectance() { return vec3(0.85f, 0.75f, 0.08f); }
 
-// Rings around a centre, every 10 km up to 200, with a line to the north and an arrowhead on each ring.
+// Rings around a centre, every 10 km up to 200 km, with a line to the north and an arrowhead on each ring.
 const float kRing_m = 10000.0f;
 const float kLastRing_m = 200000.0f;
-const float kArrow = 0.25f;  // length of an arrowhead, in distances between rings
+const float kArrow = 0.25f;  // length of an arrowhead relative to the distance between rings
 
-// Returns the painted share of the footprint at a place relative to the centre.
+// Returns the share of the footprint that rings and arrow cover. `place` is relative to the centre.
 PHYSICS_FUNCTION float ring_paint(vec2 place, vec2 footprint, float across_m) {
   float radius = max(length(place), 1.0f);
   float line = line_width(across_m);
@@ -155,5 +160,5 @@ PHYSICS_FUNCTION float ring_paint(vec2 place, vec2 footprint, float across_m) {
   return max(ring, north * max(shaft, head));
 }
 
-// Returns orange, which differs from crops, water and snow.
+// Returns the colour of the rings: orange, which differs from crops, water and snow.
 PHYSICS_FUNCTION vec3 ring_reflectance() { return vec3(0.85f, 0.27f, 0.03f); }

@@ -1,5 +1,5 @@
-// Composes the linear frame: the eye buffer in front of sky and ground, all seen through the air. Coordinates are
-// metres from the eye. Variants: those of renderers::CompositeVariant.
+// Composes the linear frame. It draws the eye buffer in front of sky and ground, all seen through the air. Coordinates
+// are metres from the eye. The variants are those of renderers::CompositeVariant.
 #include "common/bindings.glsl"
 #include "common/box.glsl"
 #include "common/ground.glsl"
@@ -29,13 +29,13 @@ uniform vec2 skylight_scale;  // texture coordinates per metre
 uniform vec2 skylight_offset;
 #endif
 
-uniform mat3 local_from_world;  // to east, north and up at the eye
+uniform mat3 local_from_world;  // transforms world directions to east, north and up at the eye
 uniform vec3 towards_sun;
 uniform vec3 towards_sun_local;
-uniform float sky_scale;         // irradiance times brightness
+uniform float sky_scale;  // the sun's irradiance times the sky's brightness
 uniform float turbidity;
 uniform float altitude_m;  // height of the eye above sea level, not below 0
-uniform vec2 air_densities;  // at the eye
+uniform vec2 air_densities;  // densities of air and haze at the eye
 uniform vec3 sunlight;           // irradiance on a plane facing the sun
 uniform vec3 skylight;           // irradiance on level ground
 uniform vec3 box_low_m;  // box of the medium
@@ -44,25 +44,25 @@ uniform vec3 box_high_m;
 out vec4 rgb_and_opacity;  // alpha is the storm's opacity
 
 const float kJustBelow = 1e-5;
-const float kHardlyAnyHaze = 0.01;  // relative to its vertical depth
+const float kHardlyAnyHaze = 0.01;  // relative to the vertical depth of haze
 const float kFarFromTheGround_m = 2e4;
 
 #if COVER == 2
-// Returns the radiance of level water. `sky` is the skylight on level ground, and `open` the share of the sun that the
-// storm leaves.
+// Returns the radiance of level water. `sky` is the skylight that arrives on level ground. `open` is the share of
+// sunlight that the storm lets through.
 vec3 water_radiance(vec3 towards_eye, vec3 sky, float open) {
   vec3 sun = sunlight * open;
   towards_eye = normalize(vec3(towards_eye.xy, max(towards_eye.z, 1e-3)));
   vec3 below = water_albedo() / 3.14159265 * (sun * max(towards_sun.z, 0.0) + sky);
   vec3 clear = sky_scale * sky_of_ground(water_reflected(towards_eye), towards_sun);
-  // The storm dims the reflected sky by the same factor as the whole sky.
+  // The storm dims the reflected sky by the same factor as the skylight on level ground.
   vec3 reflected = water_reflectance(towards_eye.z) * clear * sky / max(skylight, vec3(1e-9));
   return below + reflected + glint(towards_eye, towards_sun) * sun;
 }
 #endif
 
-// Returns the ground's radiance by Lambert's law under sun and sky, both shaded by the storm. The terrain shades itself
-// only by its slope. Water also reflects the clear sky, but not the storm.
+// Returns the ground's radiance by Lambert's law in the light of sun and sky, both shaded by the storm. Terrain shades
+// itself only by its slope. Water also reflects the clear sky, but no image of the storm.
 vec3 ground_radiance(vec3 point_m, vec3 ray, float distance_m) {
 #if RELIEF
   vec3 normal = ground_normal(point_m.xy);
@@ -88,25 +88,26 @@ vec3 ground_radiance(vec3 point_m, vec3 ray, float distance_m) {
   return land;
 }
 
-// Returns the optical depth of the air before a point of the ray, which is in the eye's local frame.
+// Returns the optical depth of the air in front of a point of the ray. `ray` is a direction in the eye's local frame.
 vec3 depth_before(vec3 ray, float distance_m) {
   return depth_of_air(turbidity, air_densities, AirPath(altitude_m, ray.z, ground_curvature_per_m, distance_m));
 }
 
 // Returns the clear sky behind a ray. The table's horizon is that of a sphere, but the ground is a paraboloid or
-// terrain.
+// terrain. The elevation is therefore moved to the right side of the table's horizon.
 Sky sky_behind(vec3 ray, float ground_m) {
   if (RELIEF == 0 && ground_m > 0.0) ray.z = min(ray.z, horizon_sine - kJustBelow);
   if (ground_m <= 0.0) ray.z = max(ray.z, horizon_sine);
   Sky sky = sky_at(ray, towards_sun_local);
 #if RELIEF
-  // If the table's ray ends before it is lit, the air beyond counts as bright as above the horizon.
+  // If the table's ray ends after hardly any haze, its radiance is almost zero. The air then counts as bright as just
+  // above the horizon.
   if (sky.air_mass.y < kHardlyAnyHaze) sky = sky_at(vec3(ray.xy, max(ray.z, horizon_sine)), towards_sun_local);
 #endif
   return sky;
 }
 
-// Returns the distance of the round Earth along a ray that meets it.
+// Returns the distance at which a ray meets the sphere of the round Earth. The ray must meet it.
 float sphere_distance_m(float sine) {
   float from_middle_m = 1.0 / ground_curvature_per_m + altitude_m;
   float nearest_m = -from_middle_m * sine;
@@ -114,7 +115,7 @@ float sphere_distance_m(float sine) {
   return nearest_m - sqrt(max(inside, 0.0));
 }
 
-// Returns the light that the air up to a distance sends to the eye, without the part that the storm's shadow takes.
+// Returns the light that the air up to `distance_m` sends to the eye, without the part that the storm's shadow removes.
 vec3 shaded_airlight(vec3 airlight, vec3 ray, float distance_m, vec3 sky_radiance, vec3 sky_depth) {
 #if SHADED
   vec3 of_shaded = airlight;
@@ -133,7 +134,7 @@ vec3 shaded_sky(vec3 radiance) {
 #endif
 }
 
-// Returns the ground seen through the air.
+// Returns the radiance of the ground seen through the air.
 vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, vec3 sky_radiance, vec3 sky_depth) {
 #if RELIEF
   vec3 transmittance = exp(-depth_before(ray, ground_m));
@@ -145,7 +146,7 @@ vec3 seen_ground(vec3 radiance, vec3 ray, float ground_m, vec3 sky_radiance, vec
 }
 
 #if FRONT
-// Returns the eye buffer seen through the air, and the transmittance of the background.
+// Returns the radiance of the eye buffer's content seen through the air, and the transmittance to the background.
 vec4 seen_front(vec3 origin_m, vec3 world_ray, vec3 ray, float ground_m, vec3 sky_radiance, vec3 sky_depth) {
   vec4 front = at_pixel(eye);
   float opacity = 1.0 - front.a;
@@ -153,7 +154,7 @@ vec4 seen_front(vec3 origin_m, vec3 world_ray, vec3 ray, float ground_m, vec3 sk
 #if DISTANCES
   float distance_m = at_pixel(eye_distance).r / opacity;
 #else
-  // The distance is the middle of the ray's path through the box.
+  // The technique gives no distances. The content counts as being in the middle of the ray's path through the box.
   vec2 path_m = path_through_box(box_low_m, box_high_m, origin_m, safe_direction(world_ray));
   path_m.x = max(path_m.x, 0.0);
   float end_m = ground_m > 0.0 ? min(path_m.y, ground_m) : path_m.y;
@@ -172,8 +173,8 @@ void main() {
   vec3 ray = local_from_world * world_ray;
   float ground_m = ground_distance_m(origin_m, world_ray);
 #if !RELIEF
-  // Seen from space, the sphere is wider than the paraboloid. Without this correction, a band would show between their
-  // rims.
+  // Seen from space, the Earth as a sphere is wider than the paraboloid. Without this correction, a band would be
+  // visible between their rims.
   if (altitude_m > kFarFromTheGround_m && ground_m <= 0.0 && ray.z < horizon_sine) ground_m = sphere_distance_m(ray.z);
 #endif
   Sky sky = sky_behind(ray, ground_m);

@@ -1,21 +1,22 @@
 // Measures the luminance of the storm's brightest hundredth in a linear frame, whose alpha is the storm's opacity. If
-// there is almost no storm, it measures the whole picture. One work group makes a histogram of means over cells of the
-// picture. Each mean omits the cell's brightest sample, so that noise and single bright pixels have no effect.
+// the frame shows almost no storm, the whole picture is measured. One work group divides the picture into cells and
+// makes a histogram of the cells' means. Each mean omits the cell's brightest sample, so that noise and single bright
+// pixels have no effect.
 #include "common/bindings.glsl"
 
 layout(local_size_x = kMeterGroupSize) in;
 layout(binding = kLinearFrameUnit) uniform sampler2D linear_frame;
 layout(binding = kMeterImage, r32f) uniform writeonly image2D brightest;
 
-uniform vec3 luminance_weights;  // of each colour, white balance included
+uniform vec3 luminance_weights;  // luminance weights of red, green and blue, multiplied by the white balance
 
-const int kCells = 32;         // along each side of the picture
-const int kPlaces = 3;  // samples in a cell, along each side
+const int kCells = 32;  // number of cells along each side of the picture
+const int kPlaces = 3;  // number of samples in a cell along each side
 const int kBins = 768;
-const float kBinsPerStop = 32.0;  // an exposure change by one such step is not visible
+const float kBinsPerStop = 32.0;  // a change of the exposure by one bin (1/32 stop) is not visible
 const float kLowestLog2 = -18.0;
 const uint kFullWeight = 255u;
-const float kFewestCells = 0.001;  // share of all cells
+const float kFewestCells = 0.001;  // minimum share of all cells that must show the storm
 
 shared uint histogram[kBins];
 
@@ -44,7 +45,8 @@ uint counted() {
   return all;
 }
 
-// All invocations must call this function.
+// Fills the histogram with the cells whose opacity is at least `least_opacity`. All invocations must call this
+// function.
 void count(float least_opacity) {
   int first = int(gl_LocalInvocationIndex);
   for (int i = first; i < kBins; i += kMeterGroupSize) histogram[i] = 0u;

@@ -1,4 +1,4 @@
-// Draws a picture whose pixels' rays were all drawn packed (renderers::ChosenRays::ChooseAll).
+// Copies the pixels of a packed picture (renderers::ChosenRays::ChooseAll) to their places in the picture.
 #include "common/bindings.glsl"
 
 layout(binding = kPackedUnit) uniform sampler2D packed_rays;

@@ -1,8 +1,9 @@
-// Adds the sun's disc behind a medium to the linear frame. It also adds the light that the medium scatters within the
-// forward peaks that are cut off its phase functions (physics/aureole.h). View rays so close to the sun take the same
-// path as its light, so only the optical depths along them count. Light scattered once within the peak has its exact
-// phase function. For light scattered more often, each group's aureole is taken at the same depth of the peak, and the
-// mean is weighted by the groups' shares of the peak. Variants: those of renderers::MediumVariant, CHOSEN.
+// Adds the sun's disc behind a medium to the linear frame. It also adds the aureole: light that the medium scatters
+// within the forward peaks, which are cut off the phase functions (physics/aureole.h). View rays so close to the sun
+// take the same path as the sun's light, so only the optical depths along them matter. Light scattered once within the
+// peak has its exact phase function. For light scattered more often, each group's aureole is read at the same optical
+// depth of the peak. The mean of the groups is weighted by their shares of the peak. Variants: those of
+// renderers::MediumVariant, CHOSEN.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #define GROUND 1
@@ -14,13 +15,13 @@
 #include "common/view.glsl"
 #include "sun/disc.glsl"
 
-layout(binding = kAureoleUnit) uniform sampler3D aureole;  // physics::Aureole: angles, depths, groups
+layout(binding = kAureoleUnit) uniform sampler3D aureole;  // physics::Aureole by angle, depth and group
 
 uniform vec3 towards_sun;
 uniform vec3 sunlight;    // irradiance at the eye
 uniform float step_m;
-uniform vec4 scattering_weights[PLANES];  // texel to scattering, 1/m
-uniform float peak_share[GROUPS];  // share of a group's scattering
+uniform vec4 scattering_weights[PLANES];  // factors from a texel to scattering in 1/m
+uniform float peak_share[GROUPS];  // share of each group's scattering that lies in the cut peak
 uniform float aureole_end_rad;
 uniform float aureole_max_depth;
 
@@ -29,9 +30,9 @@ out vec4 added;
 const float kNoGround_m = 1e8;
 const int kMaxSamples = 16384;
 const float kOnwards = 1.0 + 2.4e-7;
-const float kOpaqueDepth = 30.0;  // at most half of it is that of the peak
+const float kOpaqueDepth = 30.0;  // at most half of this optical depth is that of the peak
 
-// Returns texel values integrated over metres of the ray.
+// Returns the texel values integrated over the ray, in texel values times metres.
 Medium medium_along(vec3 origin_m, vec3 direction) {
   Medium sum;
   for (int plane = 0; plane < PLANES; ++plane) sum.plane[plane] = vec4(0.0);

@@ -1,4 +1,4 @@
-// Adds the sun's disc behind the eye buffer's content to the linear frame. Variants: RELIEF, CHOSEN.
+// Adds the sun's disc to the linear frame, behind the eye buffer's content. Variants: RELIEF, CHOSEN.
 #include "common/bindings.glsl"
 #include "common/ground.glsl"
 #include "common/ray_place.glsl"

@@ -45,8 +45,8 @@ std::string LineOf(const std::string& name, const std::string& role, const std::
   return absl::StrCat(name, " ", role, " ", Sha256(token), "\n");
 }
 
-// Time stands still, so that reads of the files wait as long as they need, however slow the machine
-// is.
+// A clock that stands still. The timeout of reading a file therefore never expires, however slow
+// the machine is.
 const base::TimeSource& StandingTime() {
   static const testing::ManualTime time;
   return time;
@@ -79,7 +79,7 @@ TEST(TokenListTest, FindsTheNameAndRoleOfAToken) {
   EXPECT_EQ(list->Find("two")->role, Role::kPipeline);
   EXPECT_FALSE(list->Find("three").has_value());
   EXPECT_FALSE(list->Find("").has_value());
-  // The file's own content is not a valid token.
+  // The file contains hashes of tokens. A hash itself is not a valid token.
   EXPECT_FALSE(list->Find(Sha256("one")).has_value());
 }
 
@@ -128,7 +128,7 @@ struct Claims {
   std::string role = "presenter";
   std::string issuer;
   std::string audience;
-  std::string json;  // an object with further claims
+  std::string json;  // a JSON object with further claims
   long expires_in_s = 600;
   long begins_in_s = 0;
 };
@@ -219,7 +219,8 @@ TEST_F(JwtTest, ExtensionsAreNotUnderstood) {
 }
 
 TEST_F(JwtTest, TimesAndClaimsAreChecked) {
-  EXPECT_EQ(Complaint(Sign({.expires_in_s = -10})), "");  // within the tolerated clock difference
+  EXPECT_EQ(Complaint(Sign({.expires_in_s = -10})),
+            "");  // expired, but within the tolerated clock difference
   EXPECT_THAT(Complaint(Sign({.expires_in_s = -60})), HasSubstr("has expired"));
   EXPECT_THAT(Complaint(Sign({.expires_in_s = 0})), HasSubstr("no time at which it expires"));
   EXPECT_EQ(Complaint(Sign({.expires_in_s = 253'402'300'799})), "") << "beyond the year 9999";
@@ -242,7 +243,7 @@ TEST_F(JwtTest, TimesAndClaimsAreChecked) {
   EXPECT_EQ(Complaint(Sign({.issuer = "us"}), {.issuer = "us"}), "");
   EXPECT_THAT(Complaint(Sign({.audience = "mail"}), {.audience = "storms"}), HasSubstr("(aud)"));
   EXPECT_EQ(Complaint(Sign({.audience = "storms"}), {.audience = "storms"}), "");
-  // A list is for each text in it, but not for texts that it only contains as a part.
+  // A list of audiences is valid for each text in the list, but not for a part of such a text.
   for (const char* const list : {R"(["storms"])", R"(["mail", "storms"])"}) {
     const std::string json = absl::StrCat(R"({"aud": )", list, "}");
     EXPECT_EQ(Complaint(Sign({.json = json}), {.audience = "storms"}), "") << list;

@@ -43,7 +43,7 @@ TEST(WrongTokensTest, OthersAreNotHeldUp) {
   EXPECT_TRUE(wrong.MayShow(anna, kStart).ok()) << "behind the same address";
   EXPECT_TRUE(wrong.MayShow({"ben's", "192.0.2.8:1"}, kStart).ok()) << "from elsewhere";
   EXPECT_TRUE(wrong.MayShow({"", "192.0.2.7:1"}, kStart).ok()) << "shows none";
-  // The token was revoked.
+  // Anna's token was revoked, so it now counts as wrong.
   wrong.WasWrong(anna, kStart);
   EXPECT_FALSE(wrong.MayShow(anna, kStart).ok());
 }

@@ -14,8 +14,9 @@ using Law = std::function<glm::dvec3(const glm::dvec3& place, const glm::dvec3& 
 
 class CorrectionFitTest : public testing::Test {
  protected:
-  // Adds rays through random places of the box `low` to `high` in random directions, drawn with
-  // brightness 0.2 to 1. Their estimates are `law` times that brightness, times noise of mean 1.
+  // Adds rays through random places of the box from `low` to `high`, in random directions. Each ray
+  // has a drawn brightness from 0.2 to 1. Its path-traced estimate is the drawn brightness, times
+  // the factor `law`, times noise with mean 1.
   void AddRays(int count, const Law& law, double noise, const glm::dvec3& low = glm::dvec3(0.0),
                const glm::dvec3& high = glm::dvec3(1.0)) {
     for (int i = 0; i < count; ++i) {
@@ -77,8 +78,8 @@ TEST_F(CorrectionFitTest, FactorsFollowPlaceAndDirection) {
 }
 
 TEST_F(CorrectionFitTest, NoiseIsAveragedOverMoreThanATexel) {
-  // There are 50 rays per texel, with a standard error of twice their value. A texel fitted alone
-  // would be off by 0.28.
+  // There are 50 rays per texel, and a ray's noise has a standard deviation of twice its value. A
+  // factor fitted to one texel alone would have an error of 0.28.
   AddRays(
       50 * 1024, [](const auto&, const auto&) { return glm::dvec3(1.4); }, 1.0);
   double squares = 0.0;
@@ -95,9 +96,9 @@ TEST_F(CorrectionFitTest, ManyNoisyRaysSettleATexelByItself) {
   EXPECT_NEAR(FactorAt({5, 10, 1}, kUp).x, 1.3, 0.1);
 }
 
-// The noise is the same and rays are few. Factors that differ much must not be pulled to their
-// mean, and similar factors must not follow the noise. The fit determines from the rays how much
-// factors differ.
+// In both cases the noise is the same and there are few rays. Factors that differ much between
+// texels must not be pulled to their mean, and similar factors must not follow the noise. The fit
+// determines from the rays how much the factors differ.
 TEST_F(CorrectionFitTest, FactorsThatDifferMuchAreFollowedSooner) {
   for (const double half : {0.0, 0.6}) {
     fit_ = CorrectionFit({16, 16, 4});
@@ -110,7 +111,8 @@ TEST_F(CorrectionFitTest, FactorsThatDifferMuchAreFollowedSooner) {
       squares += std::pow(FactorAt({x, 9, 1}, kUp).x - (1.0 - half), 2);
       squares += std::pow(FactorAt({x, 6, 1}, kUp).x - (1.0 + half), 2);
     }
-    // Fixed steps of 0.1 and directions of 0.05, independent of the rays, leave 0.06 and 0.25.
+    // With fixed smoothing (0.1 between places and 0.05 between directions) instead of smoothing
+    // that follows from the rays, the errors would be 0.06 and 0.25.
     EXPECT_LT(std::sqrt(squares / 32.0), half > 0.0 ? 0.2 : 0.04) << half;
   }
 }

@@ -39,7 +39,8 @@ TEST(CostModelTest, FollowsAMachineThatSlowsDown) {
 }
 
 TEST(CostModelTest, SmallFramesSayLittleOfLargeOnes) {
-  // A server draws such frames at its start on software GL: 20 ms, nearly all of it fixed cost.
+  // At its start with the software renderer, a server draws such frames: they take 20 ms, nearly
+  // all of it a fixed cost per frame.
   CostModel start;
   for (int i = 0; i < 3; ++i) start.Observe(0.03, 20.0, {{scene::FrameStage::kSlices, 1.0}});
   EXPECT_LT(start.EstimateMs(4000.0, scene::Stage::kView), 20e3);

@@ -8,15 +8,15 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// A picture of mean radiance about 1 whose error varies from pixel to pixel, and paths whose
-// estimates are mostly too small and sometimes far too large.
+// A simulated picture with a mean radiance of about 1, whose error varies from pixel to pixel. The
+// estimates of its traced paths are mostly too small and sometimes far too large.
 struct Picture {
-  double bias = 0.1;    // (drawn - reference) / reference, of every pixel
-  double spread = 0.2;  // of the pixels' errors about the bias
-  double noise = 1.5;   // standard deviation of a path over the reference
+  double bias = 0.1;    // mean of (drawn - reference) / reference over the pixels
+  double spread = 0.2;  // standard deviation of the pixels' relative errors about the bias
+  double noise = 1.5;   // standard deviation of a path's estimate, divided by the reference
   double truth = 1.0;
-  double spikes = 0.0;   // share of the light that comes from far brighter paths
-  double spike = 100.0;  // how many times as bright these are
+  double spikes = 0.0;   // fraction of the light that comes from rare, far brighter paths
+  double spike = 100.0;  // brightness of these paths relative to the others
 
   double Error() const { return std::sqrt(bias * bias + spread * spread); }
 
@@ -51,8 +51,8 @@ TEST(ErrorEstimate, TheTruthsNoiseIsNoError) {
     const auto error = right.Traced(2000, 16, seed).Result();
     ASSERT_TRUE(error.has_value());
     EXPECT_LT(error->relative_rmse.low, 0.05);
-    // If the path estimates were taken for the reference, the result would be 1.5 / sqrt(16) =
-    // 0.375.
+    // If the noise of the path estimates were counted as the picture's error, the result would be
+    // 1.5 / sqrt(16) = 0.375.
     EXPECT_LT(error->relative_rmse.high, 0.15);
     mean += error->relative_bias.value / 20.0;
   }
@@ -74,9 +74,9 @@ TEST(ErrorEstimate, IntervalsHoldTheErrorAsOftenAsTheySay) {
       const Estimated& bias = error->relative_bias;
       held_bias += bias.low <= picture.bias && picture.bias <= bias.high ? 1 : 0;
     }
-    // The expected number is 95 % of 200, or 190 +- 3. Intervals of the error are wider by the
-    // possible bias of clamping, and by what a reference does not know either. Other tests check
-    // their width.
+    // 95 % of the 200 intervals should contain the error: 190 +- 3. The intervals are wider than
+    // the noise requires, because they include the possible bias of clamping and the reference's
+    // own uncertainty. Other tests check their width.
     EXPECT_GE(held, 180);
     EXPECT_GE(held_bias, 180);
     EXPECT_LE(held_bias, 199);
@@ -128,7 +128,7 @@ TEST(ErrorEstimate, ClampedLightIsGivenBack) {
   pixel.Add(glm::dvec3(1.0, 2.0, 3.0));
   pixel.Add(glm::dvec3(10.0, 20.0, 30.0));
   EXPECT_EQ(pixel.Clamped(kClamps.size() - 1).first, glm::dvec3(11.0, 22.0, 33.0));
-  // The limit is 4 times 2, with the same hue.
+  // The estimate is limited to 4 times the drawn value, and keeps its hue.
   EXPECT_NEAR(pixel.Clamped(0).first.x, 1.0 + 4.0, 1e-12);
   EXPECT_NEAR(pixel.Clamped(0).first.z, 3.0 + 12.0, 1e-12);
   double mean = 0.0;

@@ -1,4 +1,5 @@
-// Tests of the measured error of pictures that are wrong by a known amount, on a traced tower.
+// Tests of the measured error. The pictures show a path-traced tower of cloud, and are wrong by a
+// known amount.
 #include "accuracy/error_meter.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// Returns a tower in a wider domain of level ground.
+// Returns a tower of cloud in a wider domain with level ground.
 std::shared_ptr<volume::HydrometeorFields> MakeTower() {
   auto fields = std::make_shared<volume::HydrometeorFields>(
       *support::MakeSlab(8000.0, 6000.0, 0.02, {20, 20, 15}));
@@ -110,7 +111,7 @@ TEST(ErrorMeter, IntervalsHoldTheErrorOfAPictureThatIsWrongByAKnownAmount) {
     held_bias += holds(error->relative_bias, wrong.bias) ? 1 : 0;
     EXPECT_LT(error->relative_rmse.high - error->relative_rmse.low, wrong.error);
   }
-  // 23 of 24 are expected, with a standard deviation of 1.1.
+  // 23 of the 24 intervals should contain the error, with a standard deviation of 1.1.
   EXPECT_GE(held, 20) << wrong.error;
   EXPECT_LE(too_low, 3);
   EXPECT_GE(held_bias, 20) << wrong.bias;

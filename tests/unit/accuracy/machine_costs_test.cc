@@ -10,7 +10,7 @@ namespace {
 constexpr const char* kView = "view";
 constexpr double kTableMs = 10.0;
 
-// Returns tables with a row of 64 slices for views from the top.
+// Returns tables with one row, a setting with 64 slices, for views from above.
 OfferTables Tables() {
   PricedSettings table;
   table.size_px = {200, 100};

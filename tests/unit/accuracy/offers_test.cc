@@ -56,7 +56,8 @@ TEST(BestOfferTest, NearestWhereNoneMeets) {
 }
 
 TEST(BestOfferTest, WhatIsDrawnStaysWhileItIsLittleWorse) {
-  // The present setting is within a tenth of the limit, but twice as expensive as the best.
+  // The present setting's error is within a tenth of the limit, but the setting costs twice as much
+  // as the best one.
   EXPECT_EQ(Best(MaxError{0.5}, Slices(64)), kOffers[0]);
   // The second setting is the best within the limit; the third is within a tenth of 18.5 ms.
   EXPECT_EQ(Best(MaxMilliseconds{18.5}), kOffers[1]);
@@ -68,11 +69,12 @@ TEST(BestOfferTest, WhatIsDrawnStaysWhileItIsLittleWorse) {
   EXPECT_EQ(Best(MaxError{0.5}, Slices(7)), kOffers[0]);
 }
 
-// A machine's choice and estimates from `tables`.
+// The choice of settings and the estimates that one machine makes from `tables`.
 struct Desk {
   explicit Desk(OfferTables offer_tables) : tables(std::move(offer_tables)) {}
 
-  // Records the time of a full frame of `scene` that was not the first of its setting.
+  // Records the time of a full frame of `scene`. The frame counts as not the first of its setting,
+  // so that the time includes no compilation.
   void Observe(const scene::Scene& scene, double milliseconds) {
     const int frames = std::exchange(compiled, true) ? 1 : 2;
     for (int i = 0; i < frames; ++i) {
@@ -163,7 +165,8 @@ TEST_F(OffersTest, TimesAreCorrectedByWhatFramesCost) {
   EXPECT_EQ(scene::CountOf(decided.rendering.technique), 128);
   desk_.Observe(decided, 45.0);
   EXPECT_EQ(SlicesFor(MaxMilliseconds{20.0}), 32);
-  // The machine is faster than the table's, once that is known for the setting itself.
+  // This machine is faster than the table says. The estimate uses this once frames of this setting
+  // have been measured.
   for (int i = 0; i < 30; ++i) desk_.Observe(decided, 10.0);
   EXPECT_EQ(SlicesFor(MaxMilliseconds{20.0}), 128);
 }
@@ -256,7 +259,8 @@ TEST_F(OffersTest, FramesThatAskForNothingAreReportedWhereTheTableKnowsThem) {
 
 class TracedOffersTest : public ::testing::Test {
  protected:
-  // Returns two settings of diffusion, the second also with the path-traced correction.
+  // Returns tables with two settings of the diffusion transport. The second setting also has
+  // path-traced correction.
   static OfferTables Tables() {
     PricedSettings table;
     table.size_px = {200, 100};
@@ -289,8 +293,8 @@ TEST_F(TracedOffersTest, LightIsTracedWhereNothingElseIsAsAccurate) {
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.115})), scene::TracedLight::kOff);
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.09})), scene::TracedLight::kAwaited);
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.06})), scene::TracedLight::kAwaited);
-  EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.01})),
-            scene::TracedLight::kAwaited);  // the nearest setting
+  // No setting is this accurate, so the nearest setting is used.
+  EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxError{0.01})), scene::TracedLight::kAwaited);
   EXPECT_EQ(scene::CountOf(TechniqueFor(MaxError{0.01})), 128);
   // With a time limit no light is traced.
   EXPECT_EQ(scene::TracedLightOf(TechniqueFor(MaxMilliseconds{50.0})), scene::TracedLight::kOff);
@@ -341,7 +345,8 @@ TEST_F(TracedOffersTest, FramesOfTracedLightTeachTheirSettingsTime) {
 }
 
 TEST(DiscretisationErrorTest, IsTheRelativeDifferenceOfColours) {
-  // The differences are 1 and 0 at a mean of 2. The fourth value is not a colour.
+  // The three colour values differ by 1, 0 and 0, at a mean of 2. The fourth value is not a colour
+  // and is ignored.
   EXPECT_NEAR(DiscretisationError({3.0F, 2.0F, 2.0F, 9.0F}, {2.0F, 2.0F, 2.0F, 1.0F}),
               std::sqrt(1.0 / 3.0) / 2.0, 1e-7);
   EXPECT_EQ(DiscretisationError({0.0F, 0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, 0.0F, 0.0F}), 0.0);

@@ -89,8 +89,8 @@ TEST(PricedSettings, ALineThatIsNoRowIsNamed) {
   }
 }
 
-// Reads the server's own tables. The test fails if a column or name is added that no code reads
-// yet.
+// Reads the server's own tables. The test fails if a column or name is added to a table and no code
+// reads it.
 TEST(PricedSettings, TheTablesOfTheProjectAreUnderstood) {
   for (const std::string_view view : {"orbit", "spotter", "top-down"}) {
     const auto text = EmbeddedTradeTableTexts().find(view);

@@ -23,7 +23,7 @@ TEST(ProbeCameras, AroundTheStormAllSidesAreSeenAlike) {
     const auto camera =
         std::get<scene::OrbitCamera>(AroundStorm(kBox, 1.5, static_cast<std::uint64_t>(i)));
     EXPECT_EQ(glm::dvec2(camera.target_m), kMiddle_m);
-    EXPECT_GT(camera.distance_m, 3e4);  // outside the storm
+    EXPECT_GT(camera.distance_m, 3e4);  // the camera is outside the storm
     lowest_deg = std::min(lowest_deg, camera.elevation_deg);
     highest_deg = std::max(highest_deg, camera.elevation_deg);
     sum += scene::Direction(camera.azimuth_deg, camera.elevation_deg);

@@ -38,7 +38,8 @@ TEST(TableCorrectionTest, FollowsAMachineAndForgetsAnOutlier) {
   for (int i = 0; i < 20; ++i) correction.Observe(SlicesOf(64), 10.0, 20.0);
   correction.Observe(SlicesOf(64), 10.0, 2000.0);
   for (int i = 0; i < 10; ++i) correction.Observe(SlicesOf(64), 10.0, 20.0);
-  // The remainder is 0.7^10 = 0.028 of 0.3 times the outlier's logarithm.
+  // After ten more frames 0.7^10 = 0.028 of the outlier's effect remains; the effect was 0.3 times
+  // the outlier's logarithm.
   EXPECT_NEAR(correction.Factor(SlicesOf(64)), 2.0, 2.0 * 0.05);
   for (const double nonsense_ms : {0.0, -1.0}) correction.Observe(SlicesOf(64), 10.0, nonsense_ms);
   EXPECT_NEAR(correction.Factor(SlicesOf(64)), 2.0, 2.0 * 0.05);

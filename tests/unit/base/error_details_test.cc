@@ -85,7 +85,7 @@ TEST(ErrorDetails, AnInvalidFieldIsNamedInTheMessage) {
 }
 
 TEST(Executor, SaysWhyItRefusesAndWhenToComeAgain) {
-  Executor executor({.threads = 0, .max_waiting = 1});  // no task ever runs
+  Executor executor({.threads = 0, .max_waiting = 1});  // without threads no task ever runs
   absl::Status first;
   absl::Status second;
   executor.Submit("", [&](const absl::Status& status) { first = status; });

@@ -21,7 +21,7 @@ using std::chrono::milliseconds;
 using testing::ManualTime;
 using testing::WaitFor;
 
-// Tasks that hang until they are released, and the object they own.
+// Tasks that hang until the test releases them, and an object that each task owns.
 class Hang {
  public:
   Executor::Task Task() {
@@ -92,7 +92,7 @@ TEST(ExecutorTest, WhereTooManyHangWhoWaitsIsRefusedInTime) {
 }
 
 TEST(ExecutorTest, StopWaitsForAllThatHangTogether) {
-  static ManualTime time;  // abandoned threads outlive the test
+  static ManualTime time;  // static, because threads that the executor abandons outlive the test
   Executor executor({.threads = 2, .max_waiting = 100, .hangs_after = milliseconds(20)}, time);
   Hang hang;
   for (int i = 0; i < 8; ++i) executor.Submit("", hang.Task());

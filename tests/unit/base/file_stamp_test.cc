@@ -13,7 +13,7 @@ using std::chrono::steady_clock;
 
 TEST(UnchangedSince, IsTheFilesDateBetweenTheEarliestAndNow) {
   const steady_clock::time_point now = steady_clock::now();
-  // The wall clock sets the dates of files.
+  // Files get their modification times from the system clock.
   const auto wall = std::chrono::system_clock::now();
   const auto date_before = [wall](nanoseconds age) {
     return (duration_cast<nanoseconds>(wall.time_since_epoch()) - age).count();
@@ -24,14 +24,14 @@ TEST(UnchangedSince, IsTheFilesDateBetweenTheEarliestAndNow) {
   const auto any = steady_clock::time_point::min();
   EXPECT_EQ(age(seconds(5), any), seconds(5));
   EXPECT_GE(age(hours(24 * 365 * 60), any), hours(24 * 300)) << "a date of long ago";
-  // The clock was set back by an hour since the file was written, so its age is unknown. Once the
-  // file has been seen for a second, its age is a second.
+  // The system clock was set back by an hour after the file was written, so the file's age is
+  // unknown. After the file has been observed for a second, its age is at least a second.
   EXPECT_EQ(age(-hours(1), any), nanoseconds(0));
   const nanoseconds later =
       now + seconds(1) - UnchangedSince(date_before(-hours(1)), now, now, wall);
   EXPECT_EQ(later, seconds(1));
-  // The clock was set forward, or a copy kept its date. That does not age a file that did not exist
-  // before.
+  // The system clock was set forward, or a copied file kept an old modification time. A file that
+  // did not exist at the last check cannot be older than this check.
   EXPECT_EQ(age(hours(1), now - seconds(3)), seconds(3));
 }
 

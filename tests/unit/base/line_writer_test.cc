@@ -38,7 +38,7 @@ TEST(LineWriterTest, ADiskThatHangsHoldsUpNobody) {
         time);
     writer.Write("0");
     begun.get_future().wait();
-    // The disk answers only after all lines were written.
+    // The simulated disk responds only after the test has passed all lines to the writer.
     for (int i = 1; i < 100; ++i) writer.Write(absl::StrCat(i));
     answers.set_value();
     // Waits until the queue has space.

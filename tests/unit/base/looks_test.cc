@@ -17,7 +17,7 @@ using std::chrono::milliseconds;
 using testing::ManualTime;
 using testing::WaitFor;
 
-// A file that is checked and may hang.
+// A simulated file. Checking it may hang.
 struct File {
   std::atomic<int> begun{0};
   std::atomic<int> looks{0};
@@ -88,7 +88,7 @@ TEST(LooksTest, OneThatHangsHoldsUpOnce) {
 TEST(LooksTest, OneThatHangsIsLeftBehindAtTheEnd) {
   const auto file = std::make_shared<File>();
   file->hangs = true;
-  // The pending check outlives the test.
+  // The clock is static, because the pending check outlives the test.
   static ManualTime time;
   {
     Looks looks("/file", LookAt(file), milliseconds(100), time);

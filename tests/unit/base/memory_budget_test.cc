@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 
 constexpr std::size_t kMib = 1 << 20;
 
-// A cache that keeps reservations, each with the time of its last use.
+// A cache of memory reservations, each with the time of its last use.
 class Kept final : public MemoryBudget::Cache {
  public:
   Kept(std::shared_ptr<MemoryBudget> budget, int first_s) : member_(budget, this) {
@@ -91,8 +91,8 @@ TEST(MemoryBudgetTest, WhatNeverFitsIsNotToBeTriedAgain) {
 
 TEST(MemoryBudgetTest, CachesMakeRoomTheLeastRecentlyUsedFirst) {
   const auto budget = MemoryBudget::Make({.bytes = 40 * kMib});
-  const Kept newer(budget, 5);  // last used at 5 and 15 s
-  const Kept older(budget, 0);  // last used at 0 and 10 s
+  const Kept newer(budget, 5);  // its two entries were last used at 5 and 15 s
+  const Kept older(budget, 0);  // its two entries were last used at 0 and 10 s
   const auto more = budget->Reserve(MemoryUse::kFields, 15 * kMib, "it");
   ASSERT_TRUE(more.ok()) << more.status();
   EXPECT_EQ(older.Left(), 1U);
@@ -151,7 +151,7 @@ TEST(MemoryBudgetTest, ARefusalThrownIsWhatTheWorkReturns) {
   EXPECT_EQ(DetailsOf(refused).reason, "TOO_LARGE_FOR_MEMORY");
 }
 
-// A fixture with a folder that stands for the root of a system.
+// A fixture with a folder that replaces the root folder of the file system.
 class MachineMemoryTest : public ::testing::Test {
  protected:
   MachineMemoryTest() { Write("/proc/meminfo", "MemTotal:       16000000 kB\nMemFree:  1 kB\n"); }

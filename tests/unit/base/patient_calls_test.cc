@@ -24,7 +24,7 @@ using testing::WaitFor;
 
 constexpr milliseconds kPatience{100};
 
-// A storage that hangs until it answers.
+// A simulated storage. Calls to it hang until the test lets it respond.
 class Storage {
  public:
   std::function<void()> Call() {
@@ -59,7 +59,8 @@ absl::Status CallInVain(PatientCalls& calls, Storage& storage, ManualTime& time)
   return hangs.get();
 }
 
-// A limited address space has the same effect: no system has space for such a stack.
+// The test makes the creation of a thread fail by requesting a stack that no system has space for.
+// A limited address space has the same effect.
 TEST(PatientCallsTest, ACallForWhichThereIsNoThreadIsRefused) {
   pthread_attr_t usual;
   pthread_attr_t huge;
@@ -95,7 +96,7 @@ TEST(PatientCallsTest, AStorageThatHangsHoldsUpOnceAndNoOtherStorage) {
   EXPECT_TRUE(absl::IsDeadlineExceeded(hangs)) << hangs;
   EXPECT_EQ(DetailsOf(hangs).reason, "STORAGE_HANGS");
   EXPECT_TRUE(DetailsOf(hangs).retry_after.has_value());
-  // The hang is known, so these calls end while time stands still.
+  // The storage is known to hang, so these calls end at once, although no time passes.
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(calls.Run("/mnt/gone", storage.Call()).ok());
   EXPECT_EQ(storage.Begun(), 1);
   EXPECT_TRUE(calls.Run("/data", [] {}).ok());
@@ -129,7 +130,7 @@ TEST(PatientCallsTest, TellsForHowLongAStorageHasHung) {
 }
 
 TEST(PatientCallsTest, WhatHangsIsLeftBehindAtTheEnd) {
-  // The call outlives the test.
+  // The clock is static, because the call outlives the test.
   static ManualTime time;
   Storage storage;
   {

@@ -64,7 +64,8 @@ TEST_F(SlowCallsTest, SaysWhatDoesNotAnswerWhileItDoesNot) {
 TEST_F(SlowCallsTest, SaysItMoreAndMoreSeldom) {
   SlowCalls watch(seconds(10), Say(), time_);
   const SlowCall hangs("/mnt/gone", watch);
-  // Every ten seconds another call is reported. That shows that the watch has checked.
+  // Every ten seconds another call becomes slow and is reported. Its report shows that the watching
+  // thread has checked.
   std::vector<std::string> said;
   for (int i = 1; i <= 8; ++i) {
     const std::string marker = absl::StrCat("/marker/", i);

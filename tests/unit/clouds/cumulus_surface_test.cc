@@ -187,7 +187,7 @@ TEST(InscribedBalls, ALayerIsOfFlatOnes) {
   ASSERT_FALSE(surface.Empty());
   const Bubble& first = surface.bubbles.front();
   EXPECT_NEAR(first.semi_axes_m[0][0] / first.semi_axes_m[2][2], 3.0, 0.01);
-  // There are eight cells, so the middle lies between two of them.
+  // There are eight cells, so the cloud's middle lies between two of them.
   EXPECT_NEAR(first.semi_axes_m[2][2], 400.0, 51.0);
 }
 

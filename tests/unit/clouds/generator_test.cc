@@ -101,7 +101,7 @@ TEST(Generate, IsNoiseTimesModulationAboveTheThreshold) {
   EXPECT_GT(filled, 100);
 }
 
-// The cloud must have these bits on every machine.
+// The generated cloud's values must have these bits on every machine.
 TEST(Generate, GivesTheSameBitsEverywhere) {
   EXPECT_EQ(Hash(Made(Ball())), 8239800386922749215U);
   CloudShape cubic = Ball();

@@ -44,7 +44,7 @@ TEST(LatticeNoise, IsUniformFromMinusOneToOne) {
     squares += value * value;
     ++count;
   }
-  // The tolerances are 5 standard errors of 0.0029 and 0.0015.
+  // The standard errors are 0.0029 and 0.0015. The tolerances are 5 standard errors.
   EXPECT_NEAR(sum / count, 0.0, 0.015);
   EXPECT_NEAR(squares / count, 1.0 / 3.0, 0.008);
 }

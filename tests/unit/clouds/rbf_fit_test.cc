@@ -102,7 +102,8 @@ TEST(BasisOperator, IsTheSumOfBallsInEveryCell) {
   }
 }
 
-// Checks <A v, f> = <v, A^T f>, and that the norms are those of single balls.
+// Checks that <A v, f> = <v, A^T f>, and that the operator's column norms are the norms of single
+// balls.
 TEST(BasisOperator, TransposeIsTheAdjoint) {
   const std::vector<Metaball> balls = SomeBalls(30);
   const std::vector<float> field = Cloud(Grid());

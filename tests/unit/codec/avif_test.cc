@@ -35,7 +35,8 @@ TEST(Avif, KeepsWhatEightBitsLose) {
   for (std::size_t i = 0; i < image.rgb.size(); ++i) {
     sum += std::pow((static_cast<double>(decoded->rgb[i]) - image.rgb[i]) / 257.0, 2);
   }
-  // The limit is in levels of 255. Rounding to 8 bits alone, without compression, gives 0.289.
+  // The root mean square error is in units of 1/255. Rounding to 8 bits alone, without compression,
+  // gives 0.289.
   EXPECT_LT(std::sqrt(sum / static_cast<double>(image.rgb.size())), 0.28);
 }
 

@@ -11,7 +11,7 @@ using ::testing::HasSubstr;
 
 constexpr int kWidth = 322;
 constexpr int kHeight = 178;
-// The PSNR at which a viewer hardly sees a difference.
+// Peak signal-to-noise ratio (PSNR) at which people hardly see a difference.
 constexpr double kGood_dB = 34.0;
 
 class Vp9Test : public ::testing::Test {
@@ -22,7 +22,8 @@ class Vp9Test : public ::testing::Test {
     is_key_ = picture->key;
     return picture->bytes;
   }
-  // Returns the PSNR of the decoded picture, compared with the picture of that shift.
+  // Returns the PSNR of the decoded picture, compared with the original picture that is shifted by
+  // `shift_px`.
   double Decoded_dB(const std::string& bytes, int shift_px) {
     const auto decoded = decoder_->Decode(bytes);
     if (!decoded.ok()) return 0.0;

@@ -1,4 +1,5 @@
-// Tests of the hub alone: frames in flight, skipping, problems, closing.
+// Tests of the frame hub, which gives frames to viewers: frames in flight, skipped frames, problems
+// and closing.
 #include "delivery/frame_hub.h"
 
 #include <array>
@@ -23,7 +24,7 @@ EncodedFrame FrameOf(std::uint64_t revision) {
   return frame;
 }
 
-// Returns the sequence of the frame taken, or 0.
+// Takes the viewer's next frame and returns its sequence number; 0 if there is no frame.
 std::uint64_t TakeSequence(FrameHub& hub, std::uint64_t viewer_id) {
   const auto event = hub.Take(viewer_id);
   if (!event.has_value()) return 0;
@@ -146,7 +147,8 @@ TEST_F(FrameHubTest, ViewersAreWokenAndDemandIsTold) {
   EXPECT_FALSE(hub_.Acknowledge(id, 2));
 }
 
-using Made = std::array<int, kTiers>;  // number made for each tier
+using Made =
+    std::array<int, kTiers>;  // number of frames made for each tier (level of size reduction)
 
 // Returns a function that counts the frames it makes.
 EncodeFrame CountingReduction(Made* made) {

@@ -12,7 +12,8 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Time = LinkEstimate::Time;
 
-// A link that carries frames one after another, with two in flight, as the hub sends them.
+// A simulated network link that carries frames one after another. As in the frame hub, two frames
+// may be in flight.
 class Link {
  public:
   Link(double kbit_per_s, milliseconds round_trip)

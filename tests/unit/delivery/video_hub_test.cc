@@ -1,5 +1,5 @@
-// Tests of video and stills in the hub: which form each viewer receives, key pictures, and viewers
-// that miss pictures.
+// Tests of video and of stills (high-quality pictures at rest) in the frame hub. They check which
+// encoding each viewer receives, key pictures, and viewers that miss pictures.
 #include "delivery/frame_hub.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -85,7 +85,8 @@ class VideoHubTest : public ::testing::Test {
   int taken_tier_ = 0;
   std::uint64_t scene_revision_ = 1;
   bool by_reference_ = false;
-  bool resized_ = false;  // encoders make key pictures in any case
+  // True: after a change of size the encoders make a key picture in any case.
+  bool resized_ = false;
 };
 
 TEST_F(VideoHubTest, ANewcomerGetsAKeyPictureFirst) {
@@ -214,8 +215,8 @@ TEST_F(VideoHubTest, ManyWhoCanAllGetVideo) {
   for (const auto viewer : viewers) EXPECT_EQ(Take(viewer), "key");
 }
 
-// The slow viewer misses pictures, but gets those that later ones depend on. The other viewer gets
-// all.
+// The slow viewer misses pictures, but gets those on which later pictures depend. The fast viewer
+// gets all pictures.
 TEST_F(VideoHubTest, ASlowViewerMissesDroppablePicturesOnlyAndForcesNoKeys) {
   const auto fast = Join(kVideo);
   const auto slow = Join(kVideo);

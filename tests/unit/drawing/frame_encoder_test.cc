@@ -87,8 +87,8 @@ class FrameEncoderTest : public ::testing::Test {
 
  private:
   std::mutex mutex_;
-  std::map<std::string, int> serialized_;  // how often, by form
-  int without_memory_ = 0;                 // number of serializations that fail
+  std::map<std::string, int> serialized_;  // number of serializations, by encoding and tier
+  int without_memory_ = 0;  // number of the next serializations that fail for lack of memory
   std::vector<std::shared_ptr<const delivery::EncodedFrame>> kept_;
   std::counting_semaphore<> encoded_{0};
 
@@ -149,8 +149,8 @@ TEST_F(FrameEncoderTest, APictureWithoutMemoryFailsAlone) {
   EXPECT_EQ(TakeAll(viewers).size(), 1U);
 }
 
-// A viewer that takes frames under its own lock, like a call. If the same thread woke it meanwhile,
-// it would deadlock.
+// A viewer that takes frames while it holds its own lock, like a gRPC call. If its own thread woke
+// it meanwhile, it would deadlock.
 class LockingViewer : public delivery::Viewer {
  public:
   void Wake() override {

@@ -61,7 +61,8 @@ class FramePlannerTest : public ::testing::Test {
     return planner_.Decide(AtPlanned(), kPlannedAt + since_change, last_drawn_);
   }
 
-  // Draws all frames after a change and returns the milliseconds of the last one.
+  // Draws all frames that follow a change of the scene, and returns the drawing time of the last
+  // frame in milliseconds.
   double DrawAllAt(milliseconds since_change, const Machine& machine) {
     for (int frames = 0; frames < 10; ++frames) {
       const auto plan = Ask(since_change).plan;
@@ -90,7 +91,7 @@ TEST_F(FramePlannerTest, FastMachineDrawsFullQualityAtOnceAndOnce) {
   EXPECT_FALSE(decision.ask_again_at.has_value());
 }
 
-// Other sessions wait for the lane that draws the frame: one scene must not stall a server.
+// Other sessions wait while the thread draws a frame, so one slow scene must not block the server.
 TEST_F(FramePlannerTest, NoFrameIsDrawnSoonThatOthersWouldWaitTooLongFor) {
   Drag({4.0, 100.0}, 20);  // 12 s for each full frame
   const double drawn_ms = DrawAllAt(milliseconds(1000), {4.0, 100.0});
@@ -146,7 +147,7 @@ TEST_F(FramePlannerTest, AFrameOfASecondIsDrawnWhole) {
 }
 
 TEST_F(FramePlannerTest, CoarseFramesComeToCostAboutTheTarget) {
-  // For the first value, the finest coarse frame takes 18 ms.
+  // With the first value, a coarse frame at its finest quality takes 18 ms.
   for (const double ms_per_mega_sample : {0.6, 1.0, 3.0, 10.0}) {
     Drag({4.0, ms_per_mega_sample}, 20);
     EXPECT_LE(last_ms_, 33.0) << ms_per_mega_sample;
@@ -183,7 +184,8 @@ TEST_F(FramePlannerTest, SmallPicturesKeepTheirSize) {
   EXPECT_EQ(last_plan_.quality.output_scale, 1.0);
 }
 
-// The machine's coarsest frame takes 100 ms, nearly all of it per pixel of the picture.
+// On this machine the coarsest frame takes 100 ms, nearly all of it in proportion to the number of
+// pixels.
 TEST_F(FramePlannerTest, CoarseFramesThatTakeTooLongAreSmallerAndKeepTheirSizeWithinAGesture) {
   const double samples = accuracy::MegaSamples(Hd(), {kCoarsestSparse, kCoarsestSparse, true});
   const Machine machine{2.0, 98.0 / samples};
@@ -274,7 +276,7 @@ TEST_F(FramePlannerTest, AChangeOfToneKeepsTheQualityThatIsThere) {
   EXPECT_EQ(*decision.plan, (FramePlan{FrameQuality{}, true}));
 }
 
-// The rays of the picture are drawn again.
+// A change of tone makes the server draw the picture's rays again.
 TEST_F(FramePlannerTest, AChangeOfToneAfterTheFirstFrameAtRestIsAsQuickAsAnyOther) {
   const Machine machine{5.0, 10.0};
   Drag(machine, 10);

@@ -138,7 +138,8 @@ class EagerViewer : public delivery::Viewer, public std::enable_shared_from_this
   std::vector<delivery::FrameEvent> events_;
 };
 
-// A fixture whose time advances as the machine draws, and where a test advances it.
+// A fixture with a fake clock, which advances when the fake machine draws and when a test advances
+// it.
 class RenderLoopTest : public ::testing::Test {
  protected:
   RenderLoopTest() { machine_->time = &time_; }
@@ -183,26 +184,29 @@ class RenderLoopTest : public ::testing::Test {
     return revision;
   }
 
-  // Waits for the frame at rest of a scene that was shown.
+  // Waits for the frame at rest (at full quality) of this revision, after an earlier frame of it
+  // was shown.
   bool AwaitAtRest(EagerViewer& viewer, std::uint64_t revision) {
     if (!viewer.Await(revision, false)) return false;
     time_.Advance(seconds(1));
     return viewer.Await(revision, true);
   }
 
-  // Draws two pictures, and returns when the loop has checked everything twice.
+  // Makes the render loop draw two pictures, so that it has checked all of its work twice when this
+  // returns.
   void GoAround() {
     for (int i = 0; i < 2; ++i) EXPECT_TRUE(Picture(0.0).get().ok());
   }
 
-  // Returns the number of pictures drawn with the sun at that azimuth.
+  // Returns the number of pictures that were drawn with the sun at this azimuth.
   std::ptrdiff_t DrawnFrom(double sun_azimuth_deg) const {
     return std::ranges::count_if(machine_->Log(), [&](const FakeMachine::Drawn& drawn) {
       return drawn.scene.sun.azimuth_deg == sun_azimuth_deg;
     });
   }
 
-  // Draws the first frame of a setting, which does not count, and a few more.
+  // Draws the first frame of a setting, whose time does not count, and a few more frames, so that
+  // the frames' cost is known.
   void LearnCosts(session::Session& session, EagerViewer& viewer) const {
     const double ms_per_mega_sample = machine_->ms_per_mega_sample;
     machine_->ms_per_mega_sample = 0.0;
@@ -283,7 +287,8 @@ TEST_F(RenderLoopTest, PicturesAndSessionsDoNotStarveOneAnother) {
   while (drawn < 10) {
     ASSERT_TRUE(machine_->drawing.AwaitWaiting(1));
     const bool is_picture = machine_->Log().back().scene.display.exposure_ev == 1.0;
-    // Whatever is drawn now, the session then has a newer scene.
+    // The scene is updated so often that the session always has a newer scene than the one being
+    // drawn.
     const std::uint64_t before =
         std::exchange(shown, Show(*session, Small(static_cast<double>(shown % 300))));
     machine_->drawing.LetOnePass();
@@ -301,7 +306,7 @@ TEST_F(RenderLoopTest, PicturesAndSessionsDoNotStarveOneAnother) {
   for (auto& picture : pictures) EXPECT_TRUE(picture.get().ok());
 }
 
-// One session's full frame takes a second while another session's camera moves.
+// The full frame of one session takes a second, while the camera of another session moves.
 TEST_F(RenderLoopTest, AFrameAtRestHoldsUpNoMovingOne) {
   machine_->ms_per_mega_sample = 27000.0;  // a second for each full frame, 16 ms for a coarse one
   Start();
@@ -364,8 +369,8 @@ TEST_F(RenderLoopTest, WhatAScenePreparesHoldsUpNobodyElse) {
   ASSERT_TRUE(machine_->preparing.AwaitWaiting(1));
   Show(*other, Small(5.0));
   ASSERT_TRUE(other_viewer->Await(1, true));
-  // The scene changes to another number during the first fit. The first may be shown, and the last
-  // must be shown.
+  // The scene changes to another number of metaballs during the first fit. The picture with the
+  // first number may be shown, and the picture with the last number must be shown.
   const std::uint64_t last = Show(*fitting, OfMetaballs(200));
   machine_->preparing.Open();
   ASSERT_TRUE(fitting_viewer->Await(last, true));
@@ -381,7 +386,7 @@ TEST_F(RenderLoopTest, ASeriesThatGoesOnIsPreparedAheadOfItsPictures) {
   EXPECT_FALSE(machine_->IsPrepared(OfMetaballs(100, 1))) << "nothing plays yet";
   ASSERT_TRUE(viewer->Await(Show(*session, OfMetaballs(100, 1)), true));
   ASSERT_TRUE(machine_->AwaitPrepared(OfMetaballs(100, 2)));
-  // The next picture does not wait, although the one after it is not ready.
+  // The next picture is drawn without waiting, although the picture after it is not ready.
   machine_->preparing.Close();
   ASSERT_TRUE(viewer->Await(Show(*session, OfMetaballs(100, 2)), true));
   ASSERT_TRUE(machine_->preparing.AwaitWaiting(1));
@@ -427,7 +432,8 @@ TEST_F(RenderLoopTest, LightThatCannotBeTracedIsSaidByThePictureItself) {
   EXPECT_EQ(viewer->ProblemCount(), 0U);
 }
 
-// The table has only metaballs, so they are used whatever the scene requests.
+// The table has only settings of the metaball technique, so this technique is used whatever the
+// scene requests.
 TEST_F(RenderLoopTest, APictureIsPreparedForTheSettingDecidedAndHoldsUpNobody) {
   RenderLoopOptions options;
   options.offer_tables = [] {
@@ -466,7 +472,7 @@ TEST_F(RenderLoopTest, PicturesYieldToSessionsButNotToOtherProgramsWhereThereAre
   }
 }
 
-// A picture that waits for light that it may not trace yet lets the next one proceed.
+// A picture that must wait before it may trace light lets the next picture proceed.
 TEST_F(RenderLoopTest, PicturesClaimTheLightThatTheyAwait) {
   Start();
   const auto lit_from = [&](double azimuth_deg) {
@@ -634,7 +640,7 @@ TEST_F(RenderLoopTest, TheFrameOfASessionThatNobodyWatchesMakesRoomForAPicture) 
   options.device_memory = {options.memory};
   Start(options);
   scene::Scene large = Small(0.0);
-  large.output = {400, 300, 88};  // 720 kB
+  large.output = {400, 300, 88};  // its pixels need 720 kB
   const auto session = *sessions_.Create();
   const std::uint64_t revision = Show(*session, large);
   const auto viewer = Watch(session);
@@ -739,7 +745,8 @@ TEST(SessionTest, OlderRevisionNeverReplacesANewer) {
   EXPECT_EQ(session.Newest()->scene->time_index, 2);
 }
 
-// A fixture for a lost device: everything that was drawn with it is made again.
+// A fixture for tests of a lost graphics device. After the loss, everything that was made with the
+// device must be made again.
 class DeviceLossTest : public RenderLoopTest {
  protected:
   static RenderLoopOptions WithLosses(int max_losses) {

@@ -42,7 +42,8 @@ class SessionViewTest : public ::testing::Test {
     newest_ = {++revision_, std::make_shared<const scene::Scene>(scene_), kStart};
   }
 
-  // Ends measuring: no error can be measured, which is known after the first step.
+  // Ends the measurement of the error after its first step, which finds that no error can be
+  // measured.
   void EndMeasuring(milliseconds since_change) {
     const SessionWork work = Next(since_change);
     const auto* trace = std::get_if<TraceLight>(&work);
@@ -51,7 +52,8 @@ class SessionViewTest : public ::testing::Test {
     EXPECT_FALSE(view_.ErrorMeasured({.ended = true}, kStart + since_change));
   }
 
-  // Returns the next work at that time after the change, with the scene's fields available.
+  // Returns the session's next work at `since_change` after the last change, with the scene's
+  // fields available.
   SessionWork Next(milliseconds since_change) {
     decided_ = **view_.Decide(newest_);
     return view_.Next(newest_, decided_, kStart + since_change, last_drawn_);
@@ -75,7 +77,8 @@ class SessionViewTest : public ::testing::Test {
     last_drawn_ = LastDrawn{scene, quality};
   }
 
-  // Changes the scene until frames are known to be so slow that they are coarse.
+  // Changes the scene several times, so that frames are known to be slow and the next frames are
+  // coarse.
   void Drag() {
     for (int i = 0; i < 3; ++i) {
       Change();
@@ -197,7 +200,7 @@ TEST_F(SessionViewTest, ASettingThatProvesTooSlowIsReplacedAndDrawnAnew) {
   Change();
   ComeToRest();
   EXPECT_EQ(scene::SlicesOf(decided_->scene->rendering.technique), 128);
-  Observe(FrameQuality{}, 1000.0);  // 295 ms
+  Observe(FrameQuality{}, 1000.0);  // the frame takes 295 ms
   EXPECT_TRUE(NextIs<CheckSlices>(milliseconds(600)));
   EXPECT_TRUE(NextIs<CheckSlices>(milliseconds(600))) << "until it is checked";
   view_.Checked(0.01);
@@ -379,7 +382,7 @@ TEST_F(SessionViewTest, TheErrorIsMeasuredAtRestAndToldAsItGetsClearer) {
   EXPECT_FALSE(view_.evidence().measured.has_value()) << "of another picture";
 }
 
-// The table has 64 slices with an error of 0.3, and 128 with 0.2.
+// The table says that 64 slices have an error of 0.3, and 128 slices an error of 0.2.
 class RefutedSettingTest : public SessionViewTest {
  protected:
   void Ask(double max_error) {

@@ -1,4 +1,4 @@
-// Tests of whose turn is next, on plain values.
+// Tests of the choice which contender (session, picture or other work) may draw next.
 #include "drawing/turns.h"
 
 #include <map>
@@ -17,8 +17,8 @@ using ::testing::ElementsAre;
 
 class TurnsTest : public ::testing::Test {
  protected:
-  // Adds a contender whose turns take `piece_ms`. A slash in the name marks the own view of one
-  // person.
+  // Adds a contender, each of whose turns takes `piece_ms`. An id with a slash is the own view of
+  // one person in a session.
   void Busy(const std::string& id, TurnClass turn_class, double piece_ms = 10.0) {
     busy_[id] = {turn_class, piece_ms};
   }

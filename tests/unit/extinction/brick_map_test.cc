@@ -12,7 +12,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// Returns a volume of `cells` with extinction only in the cells listed.
+// A cell with extinction, for VolumeWith().
 struct Filled {
   glm::ivec3 cell;
   float extinction_per_m;
@@ -128,11 +128,11 @@ TEST(BrickMap, ThickStaysThickBesideThin) {
       BrickMapOf(VolumeWith({40, 40, 40}, {{{5, 5, 5}, 0.01F}, {{4, 5, 5}, 1e-6F}}));
   EXPECT_EQ(ContentAt(map, 5, 5, 3), BrickMap::kThick);  // the brick meets both cells
   EXPECT_EQ(ContentAt(map, 4, 5, 3),
-            BrickMap::kThin);  // ends at the thin cell's centre
+            BrickMap::kThin);  // the brick ends at the thin cell's centre
 }
 
 TEST(BrickMap, TakesTheMostOfAllChannelsOfAllPlanes) {
-  // Five channels are in one plane of four and one of one.
+  // Five channels are stored in two planes, which have four channels and one channel.
   ExtinctionVolume volume = VolumeWith({8, 8, 8}, {});
   volume.planes.clear();
   for (const int channels : {4, 1}) {
@@ -185,7 +185,7 @@ TEST(CellBlocks, HoldEveryCellThatIsMetInAnOccupiedBrick) {
       {{{5, 6, 7}, 0.1F}, {{6, 6, 7}, 1e-6F}, {{20, 0, 21}, 1e-6F}, {{13, 13, 4}, 0.1F}});
   const BrickMap map = BrickMapOf(volume);
   const CellBlocks blocks = CellBlocksOf(map, volume.grid);
-  std::map<std::uint32_t, bool> expected;  // whether it is thick
+  std::map<std::uint32_t, bool> expected;  // by brick: whether the brick is thick
   for (int z = 0; z < map.bricks.z; ++z) {
     for (int y = 0; y < map.bricks.y; ++y) {
       for (int x = 0; x < map.bricks.x; ++x) {

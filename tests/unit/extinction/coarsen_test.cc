@@ -1,4 +1,4 @@
-// Tests of storms on fewer cells.
+// Tests of reducing a storm's grid to fewer, larger cells.
 #include "volume/coarsen.h"
 
 #include <numeric>
@@ -55,7 +55,7 @@ TEST(Coarsened, KeepsTheExtinctionOfCellsOfDifferentSizes) {
     AddExtinction(fields.fields[0], {150.0F, true}, 0, fields.grid.CellCount(), &sum, 0);
     return sum / static_cast<float>(fields.grid.CellCount());
   };
-  // Both use half floats, with an error of 2^-12 each.
+  // Both means use extinction in half floats, with an error of 2^-12 each.
   EXPECT_NEAR(mean(coarse) / mean(fine), 1.0F, 6e-4F);
   EXPECT_EQ(coarse.fields[0].sizes.origin, SizeOrigin::kEffectiveRadius);
   EXPECT_EQ(coarse.fields[0].sizes.name, "RE_CLOUD");

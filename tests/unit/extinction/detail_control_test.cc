@@ -71,7 +71,7 @@ TEST(DetailControl, ProfileRisesFromEmptyCellsInwards) {
   EXPECT_LT(control.Profile(1, 1, 1), control.Profile(1, 5, 5));  // corners are rounded
 }
 
-constexpr std::uint8_t kWeak = 60;  // turbulence, of 255
+constexpr std::uint8_t kWeak = 60;  // weak turbulence, on a scale up to 255
 
 TEST(DetailControl, CloudWaterThatCondensesHasBillows) {
   HydrometeorFields fields = BlockOf(Hydrometeor::kCloud);

@@ -8,7 +8,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// A place has the noise that was upwind of it before.
+// The noise moves with the wind: at a place it is now what it was upwind of the place before.
 TEST(DrawnMedium, DetailMovesWithTheWind) {
   HydrometeorFields fields;
   fields.grid.cells = glm::ivec3(24, 24, 8);

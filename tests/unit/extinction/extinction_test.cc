@@ -66,8 +66,8 @@ TEST(Extinction, LeavesOutWhatAddsUpToNothing) {
 }
 
 TEST(Extinction, AThinMediumIsHeldInProportionToItsThickestCell) {
-  // The domain's diagonal is 1020 m. All of this is thinner than the part that is left out of a
-  // thick medium.
+  // The domain's diagonal is 1020 m. The whole storm is so thin that such extinction would be left
+  // out at the edge of a thick medium.
   for (const float thickest : {1e-9F, 1e-11F}) {
     HydrometeorFields fields = TwoFields();
     std::vector<float>& concentration = fields.fields[0].concentration_kg_per_m3;

@@ -30,7 +30,8 @@ TEST(VisibleBox, LeavesTracesOut) {
   EXPECT_EQ(box.high_m, glm::dvec3(100, -100, 250));
 }
 
-// Ice of 30 um is visible where the papers' crystals of 1 mm are not.
+// Ice with a radius of 30 um is visible at a concentration at which the papers' crystals of 1 mm
+// are not.
 TEST(VisibleBox, FollowsTheSizesOfTheParticles) {
   HydrometeorFields fields = EmptyStorm();
   fields.fields.resize(2);

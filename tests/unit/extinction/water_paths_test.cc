@@ -18,17 +18,19 @@
 namespace thunderhead::volume {
 namespace {
 
-// The channels of a storm: cloud water; rain, which noise does not multiply; other ice.
+// The channel (group of fields that are drawn together) of each field: cloud water; rain, which the
+// noise does not change; and all ice.
 constexpr std::array<int, 5> kChannelByField = {0, 1, 2, 2, 2};
 
-using Values = glm::dvec3;  // by channel
+using Values = glm::dvec3;  // one value for each channel
 
 double FloatOf(std::uint16_t half) {
   const int exponent = half >> 10;
   return exponent == 0 ? std::ldexp(half, -24) : std::ldexp(1024 + (half & 1023), exponent - 25);
 }
 
-// Water paths by channel, with and without detail, as sums over blocks of columns.
+// Water paths (mass of water per area of a column) by channel, with and without detail. Each is a
+// sum over a block of columns.
 struct Paths {
   glm::ivec2 count{0};
   std::vector<Values> with;
@@ -64,8 +66,8 @@ struct Paths {
     return together;
   }
 
-  // Returns the share of paths that differ by less than `most`, among those with an optical depth
-  // above 1.
+  // Returns the fraction of the water paths that detail changes by less than `most`. Only paths
+  // with an optical depth above 1 count.
   double ShareWithin(double most) const {
     int within = 0;
     int thick = 0;
@@ -265,9 +267,9 @@ TEST_P(WaterPathsOfStorm, AreThoseWithoutDetail) {
   EXPECT_GT(single.ShareWithin(0.01), 0.98);
   EXPECT_GT(single.ShareWithin(0.03), 0.995);
   EXPECT_LT(single.Deviation(0), 0.02);
-  // Compares with columns kept by channel only.
+  // For comparison: if the correction is made only for each channel, the total deviates more.
   EXPECT_GT(PathsOf(kept_, control_).Together().Deviation(0), 0.09);
-  // Without that, detail takes away much more.
+  // Without the correction of the water paths, detail removes much more water.
   const Paths lost = PathsLost();
   EXPECT_LT(lost.Ratio()[0], 0.97);
   EXPECT_GT(lost.InBlocks(8).Deviation(0), 0.1);
@@ -337,8 +339,8 @@ class WaterPathMemoTest : public WaterPathsTest {
  protected:
   void SetUp() override { Draw(TurbulentIce({6, 6, 4})); }
 
-  // Keeps the water paths of the volume with `memo`, and returns the effort. The result must be the
-  // same as without it.
+  // Corrects the volume so that detail keeps its water paths, with results stored in `memo`, and
+  // returns the effort. The result must be the same as without `memo`.
   WaterPathEffort KeptBy(WaterPathMemo* memo, WaterPathEffort effort) {
     DetailControl control = control_;
     ExtinctionVolume volume = plain_;

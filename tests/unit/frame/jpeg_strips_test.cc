@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kWidth_px = 41;  // three units
+constexpr int kWidth_px = 41;  // the width of three units (the blocks that JPEG codes together)
 constexpr int kUnits = 3;
 constexpr int kRows_px = 16;
 constexpr int kQuality = 90;
@@ -73,8 +73,8 @@ TEST(JpegStrips, ALargePictureIsTheSameAsItsParts) {
   const std::vector<std::uint8_t> rgb = Waves(kSide_px, kSide_px);
   const auto image = DecodeJpeg(Encoded(kSide_px, kSide_px, rgb));
   ASSERT_TRUE(image.ok()) << image.status();
-  // Compares parts that no two threads share, each 160 rows from the beginning of a row of units.
-  // The rows next to a cut are smoothed with their neighbours.
+  // Compares parts of 160 rows that begin at a row of units. The rows next to a cut are left out,
+  // because the decoder smooths them with their neighbours.
   for (const int first : {0, 320, 640}) {
     constexpr int kPart_px = 160;
     constexpr std::size_t kRow = std::size_t{kSide_px} * 3;

@@ -38,7 +38,7 @@ TEST(PngText, BytesThatAreNoPngAreRefused) {
   for (std::size_t at = 0; at < png.size(); ++at) {
     std::string broken = png;
     broken[at] ^= 0x40;
-    (void)TextsOf(broken);  // must not crash, whatever it finds
+    (void)TextsOf(broken);  // must not crash, whatever the broken file contains
   }
 }
 

@@ -1,4 +1,5 @@
-// Tests of pictures completed from coarse ones, with places that a function colours.
+// Tests of pictures that are completed from coarser pictures. A function gives the colour at each
+// place.
 #include "frame/sparse_picture.h"
 
 #include <algorithm>
@@ -84,15 +85,16 @@ TEST(SparsePicture, FollowsACurveByItsNeighbours) {
   EXPECT_LE(canvas.WorstOf(rgb, 0), 2.0);
 }
 
-// A contrast that requires rays in pixels of the quarter picture requires none in pixels of the
-// half picture.
+// A contrast between pixels of the quarter-size picture requires new rays. The same contrast
+// between pixels of the half-size picture does not.
 TEST(SparsePicture, TheLastPicturesPixelsMayDifferByMore) {
   const auto drawn_of = [](double height) {
     Canvas canvas{[=](glm::vec2 place) { return place.x > 0.0F ? 0.3 + height : 0.3; }, {128, 96}};
     canvas.Complete(kContrast);
     return canvas.drawn;
   };
-  // A step of one and a half times the contrast is drawn only in the half picture, 4 columns of 48.
+  // A step of one and a half times the contrast requires rays only in the half-size picture: 4
+  // columns of 48 pixels.
   EXPECT_EQ(drawn_of(1.5 * kContrast / 255.0), 4U * 48U);
   EXPECT_GT(drawn_of(1.5 * kLastContrast * kContrast / 255.0), 4U * 48U);
 }

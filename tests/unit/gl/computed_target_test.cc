@@ -39,7 +39,7 @@ TEST(ComputedTarget, ThePlaceIsAVariable) {
   EXPECT_THAT(text, Not(HasSubstr("gl_FragCoord")));
 }
 
-// The count of lines is kept so that a compiler's message names the right line.
+// The number of lines must not change, so that a compiler's message names the correct line.
 TEST(ComputedTarget, KeepsTheCountOfLines) {
   const std::string text = AsComputedPixel("in vec2 position;\nout vec4 color;\nfloat third;\n");
   EXPECT_THAT(text, HasSubstr("pixel_centre;\n\nvec4 color;\nfloat third;\n"));

@@ -30,8 +30,9 @@ using testing::TemporaryFolder;
 using volume::HydrometeorField;
 using volume::HydrometeorFields;
 
-constexpr double kHalfPrecision = 1.0 / 2048.0;          // relative, half the spacing of numbers
-constexpr double kSmallestHalf = 1.0 / (1 << 24) / 2.0;  // absolute, for the smallest numbers
+constexpr double kHalfPrecision = 1.0 / 2048.0;  // relative error: half the spacing of half floats
+constexpr double kSmallestHalf =
+    1.0 / (1 << 24) / 2.0;  // absolute error of the smallest half floats
 
 HydrometeorField Field(Hydrometeor hydrometeor, const volume::RegularGrid& grid, float peak) {
   HydrometeorField field;

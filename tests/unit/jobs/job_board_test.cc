@@ -1,5 +1,5 @@
-// Tests of which picture is next, of which results are dropped for others, and of what happens to
-// pictures that fail.
+// Tests of the choice of the next picture, of which results are dropped to make space for other
+// jobs, and of pictures that fail.
 #include "jobs/job_board.h"
 
 #include <chrono>
@@ -217,7 +217,7 @@ TEST(JobBoard, WhetherAJobIsPausedIsNews) {
   EXPECT_THAT(board.TakePauses(), ElementsAre("b"));
   EXPECT_GT(board.NewsOf("b", 0)->version, version);
   EXPECT_THAT(board.TakePauses(), IsEmpty());
-  // Her job continues; his is paused as before.
+  // Anna's job continues, and Bert's job is paused as before.
   const std::uint64_t before = board.NewsOf("a", 0)->version;
   board.Fetched({"a", 0}, kNow);
   EXPECT_THAT(board.TakePauses(), ElementsAre("a"));
@@ -240,7 +240,7 @@ TEST(JobBoard, WhoNeverFetchesLosesThePausedJobAndOthersGoOn) {
   EXPECT_EQ(DrawNext(before, 1.0), "");
   JobBoard board(limits);
   for (const char* id : {"a", "b", "c"}) board.Restore(before.Record(id), kNow);
-  // He does fetch his results, although slowly.
+  // Bert fetches his results, although slowly.
   board.Fetched({"b", 0}, kNow + hours(1));
   EXPECT_EQ(DrawNext(board, 1.0, kNow + hours(1), 30), "b");
   const Time ends = kNow + seconds(2) + hours(2);
@@ -255,7 +255,7 @@ TEST(JobBoard, WhoNeverFetchesLosesThePausedJobAndOthersGoOn) {
   EXPECT_EQ(ended.job.result_bytes, 0U);
   EXPECT_EQ(ended.pictures[0].problem.reason, "RESULTS_NOT_FETCHED");
   EXPECT_EQ(ended.pictures[2].state, PictureState::kFailed);
-  // Carl's job has nothing to fetch.
+  // Carl's job has no results to fetch, so it does not expire.
   EXPECT_TRUE(board.Expire(ends + seconds(1)).dropped.empty());
   board.Fetched({"b", 1}, ends);
   EXPECT_EQ(DrawNext(board, 1.0, ends), "c");

@@ -31,8 +31,8 @@ namespace {
 using testing::ManualTime;
 using testing::WaitFor;
 
-// A picture that fails so many times for lack of memory, first when it begins and then when it is
-// taken.
+// A picture that fails a given number of times for lack of memory, first when it begins and then
+// when its result is taken.
 class Picture final : public PictureInHand {
  public:
   explicit Picture(
@@ -273,7 +273,7 @@ class UnwrittenPictures : public ::testing::Test {
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
     may_take_ = true;
     may_take_.notify_all();
-    // The picture is released when writing it has been given up.
+    // The picture's memory is released after the server has given up writing the picture.
     ASSERT_TRUE(Await([this] { return ended_ > 0; }));
     EXPECT_GE(jobs_->Load().stalled_s, 10.0);
   }
@@ -311,7 +311,7 @@ TEST_F(UnwrittenPictures, AreKeptUntilTheyCanBeWrittenAndNotDrawnAgain) {
   const std::string id = Create(10);
   ASSERT_FALSE(id.empty());
   ASSERT_TRUE(WaitFor([] { return refused_ > 0; }));
-  // There are several attempts to write up to four pictures.
+  // The server tries several times to write up to four pictures.
   for (int i = 0; i < 12; ++i) {
     const int refused = refused_;
     ASSERT_TRUE(Await([&] { return refused_ > refused; }));
@@ -361,7 +361,8 @@ TEST_F(UnwrittenPictures, OfAFolderThatHangsHoldUpNeitherCallersNorTheEnd) {
                 [&](const absl::StatusOr<JobView>& view) { forgotten.set_value(view.ok()); });
   EXPECT_TRUE(forgotten.get_future().get());
   EXPECT_TRUE(std::filesystem::exists(results_ + "/" + id));
-  // The folder answers again, and files that could not be removed are removed with the next.
+  // The folder responds again. Files that could not be removed before are removed together with the
+  // next file.
   const base::FileDescriptor reader(open(pipe.c_str(), O_RDWR | O_NONBLOCK));
   EXPECT_TRUE(Await([this] { return jobs_->Load().result_bytes == 5; }));
   const std::string last = Create(1);

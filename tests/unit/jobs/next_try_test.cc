@@ -59,7 +59,7 @@ TEST(NextTry, WhatAnotherTryDoesNotHelpEndsThePicture) {
   EXPECT_FALSE(NextTryAfter(absl::InvalidArgumentError("a bad scene"), 1, false).has_value());
   EXPECT_FALSE(NextTryAfter(absl::DataLossError("a damaged file"), 1, false).has_value());
   EXPECT_FALSE(NextTryAfter(absl::DeadlineExceededError("too long"), 1, false).has_value());
-  // The job gives up even though clients are told to try again in an hour.
+  // The job gives up at these errors, although the error tells clients to try again in an hour.
   for (const char* reason : {"PICTURE_TOO_LARGE", "TOO_MANY_SAMPLES"}) {
     const absl::Status large = With(absl::StatusCode::kResourceExhausted, reason, minutes(60));
     EXPECT_FALSE(NextTryAfter(large, 1, false).has_value()) << reason;

@@ -28,8 +28,8 @@ ViewerRecord Record(ViewerKind kind, int frames, double late_s) {
   return record;
 }
 
-// A fixture of ten seconds with an update per second. Two viewers see it after 100 and 200 ms, a
-// throttled one after 500.
+// A fixture with a recording of ten seconds and one update of the scene per second. Two viewers see
+// each update after 100 and 200 ms, and a viewer on a throttled link after 500 ms.
 class ReportTest : public ::testing::Test {
  protected:
   ReportTest() {
@@ -161,7 +161,7 @@ TEST_F(ReportTest, WritesNullWhereThereIsNoFigure) {
 }
 
 TEST(Pace, DelaysEachMessageByItsTimeOnTheWire) {
-  Pace pace(1000.0);  // 125 bytes per millisecond
+  Pace pace(1000.0);  // 1000 kbit/s, which is 125 bytes per millisecond
   const Pace::Clock::time_point now{std::chrono::hours(1)};
   EXPECT_EQ(pace.DelayOf(1250, now), milliseconds(10));
   // The next message waits for the first, but a message after a pause does not wait.

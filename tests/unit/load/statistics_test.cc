@@ -34,7 +34,8 @@ TEST(Percentile, IsTheLeastValueThatTheShareDoesNotExceed) {
 
 TEST(Latencies, AreCountedToTheFirstFrameOfTheRevisionOrANewerOne) {
   const std::vector<Update> updates = {{11.0, 2}, {11.1, 3}, {11.2, 4}};
-  // The arrivals are a frame before the update, one of its revision, and one that skips a revision.
+  // The arrivals include a frame before the update, a frame of the update's revision, and a frame
+  // that skips a revision.
   const std::vector<Arrival> arrivals = {{10.9, 1}, {11.03, 2}, {11.05, 2}, {11.3, 4}};
   EXPECT_THAT(Ms(LatenciesOf(updates, arrivals, kPeriod)),
               ElementsAre(Near(30), Near(200), Near(100)));

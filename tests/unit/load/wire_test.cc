@@ -31,7 +31,7 @@ v1::InteractResponse FrameResponse() {
   return response;
 }
 
-// Reads a response with that serialized frame.
+// Reads a response that contains this serialized frame.
 std::optional<Response> ReadFrame(const std::string& frame) {
   EXPECT_LT(frame.size(), 1U << 14);
   std::string bytes = "\x12";

@@ -38,7 +38,7 @@ TEST(ImageError, RelativeRmseAndBias) {
 
 TEST(ImageError, TheTruthsNoiseIsTakenOutInSquares) {
   const picture::LinearPicture truth = Linear({1.0F, 3.0F});
-  const picture::LinearPicture image = Linear({2.0F, 2.0F});  // 0.5 off
+  const picture::LinearPicture image = Linear({2.0F, 2.0F});  // its relative error is 0.5
   EXPECT_NEAR(RelativeRmseWithout(0.3, image, truth), 0.4, 1e-12);
   EXPECT_EQ(RelativeRmseWithout(0.0, image, truth), RelativeRmse(image, truth));
   EXPECT_EQ(RelativeRmseWithout(0.6, image, truth), 0.0);
@@ -50,10 +50,10 @@ TEST(Flip, OfAPictureWithItselfIsZero) {
 }
 
 TEST(Flip, OfEvenGraysFollowsTheColourFormula) {
-  // Without edges or points the value is that of the colour pipeline. Black against white has a
-  // HyAB distance of 100. Green against blue bounds the scale. Their L* is 87.73 and 32.30. Their
-  // a*, b* times L* / 100 are (-75.6, 73.0) and (25.6, -34.8). The distance is therefore 55.4 +
-  // 148.0 = 203.5.
+  // Without edges or points, the error is that of the colour pipeline alone. Black and white have a
+  // HyAB distance of 100. Green and blue have the largest distance, which bounds the scale. Their
+  // L* is 87.73 and 32.30. Their (a*, b*) times L* / 100 are (-75.6, 73.0) and (25.6, -34.8). The
+  // largest distance is therefore 55.4 + 148.0 = 203.5.
   const double most = std::pow(203.5, 0.7);
   const double distance = std::pow(100.0, 0.7);
   const double expected = 0.95 + (distance - 0.4 * most) / (0.6 * most) * 0.05;

@@ -38,7 +38,8 @@ TEST_F(LookRegionsTest, TheTowerIsWhereTheSunShinesOnIt) {
 }
 
 TEST_F(LookRegionsTest, TheBaseIsInShadow) {
-  // The top is an exception, because the sun's rays pass less than a billow behind it.
+  // The tower's top is an exception and counts as lit, because the sun's rays pass through less
+  // than a billow of cloud behind it.
   EXPECT_LT(Count(0.0, Region::kTower), Count(180.0, Region::kTower) / 2);
   EXPECT_GT(Count(0.0, Region::kBase), 50);
 }

@@ -32,8 +32,8 @@ struct Lengths {
   int rank = 1;
 };
 
-// Returns a header with a dimension, an attribute of the file, and a variable with another
-// attribute, in the layout of that version.
+// Returns a netCDF header in the layout of `version`. It has a dimension, an attribute of the file,
+// and a variable with an attribute.
 std::string HeaderOf(int version, const Lengths& lengths) {
   const int width = version == 5 ? 8 : 4;
   const auto count = [width](std::uint64_t number) { return BigEndian(number, width); };

@@ -39,9 +39,10 @@ TEST(DropletSizes, QuadratureHasTheMomentsOfTheDistribution) {
   EXPECT_NEAR(square / (mean * mean) - 1.0, 0.1, 1e-4);
 }
 
-// Compares the asymmetry of cloud at 0.55 um by effective radius, and the mass extinction, with
-// ecRad's tables. Their refractive index of water differs (by up to 0.002), and so does their
-// distribution slightly: 0.003, and 1 %.
+// Compares the asymmetry and the mass extinction of cloud at 0.55 um with ecRad's tables, for
+// several effective radii. The tables use a refractive index of water that differs by up to 0.002,
+// and a slightly different size distribution. The asymmetry may therefore differ by 0.003, and the
+// extinction by 1 %.
 TEST(Droplets, CloudIsAsPublished) {
   const struct {
     double radius_um, asymmetry;
@@ -105,7 +106,8 @@ TEST(Droplets, SmallRunAgreesWithTheFile) {
   for (std::size_t c = 0; c < kPhaseChannels; ++c) {
     EXPECT_NEAR(small.Asymmetry(c), file->Asymmetry(c), 1e-3);
     for (double angle_deg = 0.0; angle_deg <= 180.0; angle_deg += 1.5) {
-      // With a quarter of the sizes, the resonances of single drops are averaged less well.
+      // The computed table has a quarter of the drop sizes, so the resonances of single drops
+      // average out less well.
       EXPECT_NEAR(small.Value(angle_deg * kRadiansPerDegree, c) /
                       file->Value(angle_deg * kRadiansPerDegree, c),
                   1.0, 0.1)

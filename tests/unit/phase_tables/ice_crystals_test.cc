@@ -20,7 +20,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kDegree = kPi / 180.0;
 constexpr std::size_t kGreen = 1;
 
-// Returns the least deviation of light by a prism of ice with that angle between two faces.
+// Returns the minimum deviation of light by an ice prism with this angle between two faces.
 double LeastDeviationDeg(double prism_angle_deg, double index) {
   return 2.0 * std::asin(index * std::sin(0.5 * prism_angle_deg * kDegree)) / kDegree -
          prism_angle_deg;
@@ -117,7 +117,8 @@ TEST(HexagonalPrism, ShadowsAverageToAQuarterOfTheSurface) {
   for (std::size_t face = 0; face < HexagonalPrism::kFaces; ++face) surface += prism.Area(face);
   const double mean =
       MeanOverSphere([&](const dvec3& direction) { return prism.ProjectedArea(direction); });
-  EXPECT_NEAR(mean / (0.25 * surface), 1.0, 1e-3);  // Cauchy's theorem; midpoint quadrature
+  EXPECT_NEAR(mean / (0.25 * surface), 1.0,
+              1e-3);  // by Cauchy's theorem; the tolerance covers the midpoint quadrature
 }
 
 TEST(HexagonalPrism, PointsLieOnTheirFaces) {
@@ -187,7 +188,8 @@ TEST(IceDiffraction, CarriesTheShadowsEnergyAndItsSquareForward) {
   const double square =
       MeanOverSphere([&](const dvec3& d) { return std::pow(prism.ProjectedArea(d), 2); });
   for (std::size_t c = 0; c < kPhaseChannels; ++c) {
-    // One per cent is lost beyond 90 degrees and by the obliquity factor, and another is noise.
+    // One per cent of the energy is lost beyond 90 degrees and by the obliquity factor. Noise may
+    // be another per cent.
     EXPECT_NEAR(light.energy()[c] / (kOrientations * area), 1.0, 0.02);
     // In the forward direction all of the shadow is in phase: k^2 / (4 pi^2) A^2, times 4 pi over
     // the mean A.
@@ -223,7 +225,7 @@ TEST(IceTables, SmallRunsAgreeWithTheFiles) {
     for (std::size_t c = 0; c < kPhaseChannels; ++c) {
       EXPECT_NEAR(small.Asymmetry(c), file->Asymmetry(c), 0.003) << name;
       for (const double angle_deg : {0.3, 1.0, 5.0, 21.0, 24.0, 45.0, 50.0, 90.0, 130.0, 170.0}) {
-        // 400 orientations leave a per cent of noise in the diffraction peak.
+        // With only 400 crystal orientations the diffraction peak has a noise of one per cent.
         EXPECT_NEAR(small.CumulativeShare(angle_deg * kDegree, c),
                     file->CumulativeShare(angle_deg * kDegree, c), 0.01)
             << name << " " << angle_deg;
@@ -241,13 +243,14 @@ TEST(IceTables, PristineCrystalsHaveHalosWithRedInside) {
       double previous_deg = 0.0;
       for (std::size_t c = 0; c < kPhaseChannels; ++c) {
         const double peak_deg = PeakAngleDeg(*table, c, from_deg, to_deg);
-        // The sharp inner edge is brightest where the whole of the sun's disc is beyond it.
+        // The halo's sharp inner edge is blurred by the sun's disc. The halo is brightest at one
+        // solar radius outside this edge.
         const double disc_deg = kSunRadius_rad / kDegree;
         EXPECT_NEAR(peak_deg, LeastDeviationDeg(prism_deg, kIceRefractiveIndex[c]) + disc_deg, 0.5)
             << name;
         EXPECT_GT(peak_deg, previous_deg) << name;
         previous_deg = peak_deg;
-        // In a ring the peak is far brighter than the dark region inside it.
+        // For a halo, the peak must be far brighter than the dark region inside the ring.
         const double inside = table->Value((peak_deg - 1.5) * kDegree, c);
         EXPECT_GT(table->Value(peak_deg * kDegree, c), 1.8 * inside) << name;
       }

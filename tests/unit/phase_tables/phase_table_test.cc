@@ -51,7 +51,7 @@ TEST(PhaseTable, IsotropicClosedForms) {
   EXPECT_EQ(table->ValueAtCosine(1.5, 0), table->Value(0.0, 0));
 }
 
-// The table differs from the formula because it is piecewise linear: 1e-5 at these steps.
+// The table is piecewise linear, so it differs from the formula by up to 1e-5 at these steps.
 TEST(PhaseTable, HenyeyGreensteinFigures) {
   const double g = 0.85;
   const PhaseTable table = HenyeyGreensteinTable(g);
@@ -78,7 +78,8 @@ TEST(PhaseTable, TextGoesRound) {
   EXPECT_EQ(again->wavelengths_um(), table.wavelengths_um());
   ASSERT_EQ(again->values().size(), table.values().size());
   for (std::size_t i = 0; i < table.values().size(); ++i) {
-    EXPECT_NEAR(again->values()[i][1] / table.values()[i][1], 1.0, 1e-5);  // six digits
+    EXPECT_NEAR(again->values()[i][1] / table.values()[i][1], 1.0,
+                1e-5);  // the file has six digits
   }
 }
 
@@ -205,20 +206,21 @@ TEST(EmbeddedTables, RainHasBothRainbows) {
   };
   for (std::size_t c = 0; c < kPhaseChannels; ++c) {
     const double index = WaterRefractiveIndex(kWavelengthsUm[c]);
-    // By Airy's theory the bow of a finite drop lies on the bright side of Descartes' ray, by 0.3
-    // and 0.6 degrees for drops of this size.
+    // By Airy's theory the rainbow of a finite drop is shifted from Descartes' ray towards the
+    // bright side. For drops of this size the primary bow is shifted by 0.3 degrees, the secondary
+    // by 0.6 degrees.
     const double primary = peak_deg(c, 134, 145);
     EXPECT_GT(primary, RainbowDeg(1, index)) << c;
     EXPECT_LT(primary, RainbowDeg(1, index) + 0.7) << c;
     const double secondary = peak_deg(c, 122, 132);
     EXPECT_LT(secondary, RainbowDeg(2, index)) << c;
     EXPECT_GT(secondary, RainbowDeg(2, index) - 1.2) << c;
-    // Alexander's dark band lies between them.
+    // Alexander's dark band lies between the two rainbows.
     const double dark = table->Value(134.0 * kDegree_rad, c);
     EXPECT_GT(table->Value(primary * kDegree_rad, c), 20.0 * dark) << c;
     EXPECT_GT(table->Value(secondary * kDegree_rad, c), 4.0 * dark) << c;
   }
-  // Red is the outer colour of the primary bow and the inner one of the secondary.
+  // Red is the outer colour of the primary rainbow and the inner colour of the secondary rainbow.
   EXPECT_LT(peak_deg(0, 134, 145), peak_deg(2, 134, 145));
   EXPECT_GT(peak_deg(0, 122, 132), peak_deg(2, 122, 132));
 }

@@ -26,7 +26,8 @@ TEST(DetailTile, AllBillowsAreEquallyFrequent) {
   std::array<std::size_t, 256> counts{};
   for (std::size_t i = 0; i < tile.texels.size(); i += 4) ++counts[tile.texels[i]];
   const double even = static_cast<double>(tile.texels.size()) / 4.0 / 256.0;
-  // Ranks are computed in 65536 bins.
+  // The tile's noise is made uniform by ranks, which are computed in 65536 bins, so the counts are
+  // not exactly even.
   for (const std::size_t count : counts) {
     EXPECT_NEAR(static_cast<double>(count) / even, 1.0, 0.1);
   }
@@ -74,7 +75,8 @@ TEST(DetailTile, CoarserLevelsKeepTheMean) {
   const double mean = DetailMean(tile, 0);
   for (int side = DetailTile::kSide; side > 1; side /= 2) {
     tile.texels = CoarserLevel(tile.texels, side);
-    EXPECT_NEAR(DetailMean(tile, 0), mean, 0.6) << side;  // each level rounds
+    EXPECT_NEAR(DetailMean(tile, 0), mean, 0.6)
+        << side;  // rounding at each mip level shifts the mean
   }
   EXPECT_EQ(tile.texels.size(), 4U);
 }
@@ -127,13 +129,13 @@ TEST(DetailWarp, IsNoneAtTheFacesOfEmptySpace) {
 }
 
 TEST(DetailDrift, GoesWithTheWindAndNeverJumps) {
-  constexpr double kTile_m = 12e3;  // on a grid of 500 m
+  constexpr double kTile_m = 12e3;  // tile size for a grid spacing of 500 m
   const double rounded_by = 0.5 * kTile_m / 10800.0;
   const glm::dvec2 wind(12.0, -4.0);
   for (double time_s = -20000.0; time_s < 40000.0; time_s += 60.0) {
     const glm::dvec2 here = DetailDrift_m(wind, time_s, kTile_m);
     const glm::dvec2 moved = DetailDrift_m(wind, time_s + 60.0, kTile_m) - here;
-    // Movement by whole tiles is invisible.
+    // The tile repeats, so a movement by whole tiles is invisible.
     const glm::dvec2 seen = moved - kTile_m * glm::round(moved / kTile_m);
     EXPECT_NEAR(seen.x, 60.0 * wind.x, 60.0 * rounded_by) << time_s;
     EXPECT_NEAR(seen.y, 60.0 * wind.y, 60.0 * rounded_by) << time_s;
@@ -145,7 +147,7 @@ TEST(Fibres, LieAlongTheShear) {
   const glm::dmat3 fibres = FibresAlong({6.0, 8.0});
   const double along = glm::length(fibres * glm::dvec3(0.6, 0.8, 0.0));
   const double across = glm::length(fibres * glm::dvec3(-0.8, 0.6, 0.0));
-  EXPECT_NEAR(along, 1.0 / 6.0, 1e-12);  // places change slowly, because they are long
+  EXPECT_NEAR(along, 1.0 / 6.0, 1e-12);  // along the fibres the noise changes slowly
   EXPECT_NEAR(across, 1.0 / 0.7, 1e-12);
   EXPECT_EQ(FibresAlong({0.0, 0.0}), FibresAlong({5.0, 0.0}));
 }

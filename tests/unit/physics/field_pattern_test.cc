@@ -9,7 +9,7 @@
 namespace thunderhead::physics {
 namespace {
 
-constexpr glm::vec3 kPlain(1.0F, 0.93F, 0.78F);  // of plain ground, by colour
+constexpr glm::vec3 kPlain(1.0F, 0.93F, 0.78F);  // relative red, green and blue of plain ground
 constexpr float kMap_m = glsl::kFieldMapCells * 402.336F;
 
 float Luminance(const glm::vec3& rgb) {
@@ -36,7 +36,7 @@ TEST(FieldPattern, MeanLuminanceIsThatOfPlainGround) {
   }
   const double mean = sum / kPoints;
   const double deviation = std::sqrt(squares / kPoints - mean * mean);
-  EXPECT_GT(deviation, 0.15);  // there is a pattern
+  EXPECT_GT(deviation, 0.15);  // the pattern must have contrast
   // The tolerance is three standard errors, plus 0.002 for the hue's rounding to three digits.
   EXPECT_NEAR(mean, 1.0, 3.0 * deviation / std::sqrt(kPoints) + 0.002);
 }
@@ -50,8 +50,8 @@ TEST(FieldPattern, FadesToItsMeanFarAway) {
   }
 }
 
-// Returns the root mean square of the difference between one filtered value and the mean of many
-// points of the same footprint.
+// Returns the root mean square difference between one filtered value and the mean of many points in
+// the same footprint (the ground area that a pixel covers).
 double FilterError(const glm::vec2& footprint_m, bool filtered) {
   CounterRandom random(5, 6);
   double squares = 0.0;
@@ -88,14 +88,15 @@ TEST(FieldPattern, OneFilteredValueIsNearTheMeanOfManyPoints) {
   }
 }
 
-// Nothing jumps when a view moves by a small fraction of a pixel.
+// The pattern must not change abruptly when the view moves by a small fraction of a pixel.
 TEST(FieldPattern, MovesSmoothlyUnderAFootprint) {
   const glm::vec2 footprint_m(60.0F, 500.0F);
   glm::vec3 last = FieldPattern::Plains().Reflectance(glm::vec2(0.0F), footprint_m, 1.0F);
   for (int i = 1; i < 20'000; ++i) {
     const glm::vec2 place_m(static_cast<float>(i) * 1.0F, static_cast<float>(i) * 0.7F);
     const glm::vec3 here = FieldPattern::Plains().Reflectance(place_m, footprint_m, 1.0F);
-    // A step is a sixtieth of the footprint, across which a field and a road may change by 1.5.
+    // Each step moves the footprint by a sixtieth of its size. Over a whole footprint, a field and
+    // a road may change the luminance by 1.5.
     EXPECT_NEAR(Luminance(here), Luminance(last), 0.05) << place_m.x;
     last = here;
   }
@@ -124,7 +125,8 @@ TEST(FieldPattern, RoadsRunAlongSectionLines) {
   EXPECT_NEAR(glsl::roads({-5.0F, 400.0F}, small).x, 1.0F, 1e-3F);
   EXPECT_FLOAT_EQ(glsl::roads({7.0F, 400.0F}, small).x, 0.0F);
   EXPECT_FLOAT_EQ(glsl::roads({804.0F, 804.0F}, small).x, 0.0F);
-  // A footprint of a whole section contains the road's share, wherever it is.
+  // A footprint as large as a whole section (a square mile) has the road's fraction of paint,
+  // wherever the footprint lies.
   const float share = 12.0F / 1609.344F;
   for (const float x_m : {0.0F, 300.0F, 800.0F, 1500.0F}) {
     EXPECT_NEAR(glsl::roads({x_m, 0.4F * x_m}, glm::vec2(1609.344F)).x,

@@ -23,8 +23,9 @@ TEST(Hydrometeors, OneGramOfCloudWaterPerKilogram) {
 }
 
 TEST(Hydrometeors, MassExtinctionIsNearPublishedTables) {
-  // The values are those of ecRad's tables at 0.55 um in m2/kg. Geometric optics neglects the edge
-  // terms, which grow as particles shrink: 5 % covers droplets of 10 um.
+  // The published values are mass extinctions in m2/kg from ecRad's tables at 0.55 um. Geometric
+  // optics neglects the edge terms, which grow as particles shrink. A tolerance of 5 % is
+  // sufficient for droplets of 10 um.
   struct Row {
     float density_kg_per_m3, radius_m, published_m2_per_kg;
   };

@@ -17,14 +17,14 @@ float LandLuminance(const glm::vec3& rgb) {
 TEST(LandUse, TellsWaterForestAndDesertOfBothTables) {
   EXPECT_TRUE(LandUseOf(LandUseScheme::kUsgs, 16).water);
   EXPECT_TRUE(LandUseOf(LandUseScheme::kModis, 17).water);
-  EXPECT_TRUE(LandUseOf(LandUseScheme::kModis, 21).water);  // lakes
+  EXPECT_TRUE(LandUseOf(LandUseScheme::kModis, 21).water);  // the class of lakes
   EXPECT_FALSE(LandUseOf(LandUseScheme::kModis, 16).water);
   EXPECT_FALSE(LandUseOf(LandUseScheme::kUsgs, 17).water);
   const glm::vec3 forest = LandUseOf(LandUseScheme::kUsgs, 14).hue;
   EXPECT_GT(forest.y, 1.3F * forest.x);
   const glm::vec3 desert = LandUseOf(LandUseScheme::kModis, 16).hue;
   EXPECT_GT(desert.x, 1.2F * desert.y);
-  EXPECT_EQ(LandUseOf(LandUseScheme::kUsgs, 24).albedo, 0.55F);  // ice
+  EXPECT_EQ(LandUseOf(LandUseScheme::kUsgs, 24).albedo, 0.55F);  // the class of ice
   EXPECT_EQ(LandUseOf(LandUseScheme::kModis, 15).albedo, 0.55F);
 }
 

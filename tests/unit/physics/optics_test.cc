@@ -99,8 +99,8 @@ TEST(PhaseFunctions, PlaceInACurveGoesEvenlyFromStraightOnToStraightBack) {
   double before = 0.0;
   for (double angle_deg = 0.1; angle_deg <= 180.0; angle_deg += 0.1) {
     const double place = glsl::phase_curve_place(haversine(angle_deg));
-    // A tenth of a degree is at least one of 4096 texels, and 120 texels near the forward
-    // direction.
+    // A step of a tenth of a degree must span at least one of the curve's 4096 texels. Near the
+    // forward direction it may span at most about 120 texels.
     EXPECT_GT(place - before, 1.1 / 4096.0) << angle_deg;
     EXPECT_LT(place - before, 0.03) << angle_deg;
     before = place;
@@ -141,7 +141,7 @@ TEST(DeltaScaling, WhatIsCutAndWhatIsLeftAddUp) {
       const double mu = -1.0 + 2.0 * (i + 0.5) / kSteps;
       left += PhaseValue(phase, std::fmin(mu, cut.cut_cosine)) / kSteps;
     }
-    // The midpoint rule has this error at the halos' edges.
+    // The tolerance covers the error of the midpoint rule at the edges of halos.
     EXPECT_NEAR(left + cut.forward_share, 1.0, 1e-4) << static_cast<int>(phase.kind);
     EXPECT_GE(cut.forward_share, 0.0);
   }
@@ -198,7 +198,8 @@ TEST(LightTransport, DiffuseLightKeepsItsEnergy) {
     const double pi = std::numbers::pi;
     const double reflected = pi * intensity(0) + 2 * pi / 3 * slope_top;
     const double transmitted = pi * intensity(total) - 2 * pi / 3 * slope_bottom;
-    // Slopes are finite differences of single-precision values.
+    // The tolerance covers the derivatives, which are finite differences of single-precision
+    // values.
     EXPECT_NEAR(reflected + transmitted + std::exp(-total), 1.0, 2e-3) << total;
   }
 }

@@ -1,7 +1,7 @@
 // Tests of the clear sky against published skies. They compare luminance over the sky with the
 // CIE's standard, and the zenith with Preetham's formulas. Light on level ground, from noon to
-// nautical twilight, is compared with the almanacs' formula. None of these is our model;
-// docs/accuracy explains the differences.
+// nautical twilight, is compared with the almanacs' formula. The server's sky model is none of
+// these published models; docs/accuracy explains the differences.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -48,8 +48,9 @@ double CieClearSky(double from_zenith, double from_sun, double sun_from_zenith) 
          (indicatrix(sun_from_zenith) * gradation(0.0));
 }
 
-// Returns the root mean square of the logarithm of our luminance over the standard's. It covers the
-// sky down to 10 degrees and more than 20 degrees from the sun.
+// Returns the root mean square of the logarithm of the model's luminance divided by the CIE
+// standard's. It covers the sky down to an elevation of 10 degrees, except within 20 degrees of the
+// sun.
 double DistanceToCie(float turbidity, double sun_elevation_deg) {
   const ClearSky sky = SkyWith(turbidity, sun_elevation_deg);
   const glm::vec3 sun = TowardsSky(sun_elevation_deg, 0.0);
@@ -76,16 +77,17 @@ double DistanceToCie(float turbidity, double sun_elevation_deg) {
 
 TEST(PublishedSky, LuminanceOverTheSkyIsTheCiesClearSkys) {
   for (const double elevation_deg : {60.0, 40.0, 25.0, 10.0}) {
-    // The results are 0.17, 0.12, 0.06, 0.06 and 0.11, 0.08, 0.05, 0.10. The CIE has one indicatrix
-    // for all wavelengths and all clear skies; ours is that of air and haze.
+    // The measured distances are 0.17, 0.12, 0.06, 0.06 for a turbidity of 2.5, and 0.11, 0.08,
+    // 0.05, 0.10 for 3. The CIE standard has one scattering indicatrix for all wavelengths and all
+    // clear skies. The model has the indicatrix of air and haze.
     EXPECT_LT(DistanceToCie(2.5F, elevation_deg), 0.2) << elevation_deg;
     EXPECT_LT(DistanceToCie(3.0F, elevation_deg), 0.13) << elevation_deg;
   }
 }
 
 // Returns the light of sun and sky on level ground: Seidelmann 1992, Explanatory Supplement to the
-// Astronomical Almanac, after Janiczek and DeYoung 1987. It is a cubic in the sun's elevation for
-// each range of it.
+// Astronomical Almanac, after Janiczek and DeYoung 1987. The formula is a cubic polynomial of the
+// sun's elevation, with other coefficients for each range of elevations.
 double AlmanacIlluminance_lx(double elevation_deg) {
   struct Range {
     double from_deg;
@@ -116,7 +118,7 @@ TEST(PublishedSky, LightOnTheGroundIsTheAlmanacs) {
   for (const double elevation_deg : {80.0, 60.0, 40.0, 20.0, 10.0, 5.0, 2.0, 0.0}) {
     const double ratio = Illuminance_lx(SkyWith(3.0F, elevation_deg), elevation_deg) /
                          AlmanacIlluminance_lx(elevation_deg);
-    EXPECT_GT(ratio, 0.9) << elevation_deg;  // results: 0.96 to 1.19
+    EXPECT_GT(ratio, 0.9) << elevation_deg;  // measured ratios: 0.96 to 1.19
     EXPECT_LT(ratio, 1.25) << elevation_deg;
   }
 }
@@ -128,14 +130,14 @@ TEST(PublishedSky, TwilightFadesAsTheAlmanacSays) {
   for (const double elevation_deg : {-1.0, -2.0, -3.0, -4.0, -5.0, -6.0, -8.0, -10.0, -12.0}) {
     const double ratio = Illuminance_lx(SkyWith(2.5F, elevation_deg), elevation_deg) /
                          AlmanacIlluminance_lx(elevation_deg);
-    EXPECT_GT(ratio, 0.7) << elevation_deg;  // results: 0.77 to 1.81
+    EXPECT_GT(ratio, 0.7) << elevation_deg;  // measured ratios: 0.77 to 1.81
     EXPECT_LT(ratio, 2.0) << elevation_deg;
   }
 }
 
 struct Zenith {
   double luminance_kcd_per_m2;
-  double x;  // x of the chromaticity
+  double x;  // CIE chromaticity x
   double y;
 };
 
@@ -179,10 +181,10 @@ TEST(PublishedSky, TheZenithIsDarkerAndLessBlueThanPreethams) {
     const Zenith ours = OurZenith(2.5F, elevation_deg);
     const Zenith theirs = PreethamZenith(2.5, Radians(90.0 - elevation_deg));
     const double ratio = ours.luminance_kcd_per_m2 / theirs.luminance_kcd_per_m2;
-    EXPECT_GT(ratio, 0.5) << elevation_deg;  // results: 0.75, 0.59, 0.54
+    EXPECT_GT(ratio, 0.5) << elevation_deg;  // measured ratios: 0.75, 0.59, 0.54
     EXPECT_LT(ratio, 0.8) << elevation_deg;
-    // Our values are 0.027 to 0.038 closer to white. Three channels have no wavelengths below
-    // blue's, which would make the zenith bluest.
+    // The model's chromaticities are 0.027 to 0.038 closer to white. With three channels the model
+    // has no wavelengths shorter than the blue channel's, which make the zenith bluest.
     EXPECT_NEAR(ours.x, theirs.x, 0.04) << elevation_deg;
     EXPECT_NEAR(ours.y, theirs.y, 0.04) << elevation_deg;
     EXPECT_LT(ours.x, 0.29) << elevation_deg;

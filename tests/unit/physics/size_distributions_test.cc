@@ -1,4 +1,5 @@
-// Tests of effective radii from schemes' size distributions, against values computed by hand.
+// Tests of effective radii, which follow from the size distributions of microphysics schemes. The
+// expected values are computed by hand.
 #include "physics/size_distributions.h"
 
 #include <gtest/gtest.h>
@@ -94,7 +95,8 @@ TEST(SizeDistributions, OfThompson) {
 }
 
 // The extinction per mass must be that of the scheme's own particles, whatever density is drawn.
-// For an exponential distribution it is twice the area, pi N0 / slope^3, over the content.
+// For an exponential distribution the extinction per mass is twice the particles' area, pi N0 /
+// slope^3, divided by the water content.
 TEST(SizeDistributions, KeepTheExtinctionOfParticlesOfAnotherDensity) {
   const float radius_m =
       DistributionRadius_m(Microphysics::kThompson, Hydrometeor::kGraupel, 1e-3F, 260.0F);

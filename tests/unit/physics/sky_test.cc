@@ -1,5 +1,6 @@
-// Tests of the clear sky against conservation of energy, plane-parallel limits and observations,
-// and of the air between eye and storm against its integral.
+// Tests of the clear sky and of the air between the camera and the storm. The sky is compared with
+// conservation of energy, plane-parallel limits and observations, and the air with its numerical
+// integral.
 #include "physics/sky.h"
 
 #include <algorithm>
@@ -153,7 +154,7 @@ glm::vec3 Towards(float azimuth_deg, float elevation_deg) {
 // of a degree.
 class SeamFinder {
  public:
-  // Returns the largest change beyond that, as a share of the radiance.
+  // Returns the largest change beyond the permitted change, as a fraction of the radiance.
   float Worst() const { return worst_; }
 
   void Add(const glm::vec3& radiance) {
@@ -229,7 +230,7 @@ TEST(ClearSky, HasNoSeams) {
   }
 }
 
-// Compares the table with the integral along rays between its nodes.
+// Compares the sky table with the integral along rays, in directions between the table's nodes.
 TEST(ClearSky, TableHoldsTheIntegral) {
   const Atmosphere atmosphere(1.5F, 0.2F);
   for (const float sun_deg : {-8.0F, 0.0F, 5.0F, 30.0F, 90.0F}) {
@@ -286,8 +287,8 @@ TEST(Air, DepthIsTheIntegralOfItsDensity) {
         glsl::AirPath{9000.0F, -0.1F, 0.0F, 8e4F}, glsl::AirPath{500.0F, 1.0F, curvature, 5e4F},
         glsl::AirPath{1e5F, -1.0F, curvature, 1e5F}, glsl::AirPath{300.0F, 1e-6F, curvature, 3e5F},
         glsl::AirPath{100.0F, 0.02F, curvature, 300.0F}, glsl::AirPath{2.0F, 0.0F, curvature, 5e5F},
-        // The paths lead from high up to the ground, past it, and down to the lowest point and up
-        // again.
+        // The following paths lead from high above the ground down to the ground, past the ground,
+        // and down to a lowest point and up again.
         glsl::AirPath{7000.0F, -0.05F, curvature, 1.6e5F},
         glsl::AirPath{7000.0F, -0.035F, curvature, 5e5F},
         glsl::AirPath{2000.0F, -0.01F, curvature, 3e5F},
@@ -303,8 +304,8 @@ TEST(Air, DepthIsTheIntegralOfItsDensity) {
       sums_m[1] += std::exp(-h / glsl::kHazeScaleHeight_m) * path.distance_m / kSteps;
     }
     const glm::vec2 densities = glsl::densities_of_air(path.height_m);
-    // On short paths the error of scaled_erfc's slope counts, which is larger than that of its
-    // value.
+    // On short paths the error of the slope of scaled_erfc matters, which is larger than the error
+    // of its value.
     EXPECT_NEAR(glsl::equivalent_m(glsl::kAirScaleHeight_m, densities.x, path) / sums_m[0], 1.0,
                 0.01)
         << path.height_m << ' ' << path.sin_elevation;

@@ -1,4 +1,5 @@
-// Tests of the properties of turbulence tiles that multiplying a field by them relies on.
+// Tests of turbulence tiles, by which a field is multiplied. They check the properties on which
+// this multiplication relies.
 #include "physics/turbulence.h"
 
 #include <algorithm>
@@ -33,7 +34,7 @@ std::uint64_t HashOf(const TurbulenceTile& tile) {
 class Turbulence : public testing::TestWithParam<int> {};
 
 TEST_P(Turbulence, KeepsTheMean) {
-  // A float stores the scale to 6e-8.
+  // The tile's scale is a float, which has a relative precision of 6e-8.
   EXPECT_NEAR(MeanOf(MakeTurbulence(GetParam(), 1)), 1.0, 2e-7);
 }
 

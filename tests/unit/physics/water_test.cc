@@ -85,8 +85,8 @@ TEST(Water, GlintHoldsTheSunlightThatFacetsReflect) {
       }
     }
     const double received = sun.z;
-    // Facets that hide each other lose the light that they would reflect twice: a seventh at 20
-    // degrees.
+    // The model of facets that hide each other loses light that is reflected twice: a seventh of
+    // the light at an elevation of 20 degrees.
     EXPECT_NEAR(flux / received, SampledReflectance(sun), 0.1 * SampledReflectance(sun))
         << elevation_deg;
   }

@@ -68,7 +68,7 @@ TEST_F(ManifestTest, AMeasuredErrorHasItsInterval) {
   const std::string line = ToLine(entry);
   EXPECT_EQ(FromLine(line)->error_low, 0.15);
   EXPECT_EQ(FromLine(line)->error_high, 0.25);
-  // Earlier versions wrote the line in this form.
+  // Earlier versions wrote a manifest line in this form.
   const std::string interval = R"("error_low":0.15,"error_high":0.25,)";
   std::string earlier = line;
   ASSERT_NE(earlier.find(interval), std::string::npos) << line;
@@ -130,7 +130,7 @@ TEST_F(ManifestTest, ProductsOfOtherShardsCount) {
     EXPECT_EQ(manifest.Find(folder_.File("a.png"))->sha256, "1");
     EXPECT_EQ(manifest.Find(folder_.File("b.png"))->sha256, "3");
   }
-  // A product keeps one line in the folder, the valid one.
+  // If several manifests in the folder had lines for one product, only the valid line remains.
   EXPECT_THAT(*base::ReadWholeFile(other), Not(HasSubstr("b.png")));
   EXPECT_THAT(*base::ReadWholeFile(other), HasSubstr("a.png"));
   EXPECT_THAT(Text(), HasSubstr("b.png"));
@@ -166,7 +166,7 @@ TEST_F(ManifestTest, ManifestsOfSharesThatHaveEndedAreTakenOver) {
     ASSERT_TRUE(manifest.Record(folder_.File("a.png"), Entry("1")).ok());
     ASSERT_TRUE(manifest.Record(folder_.File("b.png"), Entry("2")).ok());
   }
-  // A share was killed while it wrote a line.
+  // One of several programs that share the work was killed while it wrote a line.
   std::ofstream(ended, std::ios::app) << ToLine(Entry("9")).substr(0, 30);
   auto other = *Manifest::Open(running, {});
   ASSERT_TRUE(other.Record(folder_.File("c.png"), Entry("3")).ok());
@@ -179,7 +179,8 @@ TEST_F(ManifestTest, ManifestsOfSharesThatHaveEndedAreTakenOver) {
   }
   const std::string text = Text();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2) << text;
-  // A kill before the files were deleted leaves such a file. No entry may be there twice.
+  // If the program is killed before it deletes the other manifest, this file remains. Its entries
+  // must not be added twice.
   std::ofstream(ended) << text;
   const auto again = *Manifest::Open(path_, {.count = {}, .take_over = {ended}});
   EXPECT_EQ(Text(), text);

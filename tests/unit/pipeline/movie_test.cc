@@ -27,7 +27,7 @@ frame::RgbImage Grey(int width_px, int height_px, std::uint8_t value) {
 }
 
 struct Decoded {
-  std::vector<int> brightness;  // of each frame, at its first pixel, as coded
+  std::vector<int> brightness;  // for each frame, the coded brightness of its first pixel
   AVCodecID codec = AV_CODEC_ID_NONE;
   int pixels = AV_PIX_FMT_NONE;
   int width_px = 0;
@@ -99,7 +99,8 @@ TEST_P(MovieKind, PlayersSeeEveryPictureInOrder) {
       WriteMovie(path, {1, 2, 1}, 8, {"supercell", "a test", description}, [&](std::size_t i) {
         return absl::StatusOr<frame::RgbImage>(Grey(65, 36, static_cast<std::uint8_t>(values[i])));
       });
-  // Debian's libavcodec has both encoders; others may lack that of H.264.
+  // Debian's libavcodec has encoders for VP9 and H.264. Other builds of libavcodec may lack the
+  // H.264 encoder.
   if (path.ends_with(".mp4") && absl::IsFailedPrecondition(status)) GTEST_SKIP() << status;
   ASSERT_TRUE(status.ok()) << status;
   const Decoded movie = Decode(path);

@@ -16,7 +16,7 @@ SeenFile File(const std::string& name, double unchanged_s, std::uint64_t bytes =
   return file;
 }
 
-// Returns the reason why the first file waits; "" if it is ready.
+// Returns the reason why the first file is not ready; "" if it is ready.
 std::string Waits(const std::string& policy, const std::vector<SeenFile>& files,
                   std::vector<std::string> names = {}) {
   for (const SeenFile& file : files) names.push_back(file.name);

@@ -1,4 +1,5 @@
-// Tests of annotations of pictures, recognised by the pixels that they change.
+// Tests of the annotations of pictures. The tests recognise an annotation by the pixels that it
+// changes.
 #include "product/annotation.h"
 
 #include <algorithm>
@@ -67,7 +68,8 @@ int Colored(const frame::RgbImage& image, const Box& box, int red, int green, in
   return count;
 }
 
-// Returns the number of pixels that are almost white, as thin letters are where they are widest.
+// Returns the number of almost white pixels. Thin letters are almost white only at their widest
+// places.
 int Bright(const frame::RgbImage& image, const Box& box) {
   const std::vector<std::uint8_t> pixels = Pixels(image, box);
   int count = 0;

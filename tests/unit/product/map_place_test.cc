@@ -13,7 +13,7 @@
 namespace thunderhead::product {
 namespace {
 
-constexpr double kRadius_m = 6'370'000.0;  // WRF's
+constexpr double kRadius_m = 6'370'000.0;  // radius of the Earth in WRF
 constexpr double kRadian = std::numbers::pi / 180.0;
 constexpr char kLambert[] =
     "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=38.5 +lon_0=-97 +x_0=0 +y_0=0 +R=6370000 +units=m "
@@ -23,7 +23,7 @@ double ConeOf(double latitude_deg) {
   return std::tan(std::numbers::pi / 4.0 + 0.5 * latitude_deg * kRadian);
 }
 
-// Returns the place by equations 15-1 to 15-5.
+// Returns the place on the map by equations 15-1 to 15-5 of Snyder.
 glm::dvec2 Lambert_m(const Place& place) {
   const double n = std::log(std::cos(30.0 * kRadian) / std::cos(60.0 * kRadian)) /
                    std::log(ConeOf(60.0) / ConeOf(30.0));

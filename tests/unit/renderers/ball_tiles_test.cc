@@ -100,7 +100,7 @@ TEST(BallTiles, WhatIsOutOfSightIsInNoList) {
   scene::OrbitCamera camera;
   camera.target_m = glm::dvec3(0.0);
   camera.distance_m = 1000.0;
-  camera.azimuth_deg = 180.0;  // looks north
+  camera.azimuth_deg = 180.0;  // the camera looks north
   camera.elevation_deg = 0.0;
   const scene::View view = scene::ViewOf(camera, 1.0);
   const BallTiles tiles =

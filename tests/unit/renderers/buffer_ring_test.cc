@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSide = 12;
 
-// A picture; each pixel is the last state that changed it.
+// A simulated picture. Each pixel holds the number of the last state that changed it.
 using Picture = std::vector<int>;
 
 void Copy(const Picture& from, const PixelRect& rect, Picture* to) {

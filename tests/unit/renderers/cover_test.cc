@@ -45,7 +45,8 @@ std::vector<scene::View> Views() {
   return views;
 }
 
-// Returns the pixel that shows a point; outside the picture if none does.
+// Returns the pixel coordinates of a point. They lie outside the picture if the picture does not
+// show the point.
 glm::dvec2 PixelOf(const glm::dvec3& point_m, const scene::View& view) {
   const glm::dvec3 off_m = point_m - view.eye_m;
   const double forward_m = glm::dot(off_m, view.forward);
@@ -127,7 +128,7 @@ TEST(Cover, LeavesOutWhatHoldsNothing) {
   }
   EXPECT_GT(pixels, 0);
   EXPECT_LE(pixels, 32 * 32);
-  // The box is behind the eye.
+  // The box is now behind the camera.
   one.middles_m[0] = view.eye_m - 10e3 * view.forward;
   EXPECT_TRUE(CoveredRects(one, view, {800, 400}, 1.0).empty());
   EXPECT_TRUE(CoveredRects({}, view, {800, 400}, 1.0).empty());

@@ -104,7 +104,7 @@ TEST(DiffuseLight, AWarmStartFindsTheSame) {
   EXPECT_NEAR(cold.SolveSun(Sun(0.8), layer.ArrivedRoot(0.8))[middle] / from_warm, 1.0, 0.01);
 }
 
-// Returns cores in haze, 40 by 41 by 20 cells.
+// Returns a medium of 40 by 41 by 20 cells: dense cloud cores in thin haze.
 DiffusionCells HazeAndCores(bool mirrored) {
   DiffusionCells cells;
   cells.size = {40, 41, 20};
@@ -124,8 +124,8 @@ DiffusionCells HazeAndCores(bool mirrored) {
   return cells;
 }
 
-// The sun is dragged. Each step is solved loosely from the previous one, and errors must not add
-// up.
+// The test moves the sun in small steps, as a drag does. Each solution starts from the previous one
+// with a loose tolerance, and the errors must not accumulate.
 TEST(DiffuseLight, LooseSolutionsStayNearTheConvergedOne) {
   DiffuseLight loose(HazeAndCores(false));
   DiffuseLight exact(HazeAndCores(false));
@@ -149,8 +149,8 @@ TEST(DiffuseLight, LooseSolutionsStayNearTheConvergedOne) {
   EXPECT_LT(2 * iterations, exact_iterations);
 }
 
-// Returns the number of iterations of loose solutions for a sun whose azimuth takes these steps,
-// without the first three.
+// Returns the number of solver iterations for a sun that moves by these azimuth steps, with a loose
+// tolerance. The first three solutions do not count.
 int IterationsFor(const std::vector<double>& steps_rad) {
   DiffuseLight light(HazeAndCores(false));
   int iterations = 0;
@@ -177,7 +177,8 @@ TEST(DiffuseLight, ASunThatGoesOnIsFollowed) {
   EXPECT_LT(IterationsFor(on), 0.8 * IterationsFor(to_and_fro));
 }
 
-// There are many blocks of columns, divided at other places in the mirrored medium.
+// The solver divides the medium into many blocks of columns. In the mirrored medium the blocks
+// begin at other places.
 TEST(DiffuseLight, OfAMirroredMediumIsTheMirroredLight) {
   const glm::ivec3 size(40, 41, 20);
   const std::vector<float> roots(static_cast<std::size_t>(size.x * size.y * size.z), 0.7F);
@@ -199,7 +200,7 @@ TEST(DiffuseLight, OfAMirroredMediumIsTheMirroredLight) {
     }
   }
   EXPECT_LT(off, 1e-3 * largest);
-  // Blocks that divide columns would take five times as many iterations.
+  // If the blocks divided columns, the solver would need five times as many iterations.
   EXPECT_LT(light.LastIterations(), 40);
 }
 

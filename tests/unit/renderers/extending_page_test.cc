@@ -1,5 +1,5 @@
-// Tests that docs/extending.md names only existing files, and for an extension not more of them
-// than the house's rules allow.
+// Tests that docs/extending.md names only existing files. For each kind of extension the page may
+// name only as many files as the project's rules allow.
 #include <filesystem>
 #include <fstream>
 #include <map>

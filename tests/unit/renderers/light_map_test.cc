@@ -23,7 +23,8 @@ TEST(LightMap, EvenLightStaysEven) {
   }
 }
 
-// A wall sees half of a bright sky, a roof all of it, and a ceiling none.
+// A vertical face sees half of a bright sky, an upward face sees all of it, and a downward face
+// sees nothing of it.
 TEST(LightMap, ASkyAloneLightsByHowMuchOfItIsSeen) {
   const auto map =
       LightMapOf([](const glm::vec3& from) { return glm::vec3(from.z > 0.0F ? 1.0F : 0.0F); });

@@ -1,4 +1,5 @@
-// Tests of the linear system of diffusion, and of the cells around those that are not empty.
+// Tests of the linear system of the diffusion equation, and of the numbering of the cells that it
+// contains: non-empty cells and their neighbours.
 #include "renderers/light_volume/linked_cells.h"
 
 #include <algorithm>
@@ -86,7 +87,7 @@ TEST(NumberedCells, SpreadToEmptyOnesTheMeanOfTheirNeighbours) {
   EXPECT_GT(fringe, 50);
 }
 
-// Random conductances between the cells of a box, and out of it.
+// Random conductances between the cells of a box, and from its outer cells to the outside.
 struct System {
   std::vector<Links> down, up;
   std::vector<float> loss;
@@ -153,7 +154,7 @@ TEST(LinkedCells, SolveIsTheInverseOfTheirExchange) {
     worst = std::max(worst, std::abs(solution[n] - truth[n]));
   }
   EXPECT_LT(worst, 1e-4F);
-  // Starting from the solution, no iteration is left to do.
+  // The solver starts from the solution, so it needs no iteration.
   EXPECT_EQ(linked.Solve(right, 1e-5, &solution), 0);
 }
 

@@ -42,7 +42,8 @@ TEST(LitGround, OpenGroundIsLitAlike) {
   }
 }
 
-// Maps may have any shape. On the ground the share is that of the map, interpolated.
+// Maps may have any shape. On the ground, the fraction of lit ground is the map's value,
+// interpolated.
 TEST(LitGround, OnTheGroundItIsTheMap) {
   for (const glm::ivec2& size :
        {glm::ivec2(1), glm::ivec2(1, 7), glm::ivec2(5, 192), glm::ivec2(3, 2)}) {
@@ -128,7 +129,7 @@ TEST(LitGround, CloseToTheGroundItIsThatBelow) {
   const LitGround ground = DarkDisc(3000.0, 0.1F);
   EXPECT_NEAR(ground.ShareAt({500.0, 500.0, 300.0}), 0.1, 1e-5);
   EXPECT_NEAR(ground.ShareAt({500.0, 500.0, 100.0}), 0.1,
-              1e-5);  // below coarse terrain
+              1e-5);  // a place below the coarse terrain
   EXPECT_NEAR(ground.ShareAt({5000.0, 0.0, 300.0}), 1.0, 1e-5);
   EXPECT_NEAR(ground.ShareAt({5e5, 0.0, 300.0}), 1.0, 1e-5);
 }

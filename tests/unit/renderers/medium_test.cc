@@ -1,4 +1,4 @@
-// Tests of which fields a renderer draws together, without GL.
+// Tests of the choice which fields a technique draws together. They need no OpenGL.
 #include "renderers/medium.h"
 
 #include "gtest/gtest.h"

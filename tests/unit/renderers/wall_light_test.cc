@@ -25,7 +25,7 @@ DiffusionCells Empty(const glm::ivec3& size) {
   return cells;
 }
 
-// Returns two long walls with `gap_per_m` between them.
+// Returns two long walls. The gap between them has the extinction `gap_per_m`.
 DiffusionCells Canyon(float gap_per_m) {
   DiffusionCells cells = Empty({2 * kThick + kGap, kLong, kHigh});
   for (std::size_t i = 0; i < cells.transport_per_m.size(); ++i) {
@@ -46,8 +46,8 @@ TEST(WallLight, FacingWallsSeeTheirViewFactor) {
   double expected = 0.0;
   double hidden = 0.0;
   for (int z = 1; z + 1 < kHigh; ++z) {  // cells at the ends have one more face
-    // From a point of one endless strip the view factor of the other is half the sum of the sines
-    // of its angles.
+    // From a point on one infinitely long wall, the view factor of the opposite wall is half the
+    // sum of the sines of the angles to its two edges.
     const double up = std::atan2(kHigh - (z + 0.5), kGap);
     const double down = std::atan2(z + 0.5, kGap);
     expected += 0.5 * (std::sin(up) + std::sin(down));
@@ -55,7 +55,8 @@ TEST(WallLight, FacingWallsSeeTheirViewFactor) {
   }
   // Twelve rays represent all directions.
   EXPECT_NEAR(hidden / expected, 1.0, 0.1);
-  EXPECT_EQ(walls.Hidden()[cells.Offset({0, kLong / 2, kHigh / 2})], 0.0F);  // inside
+  EXPECT_EQ(walls.Hidden()[cells.Offset({0, kLong / 2, kHigh / 2})],
+            0.0F);  // inside the wall
 }
 
 TEST(WallLight, WhatComesAndGoesBetweenWhiteWallsAddsUp) {
@@ -69,8 +70,8 @@ TEST(WallLight, WhatComesAndGoesBetweenWhiteWallsAddsUp) {
   std::vector<float> all(own.size(), 0.0F);
   walls.FindArriving(own, &all);
   const float seen = walls.Hidden()[MiddleOfWall(cells)];
-  // All walls send 1. A wall receives the share that it sees of them, and repeatedly the light that
-  // they send on.
+  // All walls emit 1. A wall receives the fraction `seen` of this light, and also the light that
+  // the walls reflect again and again.
   EXPECT_GT(all[MiddleOfWall(cells)], seen);
   EXPECT_LT(all[MiddleOfWall(cells)], seen / (1.0F - seen));
   EXPECT_GT(*std::max_element(one.begin(), one.end()), 0.0F);

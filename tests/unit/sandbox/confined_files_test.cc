@@ -1,5 +1,6 @@
-// Tests of files that a confined process reads. The results must be those of the program itself.
-// Whatever a file does to its reader must be one error, within limits, while other files are read.
+// Tests of files that are read by a confined process. The results must equal those of a read in the
+// program itself. Whatever a malicious file does to the reader process, the result must be a single
+// error within the limits, and other files must still be read.
 #include "sandbox/confined_files.h"
 
 #include <gmock/gmock.h>
@@ -129,7 +130,8 @@ testing::SyntheticWrf Storm() {
   return file;
 }
 
-// Expects that the program itself and a confined reader give the same storm, for every record.
+// Expects that the program itself and a confined reader return the same storm, for every record
+// (time) of the file.
 void ExpectSameStorm(ConfinedFiles& files, const std::string& path) {
   const auto own = storm_files::StormFormats::BuiltIn().Describe(path);
   const auto confined = files.Describe(path);
@@ -247,8 +249,8 @@ TEST_F(ConfinedFilesTest, AReaderThatCrashesIsOneError) {
   EXPECT_EQ(Failures("crashed"), before + 4);
 }
 
-// The kernel kills processes like this when memory is full. The file is not to blame, and is tried
-// again.
+// The kernel kills processes in this way when memory is full. The file is not the cause, so it is
+// read again.
 TEST_F(ConfinedFilesTest, AReaderThatIsKilledIsTriedAgain) {
   const std::uint64_t before = Failures("killed");
   const auto files = Files();
@@ -288,7 +290,7 @@ TEST_F(ConfinedFilesTest, AReaderRestsForAMoment) {
   EXPECT_TRUE(WaitFor([&] { return kill(third, 0) != 0; })) << "it is ended and collected";
 }
 
-// A link may replace a folder after the path was checked.
+// An attacker may replace a folder by a symbolic link after the path was checked.
 TEST_F(ConfinedFilesTest, WhereAnOpenedFileReallyLiesIsChecked) {
   const std::string path = folder_.File("wrfout_d01");
   testing::WriteWrf(Storm(), folder_.File("elsewhere"));
@@ -348,7 +350,7 @@ TEST_F(ConfinedFilesTest, AReaderThatIsSilentIsEnded) {
 
 TEST_F(ConfinedFilesTest, AReaderThatSaysNoMoreIsNotWaitedFor) {
   const std::uint64_t before = Failures("crashed");
-  // The limit is longer than the time that passes.
+  // This reader's time limit (100 hours) is longer than the time that passes in the test.
   const auto file = Files(kMemory, std::chrono::hours(100))->Describe(Bad("mute-reading"));
   ASSERT_TRUE(file.ok()) << file.status();
   const absl::Status status = GetInTime(std::async(
@@ -367,7 +369,8 @@ TEST_F(ConfinedFilesTest, AReaderHasAProcessorTime) {
   EXPECT_EQ(Failures("time"), before + 1);
 }
 
-// Read-ahead does this: it yields to other reads.
+// The server may make a reader wait, for example when read-ahead yields to other reads. This time
+// does not count towards the limit.
 TEST_F(ConfinedFilesTest, WhatTheServerWaitsForByItselfDoesNotCount) {
   const auto file = Files()->Describe(Bad("sound"));
   ASSERT_TRUE(file.ok()) << file.status();

@@ -24,8 +24,8 @@ using storm_files::StormFile;
 using volume::HydrometeorField;
 using volume::HydrometeorFields;
 
-// Tries everything that a process taken over by a file would try. Returns the names of what
-// succeeded.
+// Tries the actions that an attacker who controls the reader process would try. Returns the names
+// of the actions that succeeded.
 std::string TryEverything() {
   std::string could;
   const auto note = [&could](bool done, const char* what) {
@@ -105,7 +105,7 @@ HydrometeorFields SoundFields() {
   return fields;
 }
 
-// Breaks one property of the fields that another room relies on.
+// Breaks one property of the fields on which other parts of the server rely.
 void Spoil(const std::string& how, HydrometeorFields& fields) {
   HydrometeorField& field = fields.fields[0];
   const std::map<std::string, std::function<void()>> ways = {

@@ -12,7 +12,7 @@ namespace {
 constexpr double kCell_m = 100.0;
 
 // A slab of cloud of this extinction between 2000 and 3000 m over flat ground, in a domain of 40 km
-// x 40 km x 5 km. It is viewed from above, so the world is flat.
+// x 40 km x 5 km. The camera looks from above, for which the world is treated as flat.
 struct Slab {
   explicit Slab(double extinction_per_m) {
     fields.grid = {{40, 40, 50}, {1000.0, 1000.0, kCell_m}, {-20000.0, -20000.0, 0.0}};
@@ -72,7 +72,7 @@ TEST(PlaceSeen, ClearSkyHasThePointNearestToTheStorm) {
   const glm::dvec3 seen = slab.Seen({-50000.0, 0.0, 8000.0}, {1.0, 0.0, 0.0});
   EXPECT_NEAR(seen.x, 0.0, 1.0);
   EXPECT_NEAR(seen.z, 8000.0, 1e-6);
-  // Looking away from the storm, the place stays at the eye.
+  // If the camera looks away from the storm, the returned place is the camera's position.
   EXPECT_NEAR(slab.Seen({-50000.0, 0.0, 8000.0}, {-1.0, 0.0, 0.0}).x, -50000.0, 1e-6);
 }
 

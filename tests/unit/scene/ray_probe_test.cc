@@ -68,7 +68,7 @@ TEST(RayProbeTest, UniformFieldsDepthIsExtinctionTimesLength) {
   const StormRay down = storm.Ray({-2000.0, -1000.0, 5000.0}, slant);
   EXPECT_NEAR(down.OpticalDepth(), extinction * 2500.0 / -slant.z, 2e-3) << "the ground's metre";
   EXPECT_NEAR(*down.Ground_m(), 5000.0 / -slant.z, 1.5);
-  // The ray starts inside.
+  // This ray starts inside the domain.
   EXPECT_NEAR(storm.Ray({0.0, 0.0, 1000.0}, {0.0, 1.0, 0.0}).OpticalDepth(), extinction * 4000.0,
               1e-9);
 }
@@ -102,7 +102,7 @@ TEST(RayProbeTest, ASingleCellIsATentAroundItsMiddle) {
   // Through the cell's middle the extinction is a triangle two cells wide.
   const StormRay through = storm.Ray({-9000.0, 250.0, 1125.0}, {1.0, 0.0, 0.0});
   EXPECT_NEAR(through.OpticalDepth(), 0.004 * 500.0, 1e-6);
-  // A quarter of a cell to the side along y, the optical depth is three quarters of that.
+  // A ray that is a quarter of a cell to the side along y has three quarters of this optical depth.
   EXPECT_NEAR(storm.Ray({-9000.0, 375.0, 1125.0}, {1.0, 0.0, 0.0}).OpticalDepth(),
               0.75 * 0.004 * 500.0, 1e-6);
   EXPECT_EQ(storm.Ray({-9000.0, 750.0, 1125.0}, {1.0, 0.0, 0.0}).OpticalDepth(), 0.0);

@@ -77,8 +77,8 @@ TEST(SampleRay, GraupelAboveAColumnIsTheFiles) {
   ASSERT_NE(at, probe.fields.end());
   // The path is exact except for the last metre above the ground.
   EXPECT_NEAR(at->path_kg_per_m2 / path_kg_per_m2, 1.0, 1e-3);
-  // The largest value is in a grid whose cells are means of the layers that they overlap. Its air
-  // is the mean of its block.
+  // The largest value is in a grid whose cells are means of the layers that they overlap. The
+  // density of the air in a grid cell is the mean over a block of cells.
   EXPECT_NEAR(at->maximum / graupel[largest], 1.0, 0.03);
   EXPECT_NEAR(ray.At_m(*at->maximum_m).z, middles_m[largest / (kNx * kNy)],
               (*fields)->grid.spacing_m.z);

@@ -74,7 +74,8 @@ TEST(Scene, EachTechniqueRerunsFromItsOwnStage) {
   EXPECT_EQ(first(Metaballs{}, Metaballs{.count = 7}), Stage::kLight);
   EXPECT_EQ(first(Reference{}, Reference{.false_colors = true}), Stage::kExtinction);
   EXPECT_EQ(first(OtherTechnique{"a", {}}, OtherTechnique{"b", {}}), Stage::kExtinction);
-  // Techniques of a medium share it if they show the same of its fields.
+  // Techniques that draw a medium share the uploaded medium, if they show the same properties of
+  // its fields.
   const HalfAngle detailed{
       .medium = {.transport = Transport::kConsistent, .look = {.detail = true}}};
   EXPECT_EQ(first(detailed, LightVolume{}), Stage::kLight);
@@ -100,7 +101,7 @@ TEST(Scene, LightsCountWhereTheyAreShown) {
     EXPECT_EQ(first([](Lights* lights) { lights->front().color.r = 0.5; }), Stage::kView);
     EXPECT_EQ(first([](Lights* lights) { lights->front().irradiance = 0.5; }), Stage::kView);
   }
-  // The frame reports that they are not shown.
+  // These techniques do not draw the additional lights. The frame reports that.
   for (const Technique& technique :
        {Technique(LightVolume{}), Technique(HalfAngle{}), Technique(Cumulus{})}) {
     before.rendering.technique = technique;

@@ -108,7 +108,7 @@ TEST(SpotterPlace, TheSunIsNotBehindTheTower) {
 
 TEST(SpotterPlace, ABaseWithoutRainCountsMoreThanALittleLight) {
   volume::HydrometeorFields fields = Thunderstorm();
-  Fill(fields, 1, {20, 20, 0}, {40, 27, 8});  // to the south
+  Fill(fields, 1, {20, 20, 0}, {40, 27, 8});  // rain to the south of the tower
   const SpotterCamera camera = Spotted(fields, {}, SpottersSide::kBest, Direction(180.0, 70.0));
   EXPECT_GT(camera.place_m.y, -5e3);
 }
@@ -168,7 +168,7 @@ TEST(SpotterPlace, TheEyeIsInClearAir) {
   const volume::CoreSight sight(fields, *core);
   EXPECT_TRUE(sight.IsClear(glm::dvec3(outside.place_m, 1.7)));
   EXPECT_GT(glm::length(outside.place_m), 29e3);
-  // With a gap in the rain the spotter stands in it.
+  // If the rain has a gap, the spotter stands in this gap.
   auto& rain = fields.fields[1].concentration_kg_per_m3;
   for (int z = 0; z < 8; ++z) {
     for (int x = 45; x < 52; ++x) {
@@ -201,7 +201,8 @@ TEST(SpotterPlace, ShowsTheTowersOfTheSampleStorm) {
     ASSERT_TRUE(fields.ok());
     const SpotterCamera camera = Spotted(**fields);
     EXPECT_GE(Distance_m(camera, **fields), 15e3);
-    // Later the anvil is overhead at that place.
+    // At later times the anvil is above the spotter at the usual distance, so the spotter stands
+    // farther away.
     EXPECT_LE(Distance_m(camera, **fields), time < 2 ? 25e3 : 50e3);
     EXPECT_LT(HeightOfTop(camera, **fields), 0.9);
     EXPECT_GE(GroundShare(camera), 0.16);

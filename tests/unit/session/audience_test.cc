@@ -31,7 +31,8 @@ Ray RayTo(double x_m) { return {.origin_m = {x_m, 0.0, 0.0}}; }
 // Returns the place where the ray begins.
 glm::dvec3 PlaceOf(const Ray& ray) { return ray.origin_m; }
 
-// A fixture with a presenter, Ana and Ben, who were told about one another a minute ago.
+// A fixture with a presenter and two viewers, Ana and Ben. All three received the list of
+// participants a minute ago.
 class AudienceTest : public ::testing::Test {
  protected:
   AudienceTest() {
@@ -60,8 +61,8 @@ class AudienceTest : public ::testing::Test {
                             now_);
   }
 
-  // Writes the updates as texts: who asks for control and who has it, whose pointers are where, and
-  // marks.
+  // Returns a format that writes updates as texts. They say who asks for control, who has control,
+  // where each pointer is, and which marks are shown.
   AudienceFormat Format() {
     return {.presence =
                 [this](const Roster& roster) {
@@ -184,7 +185,7 @@ TEST_F(AudienceTest, WhoHasMissedTooManyChangesIsToldAllMarks) {
   EXPECT_EQ(*audience_.Marks(1).bytes, absl::StrCat("all ", Audience::kMaxMarksChanges + 2));
 }
 
-// The page sends a place for each movement of the mouse.
+// The web page sends the pointer's position for each movement of the mouse.
 TEST_F(AudienceTest, PointersAreToldThirtyTimesASecondTheNewestOfThem) {
   const std::uint64_t told = audience_.Pointers().count;
   const Audience::Time start = now_;
@@ -206,7 +207,7 @@ TEST_F(AudienceTest, PointersAreToldThirtyTimesASecondTheNewestOfThem) {
   EXPECT_LE(times, 31U) << "30 a second, and the first";
   EXPECT_GE(times, 28U);
   EXPECT_LE(searches, 31) << "places cost time, and those that nobody is told are not found";
-  // The last place is sent too.
+  // The last position of the pointer is sent, too.
   EXPECT_TRUE(audience_.Point(presenter_, RayTo(5000.0), now_).ok());
   const auto next = Tick();
   if (next.has_value()) now_ = *next;
@@ -325,7 +326,7 @@ TEST_F(AudienceTest, ALostConnectionIsAskedForASignOfLifeAndForgotten) {
   EXPECT_FALSE(audience_.IsThere(lost));
   EXPECT_TRUE(audience_.IsThere(*back));
   EXPECT_THAT(lost_viewer->wakes, Gt(wakes)) << "to end its call";
-  audience_.Leave(lost, now_);  // when its call ends
+  audience_.Leave(lost, now_);  // the lost participant leaves when its call ends
   EXPECT_TRUE(audience_.IsThere(*back));
 }
 
@@ -342,7 +343,8 @@ TEST_F(AudienceTest, WhoHasSaidSomethingIsNoLostConnection) {
   EXPECT_TRUE(audience_.IsThere(second));
 }
 
-// Clients decide by the first presence whether they have control.
+// A client decides by its first presence message whether it has control, so this message must not
+// be older than the join.
 TEST_F(AudienceTest, TheFirstPresenceIsNotOlderThanTheJoining) {
   ASSERT_TRUE(
       audience_
@@ -453,7 +455,8 @@ TEST(BoardTest, MarksAreShownWithTheDomainThatTheyWereDrawnOn) {
   change = board.TakeMarksChange();
   EXPECT_THAT(IdsOf(change.drawn), ElementsAre(1U));
   EXPECT_EQ(change.drawn[0].person_id, 7U);
-  // The domain changes there and back between two updates. A client would apply the removal last.
+  // The domain changes and changes back between two updates. The update must not remove the marks,
+  // because a client applies removals last.
   board.ShowDomain("Bavaria");
   board.ShowDomain("Oklahoma");
   EXPECT_THAT(board.TakeMarksChange().erased, IsEmpty());

@@ -1,4 +1,5 @@
-// Tests of the rules of control, following and marks among a session's participants.
+// Tests of the rules among a session's participants: who gets control, who follows the session's
+// view, and who may make marks.
 #include "session/roster.h"
 
 #include "base/error_details.h"
@@ -15,7 +16,7 @@ const RosterTimeouts kTimeouts;
 
 std::string ReasonOf(const absl::Status& status) { return base::DetailsOf(status).reason; }
 
-// A session with a presenter, Ana and Ben.
+// A session with a presenter and two viewers, Ana and Ben.
 struct Class {
   explicit Class(const Rules& rules = {}) : roster(rules, kOpenedAt) {
     presenter = roster.Join(Role::kPresenter, "Teacher", kOpenedAt);
@@ -253,7 +254,8 @@ TEST(RosterTest, SecondPresenterTakesOverFromOneWhoLeaves) {
   EXPECT_EQ(group.roster.steering(), second);
 }
 
-// A session with two presenters with keys, and Ana with a key. The first presenter has control.
+// A session with two presenters and the viewer Ana. All three have participant keys, and the first
+// presenter has control.
 struct ClassWithKeys {
   ClassWithKeys() : roster({.free_when_away = true}, kOpenedAt) {
     presenter = roster.Join(Role::kPresenter, "Teacher", kOpenedAt, "teacher");
@@ -294,7 +296,7 @@ TEST(RosterTest, ControlOfAPresenterWhoStaysAwayGoesToAnother) {
   group.roster.Advance(kOpenedAt + kTimeouts.come_back);
   EXPECT_EQ(group.roster.steering(), group.tablet);
   EXPECT_GT(group.roster.revision(), before);
-  // A presenter who comes back later takes control by the button.
+  // A presenter who comes back later gets control only by taking it with the button.
   group.roster.Join(Role::kPresenter, "Teacher", kOpenedAt + seconds(20), "teacher");
   EXPECT_EQ(group.roster.steering(), group.tablet);
 }
@@ -320,7 +322,7 @@ TEST(RosterTest, AViewerWhoSteersAndReconnectsSteersAgain) {
   const std::uint64_t ben = group.roster.Join(Role::kViewer, "Ben", kOpenedAt, "ben");
   ASSERT_TRUE(group.roster.AskControl(ben, kOpenedAt).ok());
   EXPECT_EQ(group.roster.steering(), 0U);
-  // A key is valid only for its role.
+  // A participant key is valid only for the role with which it was first used.
   group.roster.Join(Role::kPresenter, "Ana", kOpenedAt, "ana");
   EXPECT_EQ(group.roster.steering(), 0U);
   const std::uint64_t back = group.AnaAgain(kOpenedAt + seconds(5));
@@ -405,7 +407,8 @@ TEST(RosterTest, WhoComesBackReplacesALostConnectionThatGivesNoSignOfLife) {
   EXPECT_EQ(group.roster.steering(), back);
 }
 
-// The answer may be delayed, for example behind a large picture on a slow link.
+// The answer to the connection check may be delayed, for example behind a large picture on a slow
+// link.
 TEST(RosterTest, TheTimeForASignOfLifeCountsFromTheQuestion) {
   ClassWithKeys group;
   group.AnaAgain(kOpenedAt);

@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 constexpr std::chrono::milliseconds kPatience{200};
 
-// A storage that can hang.
+// A simulated storage that can hang.
 class Storage {
  public:
   void Hang() { hangs_ = true; }
@@ -46,7 +46,7 @@ class Storage {
 class Sessions final : public session::SessionStore {
  public:
   explicit Sessions(std::shared_ptr<Storage> storage) : storage_(std::move(storage)) {}
-  // A database writes when it is closed.
+  // The destructor uses the storage, because a database also writes when it is closed.
   ~Sessions() override { (void)storage_->Use(); }
   absl::Status Save(const std::vector<SessionRecord>&) override { return storage_->Use(); }
   absl::Status Remove(const std::vector<std::string>&) override { return storage_->Use(); }
@@ -117,7 +117,7 @@ TEST_F(PatientStoresTest, GiveWhatTheStoresGive) {
 TEST_F(PatientStoresTest, AreUnavailableWhileTheStorageHangs) {
   storage_->Hang();
   ExpectHangs(UseInVain([&] { return sessions_->Save({}); }));
-  // The hang is known, so these calls end while time stands still.
+  // The storage is known to hang, so these calls end at once, although no time passes.
   for (int i = 0; i < 20; ++i) ExpectHangs(sessions_->Remove({}));
   // The job store has the same file, so its calls are refused, although the storage would answer.
   ExpectHangs(jobs_->Add({}));

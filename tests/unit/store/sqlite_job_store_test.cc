@@ -1,5 +1,5 @@
-// Tests of how render jobs are restored, and that a file of sessions from before jobs existed is
-// kept.
+// Tests of how render jobs are restored. They also check that a file of sessions from a version
+// without render jobs is kept.
 #include "store/sqlite_job_store.h"
 
 #include <sqlite3.h>

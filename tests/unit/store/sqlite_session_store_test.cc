@@ -196,7 +196,7 @@ TEST_F(SqliteSessionStoreTest, WhatWasSavedOutlivesAKilledProcess) {
   char done = 0;
   ASSERT_EQ(read(saved[0], &done, 1), 1);
   EXPECT_EQ(done, 'y');
-  // The other process has the file open meanwhile.
+  // Another process has the file open meanwhile.
   const absl::Status refusal = Refusal();
   EXPECT_EQ(refusal.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(refusal.message()),
@@ -259,7 +259,7 @@ TEST(MarkBytesTest, CutBytesAreAnError) {
   }
   EXPECT_EQ(accepted, 2) << "nothing, and the first mark alone";
   std::string long_one = whole;
-  long_one[5 * 8 + 7] = '\x7f';  // in the number of positions
+  long_one[5 * 8 + 7] = '\x7f';  // damages the number of positions
   EXPECT_FALSE(store::MarksFrom(long_one).ok());
 }
 

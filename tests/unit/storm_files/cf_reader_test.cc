@@ -161,7 +161,8 @@ TEST_F(CfReader, SingleCellsHaveTheSizeOfTheirBounds) {
   file.coordinates[2].faces = {};
   file.coordinates[2].values = {0.0};
   ExpectError(file, "bounds");
-  // In a slice of one cell at 0, the missing width is taken from the other cells.
+  // The file is a slice with one cell along y, at y = 0. The width of this cell is unknown, so it
+  // is taken from the other axis.
   file = ExtinctionFile(4, 1, 1, 100.0, 1.0, 50.0, Value);
   file.coordinates[1].values = {0.0};
   const auto slice = Read(file);
@@ -313,7 +314,7 @@ TEST_F(CfReader, TimesCountFromTheDateOfTheirUnits) {
       {"days since 2012-02-28", 1.0, "2012-02-29T00:00:00Z"},
       {"days since 2013-02-28", 1.0, "2013-03-01T00:00:00Z"},
       {"minutes since 0001-01-01 00:00:00", 20.0, "0001-01-01T00:20:00Z"},
-      {"min", 20.0, "0001-01-01T00:20:00Z"},  // from an idealised run
+      {"min", 20.0, "0001-01-01T00:20:00Z"},  // units as in an idealised run
       {"", 20.0, "0001-01-01T00:00:00Z"},
   };
   for (const auto& [units, time, expected] : cases) {
@@ -569,7 +570,7 @@ TEST_F(CfReader, TurbulenceIsTheFilesOwnWhereItHasSome) {
   EXPECT_EQ((*fields)->motion.variable, "tke");
   EXPECT_EQ((*fields)->motion.turbulence[7], 128);
   EXPECT_EQ((*fields)->motion.shear_m_per_s, glm::dvec2(6.0, 0.0));
-  // If one component is missing there is no wind, but the energy remains.
+  // If one component of the wind is missing, the wind is not used, but the turbulent energy is.
   file.variables.erase(file.variables.begin() + 4);
   fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();

@@ -87,7 +87,8 @@ class ToyFormat final : public StormFormat {
   }
 };
 
-// A format that matches every netCDF file with the given closeness, but cannot describe any.
+// A format that claims every netCDF file with the given closeness of match, but cannot describe any
+// file.
 class Greedy final : public StormFormat {
  public:
   explicit Greedy(FormatFit fit) : fit_(fit) {}

@@ -71,7 +71,7 @@ TEST(VerticalRemap, PreservesThePathOfRandomColumnsAndStaysWithinTheirRange) {
     const VerticalGrid grid = ChooseVerticalGrid(interfaces_m, 40, 1);
     ASSERT_GT(grid.cells, 0);
     const std::vector<float> cells = RemapColumns(interfaces_m, concentration, 40, 1, grid);
-    // The sums have some hundred terms in single precision.
+    // The tolerance covers sums of some hundred terms in single precision.
     EXPECT_NEAR(Path(grid, cells) / Path(interfaces_m, concentration), 1.0, 1e-5);
     const float largest = *std::max_element(concentration.begin(), concentration.end());
     EXPECT_THAT(cells, Each(::testing::AllOf(::testing::Ge(0.0F),

@@ -91,8 +91,8 @@ TEST(MeanWinds, AreThoseOfEachLevel) {
 
 TEST(SteeringWind, IsTheMeanByHeightOfSixKilometres) {
   const std::vector<glm::dvec2> winds = {{10.0, 0.0}, {4.0, 2.0}, {50.0, 50.0}};
-  // The mean takes 1 km of the first layer, 4 km of the second, and 1 km of the third, which is 8
-  // km thick.
+  // The mean is over 6 km: 1 km of the first layer, 4 km of the second, and 1 km of the third,
+  // which is 8 km thick.
   const glm::dvec2 mean = SteeringWind_m_per_s(winds, {300.0, 1300.0, 5300.0, 13300.0});
   EXPECT_NEAR(mean.x, (10.0 + 16.0 + 50.0) / 6.0, 1e-9);
   EXPECT_NEAR(mean.y, (8.0 + 50.0) / 6.0, 1e-9);

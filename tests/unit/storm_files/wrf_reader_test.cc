@@ -224,8 +224,8 @@ TEST_F(WrfReader, TakesCellsWithoutAirAsMissing) {
   EXPECT_NEAR(ColumnPath(*fields, 0, 3, 1), 8 * layer, 1e-4);
 }
 
-// The top layer has all the mass. It must not be cut off when the layers of a later time rise above
-// the grid.
+// The top layer contains all the mass. The mass must not be lost when the layers of a later time
+// rise above the storm's grid.
 TEST_F(WrfReader, AddsCellsForCondensateAboveTheStormsGrid) {
   SyntheticWrf file;
   file.mixing_ratios["QICE"] = [](const WrfCell& cell) { return cell.level == 7 ? 1e-3 : 0.0; };

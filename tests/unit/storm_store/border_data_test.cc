@@ -65,8 +65,8 @@ TEST_F(BorderDataTest, IsFoundWhereCoastsAndBordersAre) {
   EXPECT_EQ(BorderData::Find(folder_.Path().string()), nullptr);
 }
 
-// The places are from PROJ 9.1.1, as in map_projection_test.cc: two parallels, the south, the date
-// line.
+// The expected places are from PROJ 9.1.1, as in map_projection_test.cc. The cases are a cone with
+// two parallels, the southern hemisphere, and the date line.
 TEST_F(BorderDataTest, LinesAreWhereTheirPlacesAreProjected) {
   const glm::dvec2 there_m(120e3, -80e3);
   struct Case {
@@ -106,7 +106,8 @@ TEST_F(BorderDataTest, ParallelsAreCurves) {
   }
 }
 
-// One of the 65536 coordinates is netCDF's code for a missing value.
+// One of the 65536 possible coordinates equals netCDF's code for a missing value, and must still
+// count as a coordinate.
 TEST_F(BorderDataTest, EveryCoordinateIsOne) {
   const int middle = 36 * 5 + 26;  // 30 to 40 degrees north, 100 to 90 west
   Write({{.bin = middle, .points = {{32'769, 30'000}, {32'769, 32'769}, {32'769, 50'000}}}}, {});
@@ -138,8 +139,8 @@ TEST_F(BorderDataTest, LinesAtSeaGroundedIceAndSmallIslandsAreLeftOut) {
   EXPECT_EQ(paint({}, {Through(place, 3)}), 0.0F);
 }
 
-// The set must be as fine as the texels: 1024 texels are 0.6 km wide for 600 km, and 1.4 km for
-// 1400 km.
+// The store must read a set of borders whose resolution matches the map's texels. A map has 1024
+// texels, so a texel is 0.6 km wide in a map of 600 km, and 1.4 km in a map of 1400 km.
 TEST_F(BorderDataTest, ASetThatIsAsFineAsTheMapIsRead) {
   const glm::dvec2 place(-96.2, 36.7);
   Write({}, {Through(place)}, 'h');
@@ -154,11 +155,12 @@ TEST_F(BorderDataTest, LinesGoOnBeyondTheDomain) {
   Write({SegmentThrough({{-99.9, 36.7}, {-90.1, 36.7}})}, {});
   const auto map = Map(plains_, 100);
   const auto projection = volume::MapProjection::Of(plains_.projection, {36.7, -96.2});
-  EXPECT_GT(PaintedAt(*map, *projection->WorldOf({36.7, -95.2})), 0.9F);      // 89 km east
-  const float fading = PaintedAt(*map, *projection->WorldOf({36.7, -94.8}));  // 125 km
+  EXPECT_GT(PaintedAt(*map, *projection->WorldOf({36.7, -95.2})),
+            0.9F);  // a place 89 km to the east
+  const float fading = PaintedAt(*map, *projection->WorldOf({36.7, -94.8}));  // 125 km to the east
   EXPECT_GT(fading, 0.3F);
   EXPECT_LT(fading, 0.7F);
-  EXPECT_EQ(PaintedAt(*map, *projection->WorldOf({36.7, -94.4})), 0.0F);  // 160 km
+  EXPECT_EQ(PaintedAt(*map, *projection->WorldOf({36.7, -94.4})), 0.0F);  // 160 km to the east
 }
 
 TEST_F(BorderDataTest, WithoutAMapProjectionOrWithDamagedDataThereIsNone) {
@@ -179,7 +181,7 @@ TEST_F(BorderDataTest, WithoutAMapProjectionOrWithDamagedDataThereIsNone) {
   EXPECT_EQ(Map(plains_), nullptr);
 }
 
-// The store adds the map, which it does only for storms with a place.
+// The store adds a border map to a storm, but only if the storm has geographical coordinates.
 TEST_F(BorderDataTest, TimesOfAStormShareItsMap) {
   Write({Through({-96.85, 35.1})}, {});
   testing::SyntheticWrf file;

@@ -1,5 +1,5 @@
-// Tests that the catalogue follows its folders: scans with a given time, and a store with the
-// kernel's events.
+// Tests that the catalogue follows changes in its folders. Some tests scan the folders at given
+// times, others use a store that gets the kernel's file events.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ std::string Bytes(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Writes in place, so that the file stays the same inode.
+// Writes the file in place, so that its inode stays the same.
 void Put(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
@@ -50,7 +50,8 @@ class LiveFolder : public ::testing::Test {
     fs::create_directory(elsewhere_);
   }
 
-  // Returns the bytes of a file with those hours, with that much cloud water in it.
+  // Returns the bytes of a file with the times of these hours, whose cloud water has the mixing
+  // ratio `cloud`.
   std::string WrfBytes(const std::vector<int>& hours, double cloud = 1e-3) {
     SyntheticWrf file;
     file.top_m = top_m_;
@@ -107,8 +108,8 @@ class LiveFolder : public ::testing::Test {
     return *std::move(store);
   }
 
-  // Advances the stores' time until `condition()` is true. Elsewhere it stands still. An hour, the
-  // usual pause between scans, never passes.
+  // Advances the stores' clock until `condition()` is true. At all other times the clock stands
+  // still. The test never advances it by an hour, the usual pause between scans.
   template <typename Condition>
   bool Eventually(Condition condition) {
     return testing::WaitFor([&] {
@@ -131,8 +132,8 @@ class LiveFolder : public ::testing::Test {
   const std::string elsewhere_ = folder_.File("elsewhere");
 };
 
-// One of two folders hangs. Changes in the other are still found, and the storms of the first
-// remain.
+// One of two folders hangs. Changes in the other folder are still found, and the storms of the
+// hanging folder remain in the catalogue.
 TEST_F(LiveFolder, AFolderThatHangsHoldsUpNoOther) {
   const std::string other = folder_.File("other");
   fs::create_directories(other);
@@ -185,7 +186,8 @@ TEST_F(LiveFolder, DoesNotOfferAFileWhoseSizeMoves) {
   const std::string whole = WrfBytes({0});
   CatalogueScan scan = Scanner();
   TimesAt(scan, seconds(0));
-  // The file is readable at any time, but it keeps changing.
+  // The file is readable at any time, but it changes again before it has been unchanged for long
+  // enough.
   for (int second = 1; second < 20; second += 2) {
     Put(File(0), whole + std::string(static_cast<std::size_t>(second), '\0'));
     EXPECT_THAT(TimesAt(scan, seconds(second)), ElementsAre()) << second;
@@ -403,7 +405,7 @@ TEST_F(LiveFolder, AFileThatIsReplacedKeepsItsTimesUntilTheOtherIsRead) {
   EXPECT_THAT(TimesAt(scan, seconds(10)), ElementsAre());
 }
 
-// This file was not moved into place complete.
+// The test writes the file in place, so the file is visible before it is complete.
 TEST_F(LiveFolder, AFileThatIsWrittenInTheOthersPlaceHasNoTimesUntilItIsComplete) {
   PutOld(File(0), WrfBytes({0}));
   CatalogueScan scan = Scanner();
@@ -440,7 +442,8 @@ TEST_F(LiveFolder, NothingIsReadOfAFileThatIsNotTheOneDescribed) {
   }));
 }
 
-// WRF does this when it is started again: the file stays the same, and its size may too.
+// WRF overwrites its output in this way when it is started again. The inode stays the same, and the
+// size may stay the same.
 TEST_F(LiveFolder, AFileThatIsWrittenAnewIsReadAgain) {
   PutOld(File(0), WrfBytes({0}, 1e-3));
   const auto store = Open();

@@ -37,7 +37,7 @@ std::vector<float> Raw(const char* name, std::size_t record, std::size_t levels)
   return values;
 }
 
-// The values are in SI units; the density is that of dry air.
+// The state of one cell in one layer of the file, in SI units. `density` is the density of dry air.
 struct Layer {
   double density;
   double temperature;
@@ -64,7 +64,8 @@ std::vector<Layer> ReadLayers(std::size_t record) {
   return layers;
 }
 
-// Returns the result of `read` for a record. It is read once for consecutive tests of one record.
+// Returns the result of `read` for a record (time). The result is kept, so that consecutive tests
+// of one record read it only once.
 template <typename Value, typename Read>
 const Value& Kept(std::size_t record, Read read) {
   static std::optional<std::pair<std::size_t, Value>> kept;
@@ -240,7 +241,7 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
                               (at / kNx - kNy / 2 + 0.5) * 1000.0);
     EXPECT_EQ(peak.column_position_m, column_m) << variable;
     EXPECT_NEAR(peak.column_kg_per_m2 / path[static_cast<std::size_t>(at)], 1.0, 3e-5);
-    // The grid's cells are means of the layers that they overlap.
+    // The values of the grid's cells are means over the file's layers that the cells overlap.
     const auto q = Raw(variable.c_str(), kRecord, kLevels);
     const auto column_of = [](double x_m, int cells) {
       return static_cast<std::size_t>(std::lround(x_m / 1000.0 - 0.5 + cells / 2.0));
@@ -436,7 +437,8 @@ TEST(FinerSampleStorm, TellsTheMotionOfItsAir) {
   const auto deformed = storm_files::ReadWrfTime(*metadata, 1, std::nullopt, {});
   ASSERT_TRUE(deformed.ok()) << deformed.status();
   EXPECT_EQ(deformed->motion.source, volume::TurbulenceSource::kDeformation);
-  // The energy from deformation should be that of the model.
+  // The energy that is computed from the wind's deformation should agree with the model's own
+  // turbulent energy.
   double stirred = 0.0;
   double calm = 0.0;
   double stirred_count = 0.0;

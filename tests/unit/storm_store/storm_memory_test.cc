@@ -32,7 +32,7 @@ constexpr int kManyTimes = 64;
 constexpr int kCells = 64;
 constexpr std::size_t kTimeBytes = std::size_t{kCells} * kCells * kCells * sizeof(float);
 
-// A storage whose answers can be held back.
+// A simulated storage whose responses a test can hold back.
 class Storage {
  public:
   void Hang() {
@@ -178,7 +178,7 @@ TEST_F(StormMemory, SixtyFourTimesThatAreHeldKeepWithinTheBudget) {
     EXPECT_TRUE(base::DetailsOf(fields.status()).retry_after.has_value());
     EXPECT_THAT(std::string(fields.status().message()), HasSubstr("storm 'storm.cube'"));
   }
-  // Reading needs additional memory.
+  // Reading needs additional memory, so not every time that fits can be read.
   EXPECT_GE(held.size(), 8U);
   EXPECT_EQ(held.size() + static_cast<std::size_t>(refused), std::size_t{kManyTimes});
   EXPECT_GE(budget->Used(base::MemoryUse::kFields), held.size() * kTimeBytes);
@@ -214,7 +214,7 @@ TEST_F(StormMemory, CellsWhoseNumberOverflowsAreRefusedBeforeAnythingIsAllocated
 }
 
 TEST_F(StormMemory, ATimeBeyondTheBudgetIsRefusedBeforeItIsRead) {
-  // A time has 64 MB.
+  // The fields of one time need 64 MB, which is more than the budget.
   const auto budget = base::MemoryBudget::Make({.bytes = std::size_t{32} << 20U});
   const auto store = Open({Cube("large", 250)}, {.memory = budget, .read_ahead = 0});
   const absl::Status refused = store->Get("large.cube", 0, {}).status();
@@ -243,7 +243,8 @@ TEST_F(StormMemory, AStorageThatHangsIsNamedAndHoldsUpNothingThatIsInMemory) {
   EXPECT_TRUE(store->Get("near.cube", 0, {}).ok());
   EXPECT_EQ(store->Storms().size(), 2U);
   EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 9, {}).status()));
-  // Otherwise the store would wait for its thread, while time stands still.
+  // The storage must respond before the store is destroyed. Otherwise the store would wait for its
+  // reading thread, and no time passes.
   storage_->Answer();
 }
 
@@ -254,7 +255,8 @@ TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherThread) {
   ASSERT_TRUE(store->Get("b.cube", 0, {}).ok());
   storage_->Hang();
   auto far = GetFar(*store, 0);
-  // These reads wait behind it: one of another storage, and one of the same storage.
+  // Two more reads wait behind the hanging read: one from another storage, and one from the same
+  // storage.
   auto behind =
       std::async(std::launch::async, [&] { return store->Get("b.cube", 1, {}).status(); });
   auto behind_it =
@@ -264,11 +266,11 @@ TEST_F(StormMemory, AStorageThatHangsLeavesOthersToAnotherThread) {
   EXPECT_TRUE(absl::IsDeadlineExceeded(far.get()));
   EXPECT_TRUE(absl::IsDeadlineExceeded(behind_it.get()));
   EXPECT_TRUE(behind.get().ok());
-  // The hang is now known, so other reads begin at once, while time stands still.
+  // The storage is now known to hang, so other reads begin at once, although no time passes.
   double progress = 0.0;
   EXPECT_TRUE(store->Get("b.cube", 2, [&](double share) { progress = share; }).ok());
   EXPECT_EQ(progress, 0.5);
-  // Nothing else is read from the storage that hangs, from any folder.
+  // No other file is read from the hanging storage, whichever folder the file is in.
   const int before = storage_->Passed();
   EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("farther.cube", 0, {}).status()));
   EXPECT_TRUE(absl::IsDeadlineExceeded(store->Get("far.cube", 1, {}).status()));
@@ -335,7 +337,7 @@ TEST_F(StormMemory, PlaybackGoesOnBesideAStorageThatHangs) {
   ASSERT_TRUE(WaitFor([&] { return storage_->Passed() == 1; }));
   time_.Advance(kDeadline + milliseconds(1));
   EXPECT_TRUE(absl::IsDeadlineExceeded(hung.get()));
-  // The hang is known, so these are returned while time stands still.
+  // The storage is known to hang, so these calls return at once, although no time passes.
   for (int time = 1; time < 8; ++time) {
     EXPECT_TRUE(store->Get("near.cube", time, {}).ok()) << time;
   }

@@ -150,7 +150,7 @@ TEST_F(StormSeries, ReadsATimeOnceWhileItIsHeld) {
 TEST_F(StormSeries, LetsTheLeastRecentlyUsedGo) {
   const auto store = Open({.byte_budget = 3 * one_time_, .read_ahead = 0});
   for (const int time : {0, 1, 2}) ASSERT_TRUE(store->Get("series", time, {}).ok());
-  ASSERT_TRUE(store->Get("series", 0, {}).ok());  // time 1 is now the oldest
+  ASSERT_TRUE(store->Get("series", 0, {}).ok());  // time 1 is now the least recently used
   ASSERT_TRUE(store->Get("series", 3, {}).ok());
   EXPECT_EQ(store->Peek("series", 1), nullptr);
   for (const int time : {0, 2, 3}) EXPECT_NE(store->Peek("series", time), nullptr) << time;
@@ -260,7 +260,7 @@ TEST_F(StormSeries, EndsWhileItReadsAhead) {
   for (int i = 0; i < 20; ++i) {
     const auto store = Open({.read_ahead = 5});
     ASSERT_TRUE(store->Get("series", 0, {}).ok());
-    // The store ends at a different stage each time.
+    // In each round the store is destroyed at a different stage of its reading.
     const auto read = static_cast<std::size_t>(i % kTimes);
     ASSERT_TRUE(WaitFor([&] { return store->TimesInMemory("series").size() >= read; }));
   }

@@ -156,7 +156,7 @@ TEST_F(Port, ASlowClientIsCutOff) {
 }
 
 TEST_F(Port, SilentClientsHoldUpNobody) {
-  // These are more clients than allowed.
+  // The test connects more clients than the port allows.
   std::vector<boost::asio::ip::tcp::socket> silent;
   for (int i = 0; i < 100; ++i) silent.push_back(Connect());
   EXPECT_THAT(Get("/healthz"), StartsWith("HTTP/1.1 200"));

@@ -78,7 +78,8 @@ TEST(BorderMapTest, DistancesAreThoseToTheNearestOfManyLines) {
   }
 }
 
-// The offsets from two lines cancel halfway between them.
+// Halfway between two lines, the stored offsets to the nearest line have opposite directions, and
+// interpolation makes them cancel.
 TEST(BorderMapTest, NothingIsPaintedBetweenTwoLines) {
   for (const double apart_m : {1'250.0, 2'000.0, 11e3}) {
     const BorderLine south{{{-10e3, 0.0}, {40e3, 0.0}}, 1.0F};

@@ -59,7 +59,7 @@ TEST_F(LandSurfaceTest, HasWaterForestAndSnow) {
   EXPECT_EQ(sea.water, 1.0F);
   const LandSample forest = LandAt(fields.land, fields.grid, {3000.0, -5000.0});
   EXPECT_EQ(forest.water, 0.0F);
-  // A colour has eight bits.
+  // The tolerance covers that a colour is stored with eight bits a channel.
   EXPECT_NEAR(Luminance(forest.reflectance), 0.12F, 0.003F);
   EXPECT_GT(forest.reflectance.y, 1.3F * forest.reflectance.x);
   const LandSample snow = LandAt(fields.land, fields.grid, {3000.0, 5000.0});
@@ -68,8 +68,9 @@ TEST_F(LandSurfaceTest, HasWaterForestAndSnow) {
   EXPECT_NEAR(fields.land.mean_albedo, 0.5 * 0.08 + 0.25 * 0.12 + 0.25 * 0.5, 0.002);
 }
 
-// The coast lies between the middles of the columns on either side, within a tenth of a cell. The
-// land's colour continues below the water, so that no other colour appears there.
+// The coast lies halfway between the middles of the columns on either side, within a tenth of a
+// cell. The land's colour continues below the water, so that interpolation gives no third colour at
+// the coast.
 TEST_F(LandSurfaceTest, TheCoastIsWhereHalfIsWater) {
   const HydrometeorFields fields = Read(Coast());
   EXPECT_EQ(LandAt(fields.land, fields.grid, {-80.0, -5000.0}).water, 1.0F);

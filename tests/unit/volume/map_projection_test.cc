@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(
                            {36.7, -96.2},
                            {120000.0, -80000.0},
                            {35.937287006, -94.853252053}},
-                      // There is one parallel, in the south.
+                      // The next case has one standard parallel, in the southern hemisphere.
                       Case{"+proj=lcc +lat_1=-30 +lat_2=-30 +lat_0=-30 +lon_0=140",
                            {-33.0, 138.0},
                            {120000.0, -80000.0},
@@ -69,7 +69,7 @@ TEST(MapProjectionTest, DegreesAreEvenInAPlateCarree) {
   ASSERT_TRUE(map.has_value());
   const auto place = map->PlaceOf({120000.0, -80000.0});
   ASSERT_TRUE(place.has_value());
-  EXPECT_NEAR(place->latitude_deg, 49.280568575, 1e-8);  // by PROJ
+  EXPECT_NEAR(place->latitude_deg, 49.280568575, 1e-8);  // the value that PROJ computes
   EXPECT_NEAR(place->longitude_deg, 9.678854915, 1e-8);
   EXPECT_FALSE(map->PlaceOf({0.0, 5e6}).has_value()) << "beyond the pole";
 }

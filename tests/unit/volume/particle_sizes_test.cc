@@ -119,12 +119,13 @@ TEST_F(ParticleSizesTest, FollowFromNumbers) {
   const std::size_t counted = fields.grid.Offset(1, 1, 3);
   EXPECT_NEAR(InverseRadius_per_m(rain.sizes, counted) * expected_m, 1.0, 1e-3);
   EXPECT_EQ(rain.sizes.origin, SizeOrigin::kNumber);
-  // No drops are counted in this cell, so it has the observed radius.
+  // The file has a number of drops of 0 in this cell, so the cell gets the observed default radius.
   const std::size_t uncounted = fields.grid.Offset(0, 1, 3);
   EXPECT_NEAR(InverseRadius_per_m(rain.sizes, uncounted) * 6.7e-4, 1.0, 1e-3);
 }
 
-// Returns the effective radius in a cell whose level differs from the levels of the others.
+// Returns the effective radius of a field in cell (1, 1, 3), whose level differs from the levels of
+// the other tested cells.
 double RadiusIn_m(const HydrometeorFields& fields, std::size_t field) {
   return 1.0 / InverseRadius_per_m(fields.fields[field].sizes, fields.grid.Offset(1, 1, 3));
 }
@@ -149,7 +150,7 @@ TEST_F(ParticleSizesTest, RadiiComeBeforeNumbersAndTheSchemeLast) {
   fields = Read(file);
   EXPECT_EQ(fields.fields[0].sizes.name, "WSM6");
   EXPECT_EQ(fields.fields[0].sizes.origin, SizeOrigin::kScheme);
-  // 1.5 / (pi 1000 3e8 / 9.4321e-4)^(1/3)
+  // The expected radius is 1.5 / (pi 1000 3e8 / 9.4321e-4)^(1/3) m.
   EXPECT_NEAR(RadiusIn_m(fields, 0), 1.5004e-5, 1e-8);
   file.microphysics = 10;
   fields = Read(file);
@@ -169,7 +170,7 @@ TEST_F(ParticleSizesTest, TheNextSourceFillsTheGapsOfTheOneBefore) {
   file.units["QNRAIN"] = "kg-1";
   const HydrometeorFields fields = Read(file);
   EXPECT_EQ(fields.fields[0].sizes.origin, SizeOrigin::kNumber);
-  // 1.5 / (pi 1000 8e6 / 9.4321e-4)^(1/4)
+  // The expected radius is 1.5 / (pi 1000 8e6 / 9.4321e-4)^(1/4) m.
   EXPECT_NEAR(RadiusIn_m(fields, 0), 6.602e-4, 1e-6);
 }
 
@@ -181,12 +182,13 @@ TEST_F(ParticleSizesTest, OfTheSchemeFollowFromTheAir) {
   file.mixing_ratios["QSNOW"] = [](const WrfCell&) { return 1e-3; };
   file.mixing_ratios["QGRAUP"] = [](const WrfCell&) { return 1e-3; };
   HydrometeorFields fields = Read(file);
-  // 1.5 / (pi 100 2e6 / 9.4321e-4)^(1/4)
+  // The expected radius is 1.5 / (pi 100 2e6 / 9.4321e-4)^(1/4) m.
   EXPECT_NEAR(RadiusIn_m(fields, 0), 1.6604e-3, 2e-6);
   EXPECT_EQ(fields.fields[1].sizes.name, "WSM6 with hail");
-  // 1.5 / (pi 700 4e4 / 9.4321e-4)^(1/4), for 700 kg/m3 where 500 are drawn
+  // The expected radius is 1.5 / (pi 700 4e4 / 9.4321e-4)^(1/4) m for hail of 700 kg/m3. The drawn
+  // particles have 500 kg/m3.
   EXPECT_NEAR(RadiusIn_m(fields, 1), 2.7143e-3 * 1.4, 4e-6);
-  // The air is 30 K colder, with 253.30 K and 1.0831 kg/m3.
+  // The air is made colder. It then has 253.30 K and 1.0831 kg/m3.
   file.potential_temperature_K = 270.0;
   fields = Read(file);
   EXPECT_NEAR(RadiusIn_m(fields, 0), 9.478e-4, 2e-6);

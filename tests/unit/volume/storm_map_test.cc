@@ -15,7 +15,8 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-// Returns 6 x 4 columns of 1 km and 5 levels of 200 m from 100 m up, all empty.
+// Returns an empty storm of 6 x 4 columns, each 1 km wide, with 5 levels of 200 m that begin at a
+// height of 100 m.
 HydrometeorFields Empty(std::initializer_list<physics::Hydrometeor> hydrometeors,
                         Quantity quantity) {
   HydrometeorFields fields;
@@ -73,8 +74,8 @@ TEST(StormMapTest, PeaksAreCellsAndColumnsMiddles) {
 TEST(StormMapTest, TheLargestMixingRatioMayBeInThinnerAir) {
   HydrometeorFields fields = Empty({physics::Hydrometeor::kSnow}, Quantity::kMixingRatio);
   fields.air = {{1, 1}, {1.2F, 1.1F, 1.0F, 0.5F, 0.4F}};
-  At(fields, 0, 2, 2, 0) = 0.0012F;  // 1 g/kg
-  At(fields, 0, 3, 2, 4) = 0.0010F;  // 2.5 g/kg
+  At(fields, 0, 2, 2, 0) = 0.0012F;  // the mixing ratio is 1 g/kg
+  At(fields, 0, 3, 2, 4) = 0.0010F;  // the mixing ratio is 2.5 g/kg
   const FieldPeak peak = MapOf(fields, {{0}, 192, false}).peaks[0];
   EXPECT_FLOAT_EQ(peak.value, 0.0025F);
   EXPECT_FLOAT_EQ(static_cast<float>(peak.kg_per_m3), 0.0010F);

@@ -1,4 +1,5 @@
-// Chooses the comparison: another time, another storm or run, or the settings as they are now.
+// The panel that chooses what is compared. A shows the session, and B is the second picture. B can
+// show another time, another storm or run, or A with its present settings, which B then keeps.
 import { awayInWords } from "../../core/comparison";
 import { timeInWords } from "../../core/moment";
 import { Choice, Segments } from "../controls";

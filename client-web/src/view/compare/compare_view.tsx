@@ -1,4 +1,5 @@
-// B's picture next to A's or over it, the names of both, and the handle between them.
+// The second picture of a comparison (B) next to or over the session's picture (A), the names of
+// both pictures, and the handle between them.
 import { useEffect, useRef } from "preact/hooks";
 import { timeInWords } from "../../core/moment";
 import { nameOfStorm } from "../../core/storm_names";
@@ -29,7 +30,7 @@ export function CompareView({ page }: { page: Page }) {
         role="img"
         aria-label={`To compare: ${names.b}`}
       />
-      {/* Each name is in its half, and no wider than the free part of that half. */}
+      {/* Each picture's name is in its half, and no wider than the free part of that half. */}
       <div class="half" style={{ clipPath: `inset(0 calc(100% - ${edge}) 0 0)`, "--edge": edge }}>
         <p class="compared-name a" data-testid="name-a">
           A · {names.a}

@@ -1,5 +1,6 @@
-// The session of B. It is a second session that only this page uses, and its scene follows A's. It
-// is closed when the comparison ends.
+// The session of B, the second picture of a comparison. It is a session that only this page uses,
+// and its scene follows the scene of A, the page's first picture. The session is closed when the
+// comparison ends.
 import { create } from "@bufbuild/protobuf";
 import type { Later } from "../../core/newest";
 import { SceneSync } from "../../core/scene_sync";
@@ -23,7 +24,7 @@ export interface ComparedSteps {
   painted(frame: Frame): void;
   // Reports SceneSync.agreed of B's session.
   agreed(revision: bigint | undefined): void;
-  // Reports something that B cannot show.
+  // Reports a part of the scene that B cannot show; undefined if B shows everything.
   problem(text: string | undefined): void;
   // Reports why nothing arrives from B's session; undefined once the session exists.
   interrupted(reason: string | undefined): void;
@@ -174,7 +175,7 @@ export class ComparedSession implements SessionListener {
     return true;
   }
 
-  // A newer picture ends the problem.
+  // Clears the problem if the picture on the screen is newer than the problem.
   #painted(frame: Frame): void {
     if (frame.sceneRevision >= this.#problemRevision) this.#steps.problem(undefined);
     this.#steps.painted(frame);

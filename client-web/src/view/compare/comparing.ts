@@ -1,5 +1,6 @@
-// The comparison. It holds what B shows, runs B's session while there is a B, and keeps B's scene
-// in step with A's.
+// The comparison of A, the session's picture, with B, a second picture. This class holds the choice
+// of what B shows, runs B's session during the comparison, and updates B's scene when A's scene
+// changes.
 import { ConnectError } from "@connectrpc/connect";
 import { computed, effect, signal, untracked } from "@preact/signals-core";
 import { cameraOfPose, type Pose, poseOfCamera } from "../../core/camera";
@@ -22,14 +23,15 @@ import { attachPointer } from "../pointer";
 import type { SeenPicture } from "../probing";
 import { ComparedSession } from "./compared_session";
 
-// A fraction of the window's width from the left, or the picture's own rectangle.
+// The area in which marks are shown: the left part of the window, as a fraction of its width, or
+// the picture's own rectangle.
 export type MarkedView = number | "picture";
 
 export interface ComparingSteps {
   move(motion: (pose: Pose) => Pose): void;
-  // Returns the active tool, which takes places over A.
+  // Returns the active tool, which expects positions over A.
   tool(): PictureTool | undefined;
-  // These report a click or a double click on B.
+  // clicked() and doubleClicked() report a click or a double click on B.
   clicked(point: PicturePoint, picture: SeenPicture): void;
   doubleClicked(point: PicturePoint, picture: SeenPicture): void;
   // Reports that B will show something else.
@@ -44,21 +46,23 @@ export class Comparing {
   readonly frame = signal<Frame | undefined>(undefined);
   // A text about a part of the scene that B cannot show.
   readonly problem = signal<string | undefined>(undefined);
-  // Why no picture of B arrives.
+  // Why no picture of B arrives; undefined if pictures arrive.
   readonly interrupted = signal<string | undefined>(undefined);
-  // A's fraction of the window, while one picture is swiped over the other.
+  // The fraction of the window's width that shows A, in the layout in which a handle swipes one
+  // picture over the other.
   readonly swipe = signal(0.5);
   // The description of B's storm, if B shows another storm.
   readonly other = signal<StormDescription | undefined>(undefined);
-  // Why B's storm is not described.
+  // Why the server could not describe B's storm; undefined if it could.
   readonly undescribed = signal<string | undefined>(undefined);
   readonly time = computed((): TimeOfB => {
     const [scene, choice] = [this.#state.scene.value, this.choice.value];
     if (choice === undefined) return { index: scene.timeIndex ?? 0, awayS: 0 };
     return timeOfB(scene, choice, { storm: this.#state.storm.value, other: this.other.value });
   });
-  // The area in which marks and pointers are shown. They are places of A's domain, and B may show a
-  // storm of another domain. In the side-by-side layout they stay in A.
+  // The area in which marks and pointers are shown. Marks and pointers have positions in A's
+  // domain, and B may show a storm of another domain. In the side-by-side layout they are shown
+  // only in A.
   readonly markedView = computed((): MarkedView => {
     if (this.choice.value?.layout === "side") return "picture";
     return this.#isOfADomain.value ? 1 : this.swipe.value;
@@ -99,7 +103,8 @@ export class Comparing {
           void this.#describe(stormId);
         });
       }),
-      // This describes B's storm again, because it may have new times.
+      // This effect requests the description of B's storm again when the list of storms changes,
+      // because the storm may have new times.
       effect(() => {
         void this.#state.storms.value;
         untracked(() => void this.#describe(this.choice.peek()?.stormId));
@@ -173,7 +178,7 @@ export class Comparing {
     const size = this.#size.value;
     const pose = this.#state.viewPose.value;
     if (choice === undefined || size.widthPx === 0 || pose === undefined) return undefined;
-    // Without the description, the time of B that corresponds to A's is unknown.
+    // Without the description of B's storm, the time that corresponds to A's time is unknown.
     const described = this.other.value !== undefined || this.undescribed.value !== undefined;
     if (choice.stormId !== undefined && !described) return undefined;
     return comparedScene(this.#state.scene.value, choice, {
@@ -184,7 +189,8 @@ export class Comparing {
     });
   }
 
-  // Passes strokes and pointer places on B to the same places of A, because others see A.
+  // Returns a tool that moves strokes and pointer positions on B to the same positions on A,
+  // because other people see only A.
   #toolOverA(): PictureTool | undefined {
     const tool = this.#steps.tool();
     // If B's storm has another domain, places of B do not correspond to places of A.
@@ -272,7 +278,7 @@ export class Comparing {
       this.other.value = described;
       this.undescribed.value = undefined;
     } catch (error) {
-      // An older description is kept.
+      // If an older description of the storm exists, it is kept, and the error is not shown.
       if (this.choice.peek()?.stormId !== stormId || this.other.peek() !== undefined) return;
       const why = error instanceof ConnectError ? error.rawMessage : String(error);
       this.undescribed.value = `The times of B are not known: ${why}`;

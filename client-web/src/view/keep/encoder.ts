@@ -1,4 +1,5 @@
-// True if this browser can encode video. This is known without loading the code that writes movies.
+// Says whether this browser can encode video. This file is separate so that the code that writes
+// movies need not be loaded.
 
 export const NO_VIDEO_ENCODER =
   "the browser encodes video only on pages by HTTPS or from localhost";

@@ -155,8 +155,8 @@ function Movie({ page }: { page: Page }) {
   const chosen = useSize(page);
   const [form, setForm] = useState<Partial<Omit<MovieDraft, "widthPx" | "heightPx">>>({});
   const change = (part: typeof form) => setForm({ ...form, ...part });
-  // The defaults are the times from the one shown to the newest. If the newest is shown, they are
-  // all times.
+  // By default the movie shows the times from the present time to the newest. If the newest time is
+  // shown, the movie shows all times.
   const shown = state.timeIndex.value;
   const draft = {
     ...MOVIE,

@@ -1,5 +1,5 @@
-// Saves files, one at a time: pictures that contain the scene, scenes, movies. The progress is a
-// signal.
+// Saves files, one at a time: scenes, movies, and pictures that contain their scene. The progress
+// is published as a signal.
 import type { Transport } from "@connectrpc/connect";
 import { ConnectError } from "@connectrpc/connect";
 import { signal } from "@preact/signals-core";
@@ -48,7 +48,7 @@ export function workInWords({ what, share }: Work): string {
   return `${what}: ${Math.round(100 * share)} %`;
 }
 
-// A request made in the panel that was refused.
+// A request in the panel that was refused, and the reason.
 export interface Refusal {
   readonly asked: Asked;
   readonly why: string;
@@ -69,9 +69,9 @@ export class Keeper {
   readonly #steps: KeeperSteps;
   readonly #remembered: RememberedMovies;
   #working: AbortController | undefined;
-  // True if the file being made is not lost with the page.
+  // True if the file that is being made is not lost when the page is closed.
   #outlivesPage = false;
-  // The file being made; undefined if there is none.
+  // The file that is being made; undefined if no file is being made.
   readonly work = signal<Work | undefined>(undefined);
   // The last refusal, until the next request.
   readonly refusal = signal<Refusal | undefined>(undefined);
@@ -81,7 +81,7 @@ export class Keeper {
     state: PageState,
     notes: Notes,
     steps: KeeperSteps,
-    // The storage of this tab only.
+    // The browser's storage for this tab only.
     tabStore: TextStore | undefined,
   ) {
     this.#calls = new RenderCalls(transport);
@@ -163,7 +163,7 @@ export class Keeper {
     try {
       return (await (await movieFile()).codecOf({ ...size, format: "mp4" })) !== "avc";
     } catch {
-      // The reason is shown when the movie is made.
+      // The error is ignored here, because it is shown when the movie is made.
       return false;
     }
   }
@@ -272,7 +272,8 @@ export class Keeper {
     this.#state.dismiss(subject);
   }
 
-  // Returns the scene. While this page looks around, it has the camera of the own view.
+  // Returns the scene that is shown. While this page looks around, this scene has the camera of the
+  // own view.
   sceneShown(): Scene {
     const scene = this.#state.scene.peek();
     const frame = this.#state.frame.peek();

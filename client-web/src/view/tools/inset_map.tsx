@@ -1,6 +1,6 @@
-// The inset map: the storm's column water path, coasts and borders, the camera with its angle of
-// view, the sun. A click moves the camera to that place. A drag from there sets its direction. A
-// double click turns the camera around that place.
+// The inset map shows the storm's water path (mass of water in each column), coasts and borders,
+// the camera with its angle of view, and the sun. A click moves the camera to that place. A drag
+// from there sets the camera's direction. A double click makes the camera turn around that place.
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Pose, TopDownPose } from "../../core/camera";
 import { type Extent, extentOf, placeOnMap, standOf, worldOfMap } from "../../core/map_frame";
@@ -15,7 +15,7 @@ export interface MapSteps {
   turnAround(placeM: readonly [number, number]): void;
 }
 
-// A second click within this time makes a double click.
+// Maximum time in milliseconds between the two clicks of a double click.
 const DOUBLE_CLICK_MS = 230;
 const DRAG_PX = 5;
 // Step of an arrow key, as a fraction of the map's width.
@@ -79,7 +79,8 @@ const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
 
 const clamp = (share: number) => Math.min(1, Math.max(0, share));
 
-// Returns the domain. Before the server has sent the map, it is that of the storm's description.
+// Returns the domain that the map covers. Before the server has sent the map, the domain comes from
+// the storm's description.
 function domainOf(map: GetStormMapResponse | undefined, state: PageState): Extent {
   const grid = state.storm.value?.grid;
   const low = map?.low ?? grid?.low;
@@ -179,8 +180,9 @@ function usePointer(extent: Extent, steps: MapSteps) {
   };
 }
 
-// Above this fraction of the largest water path a column is fully white. The columns' paths span
-// many powers of ten.
+// Water paths as fractions of the map's largest water path. A column above WHITE_SHARE is fully
+// white, and FAINTEST_SHARE is the smallest visible path. The scale in between is wide because
+// water paths span many powers of ten.
 const WHITE_SHARE = 0.6;
 const FAINTEST_SHARE = 2e-4;
 
@@ -194,7 +196,7 @@ function WaterPath({ map, extent }: { map: GetStormMapResponse; extent: Extent }
     for (let row = 0; row < map.heightPx; row += 1) {
       for (let column = 0; column < map.widthPx; column += 1) {
         const value = map.values[row * map.widthPx + column] ?? 0;
-        // The map's rows count from the south.
+        // The map's rows go from south to north, but the image's rows go from top to bottom.
         const at = 4 * ((map.heightPx - 1 - row) * map.widthPx + column);
         const share =
           value <= faintest ? 0 : Math.log(value / faintest) / Math.log(whitest / faintest);
@@ -346,8 +348,8 @@ interface ScaleBarProps {
   readonly cameraM: readonly [number, number] | undefined;
 }
 
-// Draws a scale bar in the lower left corner. While the camera is at the left, it is in the lower
-// right corner.
+// Draws a scale bar in the lower left corner. If the camera is in the left part of the map, the bar
+// is in the lower right corner.
 function ScaleBar({ extent, cameraM }: ScaleBarProps) {
   const width = extent.eastM - extent.westM;
   const lengthM = roundLength(width / 4);

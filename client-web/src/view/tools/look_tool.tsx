@@ -1,5 +1,5 @@
-// How the picture is made and how accurate it is: quality, what it leaves out, colours, exposure,
-// detail, and annotations.
+// The tool "Look". It sets quality, colours, exposure, detail and annotations. It also shows how
+// accurate the picture is and which effects it leaves out.
 import type { AnnotationChoice } from "../../core/annotations";
 import { hasSetting, isSettingOn } from "../../core/rendering";
 import type { PageState } from "../../core/state";

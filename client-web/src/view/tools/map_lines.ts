@@ -1,5 +1,5 @@
-// Coasts, borders and states as lines in world metres, by the projection of the model's grid. The
-// code and its data are loaded when a map of a storm with a place opens.
+// Coasts, borders and states as lines in world metres, by the projection of the model's grid. This
+// code and its data are loaded when the map of a storm with geographical coordinates first opens.
 import {
   type GeoProjection,
   geoAzimuthalEquidistant,
@@ -15,7 +15,7 @@ import type { Extent } from "../../core/map_frame";
 
 // Radius of WRF's Earth.
 const EARTH_M = 6_370_000;
-// Maximum distance between a curve and its approximation by lines.
+// Maximum distance between a projected curve and its approximation by straight lines.
 const PRECISION_M = 500;
 
 export interface GridPlace {
@@ -25,16 +25,16 @@ export interface GridPlace {
   readonly longitudeDeg: number;
 }
 
-// Returns the projection of a place on Earth to x east and y north of the domain's middle, in
-// metres. d3 counts y down.
+// Returns d3's projection from a longitude and latitude to metres east and north of the domain's
+// middle. d3's y coordinate increases to the south.
 export function gridProjection(place: GridPlace): GeoProjection {
   const projection = unshifted(place).translate([0, 0]).precision(PRECISION_M);
   const middle = projection([place.longitudeDeg, place.latitudeDeg]) ?? [0, 0];
   return projection.translate([-middle[0], -middle[1]]);
 }
 
-// Projections that the page does not know are approximated by an azimuthal one, which is close to
-// them near the domain's middle.
+// Returns the grid's projection without an offset. A projection that the page does not know is
+// approximated by an azimuthal projection, which is accurate near the domain's middle.
 function unshifted({ projection, latitudeDeg, longitudeDeg }: GridPlace): GeoProjection {
   const number = (name: string): number | undefined => {
     const text = new RegExp(`\\+${name}=(-?[\\d.]+)`).exec(projection)?.[1];

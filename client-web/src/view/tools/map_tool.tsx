@@ -1,5 +1,5 @@
-// The camera's position: the inset map, the kind of camera, places by distance and direction, named
-// views.
+// The tool that sets the camera's position: the inset map, the kind of camera, positions by
+// distance and direction, and named views.
 import { create } from "@bufbuild/protobuf";
 import { useState } from "preact/hooks";
 import { placeFrom } from "../../core/map_frame";
@@ -37,7 +37,8 @@ export function MapTool({ page }: { page: Page }) {
   );
 }
 
-// The server chooses absent values, so that the camera looks at the storm.
+// Makes a camera on the ground. If `azimuthDeg` is undefined, the server chooses it, so that the
+// camera looks at the storm.
 function spotterAt([xM, yM]: readonly [number, number], azimuthDeg?: number): Camera {
   return create(CameraSchema, { kind: { case: "spotter", value: { xM, yM, azimuthDeg } } });
 }

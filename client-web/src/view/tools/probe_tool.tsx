@@ -1,5 +1,5 @@
-// The probe. A click on the picture asks the server for the place, and for the values of every
-// field along the ray.
+// The probe tool. A click on the picture asks the server for the place in the storm that is seen
+// there, and for the values of every field along the ray.
 
 import { nameOfHydrometeor } from "../../core/names";
 import { displacementBetween, type Probed, placeInWords, readable } from "../../core/probe";
@@ -138,15 +138,15 @@ function FieldRow({ state, field }: { state: PageState; field: FieldAlongRay }) 
   );
 }
 
-// Models leave traces of condensate in clear air, so smaller values are shown as "< 0.001".
+// Values below this are shown as "< 0.001", because models leave traces of condensate in clear air.
 const LEAST = 0.001;
 
 function amount(value: number): string {
   return value > 0 && value < LEAST ? `< ${LEAST}` : formatNumber(value);
 }
 
-// The places where each field is strongest in the whole storm. A click turns the camera around that
-// place.
+// Buttons for the places where each field has its maximum in the whole storm. A click makes the
+// camera turn around that place.
 function Cores({ page }: { page: Page }) {
   const { state } = page;
   const map = state.stormMap.value;
@@ -175,8 +175,8 @@ function Cores({ page }: { page: Page }) {
 interface CoreProps {
   readonly page: Page;
   readonly core: FieldMaximum;
-  // True while the core belongs to the previously shown time, until the answer for this time
-  // arrives.
+  // True while the core (the place of the field's maximum) belongs to the previously shown time,
+  // until the answer for this time arrives.
   readonly old: boolean;
 }
 

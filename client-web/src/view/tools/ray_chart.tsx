@@ -10,7 +10,7 @@ import { withPart } from "../part";
 const HEIGHT_PX = 170;
 
 function valueInWords(value: number | null, units: string): string {
-  // There is no value until the pointer is on the chart.
+  // The value is null while the pointer is not on the chart.
   return value === null ? "" : `${formatNumber(value)} ${readable(units).symbol}`;
 }
 

@@ -1,4 +1,4 @@
-// The valid time, the run that contains it, and the playback of the times.
+// The tool that shows the valid time and its run, and controls playback.
 import { momentOf } from "../../core/moment";
 import { PLAY_RATES } from "../../core/playback";
 import { formatElapsed, type LengthUnits, lengthUnits } from "../../core/units";
