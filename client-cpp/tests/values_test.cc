@@ -289,10 +289,8 @@ TEST(Parameters, AnElementThatIsGoneStaysGone) {
 
 TEST(Parameters, EachHasTheFirstSentenceOfItsComment) {
   v1::Scene scene;
-  EXPECT_EQ(
-      CommentOf("thunderhead.v1.Sky.ground_albedo"),
-      "Diffuse reflectance of the ground, on average; also for the light that it gives back to "
-      "storm and air.");
+  EXPECT_EQ(CommentOf("thunderhead.v1.Sky.ground_albedo"),
+            "Diffuse reflectance of the ground, on average.");
   for (const Parameter& each : ParametersOf(scene)) {
     EXPECT_FALSE(CommentOf(each.full_name).empty()) << each.full_name;
   }
