@@ -45,8 +45,8 @@ class SharedPlaces {
 enum class Use { kReading, kWriting };
 void Populate(std::span<const std::byte> memory, Use use);
 
-// Makes the kernel provide the memory of a large array that is about to be written, in pages of 2
-// MB if possible.
+// Advises the kernel to use pages of 2 MB for the memory of a large array that is about to be
+// written.
 void PrepareForArray(std::span<std::byte> memory);
 
 // The sending end of the pipe. If the receiving process has ended, values are dropped silently.

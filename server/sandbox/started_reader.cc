@@ -86,7 +86,7 @@ std::vector<char*> Environment() {
   // map each array anew, and the kernel would clear each of its pages of 4 kB separately.
   static char malloc_keeps_memory[] =
       "GLIBC_TUNABLES=glibc.malloc.hugetlb=1:glibc.malloc.mmap_max=0:"
-      "glibc.malloc.trim_threshold=1099511627776:glibc.malloc.arena_max=1";
+      "glibc.malloc.trim_threshold=1099511627776";
   kept.push_back(malloc_keeps_memory);
   kept.push_back(nullptr);
   return kept;
