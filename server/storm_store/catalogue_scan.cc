@@ -48,7 +48,10 @@ absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
       .answers = [this](const std::string& path) { return Answers(path); },
       .found = &found_,
       .links = options_.links};
-  THUNDERHEAD_ASSIGN_OR_RETURN(result.storms, FindStorms(options_.paths, search));
+  absl::StatusOr<std::vector<CataloguedStorm>> storms = FindStorms(options_.paths, search);
+  // A scan that was stopped has not seen every file, so its storms must not replace the others.
+  if (stopping_) return absl::CancelledError("the search for storms was told to stop");
+  THUNDERHEAD_ASSIGN_OR_RETURN(result.storms, std::move(storms));
   const std::size_t gone = std::erase_if(known_, [this](const auto& entry) {
     const auto hangs = [&entry](const std::string& path) { return entry.first.starts_with(path); };
     return entry.second.scan != scans_ && std::ranges::none_of(hanging_, hangs);
@@ -80,6 +83,7 @@ bool CatalogueScan::Answers(const std::string& path) {
 }
 
 absl::StatusOr<storm_files::StormFile> CatalogueScan::Describe(const std::string& path, Time now) {
+  if (stopping_) return absl::CancelledError("the search was told to stop");
   const std::optional<Stamp> stamp = StampOf(path);
   if (!stamp.has_value()) return absl::CancelledError("it has just gone");
   Known& known = known_[path];

@@ -3,6 +3,7 @@
 // the current time. The class starts threads only for calls with a timeout.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -65,6 +66,10 @@ class CatalogueScan {
   // returns an error, such as a folder that cannot be listed, the previous storms must be kept.
   absl::StatusOr<Result> Scan(Time now);
 
+  // Ends the scan in progress after the file that it reads, with CANCELLED, and every later scan
+  // likewise. Any thread may call it.
+  void Stop() { stopping_ = true; }
+
  private:
   // A file's identity, size and change time (its stamp). The stamp differs after each change of the
   // file.
@@ -99,6 +104,7 @@ class CatalogueScan {
   void LookAgainAt(Time time);
 
   const Options options_;
+  std::atomic<bool> stopping_ = false;
   base::PatientCalls calls_;
   FoundByPath found_;
   std::set<std::string> hanging_;  // paths whose storage hangs

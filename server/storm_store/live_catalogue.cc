@@ -25,6 +25,7 @@ LiveCatalogue::LiveCatalogue(std::unique_ptr<CatalogueScan> scan,
 
 LiveCatalogue::~LiveCatalogue() {
   running_->stopping = true;
+  running_->scan->Stop();
   running_->events.Wake();
 }
 
@@ -52,6 +53,7 @@ void LiveCatalogue::Running::WaitForEventUntil(Time deadline) {
 
 void LiveCatalogue::Running::Scan() {
   absl::StatusOr<CatalogueScan::Result> result = scan->Scan(time.Now());
+  if (stopping) return;
   if (!result.ok()) {
     std::string why(result.status().message());
     if (why != complaint) spdlog::warn("the storms stay as they were: {}", why);

@@ -256,6 +256,24 @@ TEST_F(LiveFolder, OpensAFileOnlyWhenItHasChanged) {
   EXPECT_EQ(opened, 3) << "what could not be read is tried again";
 }
 
+TEST_F(LiveFolder, AScanThatIsStoppedOpensNoOtherFile) {
+  for (int hour = 0; hour < 3; ++hour) PutOld(File(hour), WrfBytes({hour}));
+  int opened = 0;
+  std::function<void()> stop;
+  CatalogueScan scan({.paths = {data_},
+                      .formats = storm_files::StormFormats::BuiltIn(),
+                      .settle = seconds(3),
+                      .retry = seconds(30),
+                      .before_file = [&] {
+                        ++opened;
+                        stop();
+                      }});
+  stop = [&scan] { scan.Stop(); };
+  const auto result = scan.Scan(CatalogueScan::Time(std::chrono::hours(1)));
+  EXPECT_EQ(result.status().code(), absl::StatusCode::kCancelled);
+  EXPECT_EQ(opened, 1);
+}
+
 TEST_F(LiveFolder, AFolderThatGoesAwayComesBack) {
   PutOld(File(0), WrfBytes({0}));
   const auto store = Open(milliseconds(100));
