@@ -88,6 +88,9 @@ std::string Table(const v1::StormDescription& storm) {
   } else {
     absl::StrAppend(&text, "middle  no place on Earth (idealised)\n");
   }
+  for (const std::string& assumption : storm.assumptions()) {
+    absl::StrAppend(&text, "assumed ", assumption, "\n");
+  }
   absl::StrAppend(&text, "\ntime  valid (UTC)           minutes\n");
   for (const v1::StormTime& time : storm.times()) {
     absl::StrAppendFormat(&text, "%4d  %-20s %8.1f%s\n", time.index(), time.valid_time(),

@@ -72,22 +72,35 @@ absl::Status WorstOf(const std::map<std::string, absl::Status>& problems) {
 absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
   Found found;
   const storm_files::StormFormats formats = ConfinedFormats();
-  const storm_store::StormSearch search{
-      .describe = [&](const std::string& path) -> absl::StatusOr<storm_files::StormFile> {
-        auto file = storm_store::DescribeFile(path, formats);
-        // A folder may also contain files that are not storms.
-        const bool other = absl::IsInvalidArgument(file.status());
-        if (other && std::ranges::find(paths, path) == paths.end()) return file;
-        found.places.emplace(path, found.places.size());
-        if (file.ok()) return file;
-        found.problems.emplace(path, AsFileProblem(path, file.status()));
-        return absl::CancelledError("told at the end");
-      },
-      .may_find_nothing = true,
-      .on_unlisted = {},
-      .on_folder = {},
-      .examples = formats.Examples(),
-      .links = storm_store::EveryLink()};
+  // Keeps the place of a file and, if it cannot be read, the reason, which is told at the end.
+  const auto note = [&](const std::string& path, absl::StatusOr<storm_files::StormFile>& file) {
+    // A folder may also contain files that are not storms.
+    const bool other = absl::IsInvalidArgument(file.status());
+    if (other && std::ranges::find(paths, path) == paths.end()) return;
+    found.places.emplace(path, found.places.size());
+    if (file.ok()) return;
+    found.problems.emplace(path, AsFileProblem(path, file.status()));
+    file = absl::CancelledError("told at the end");
+  };
+  const storm_store::StormSearch search{.describe =
+                                            [&](const std::vector<std::string>& files) {
+                                              auto described = storm_store::DescribeInBatches(
+                                                  files, formats, [] { return true; });
+                                              for (std::size_t i = 0; i < files.size(); ++i)
+                                                note(files[i], described[i]);
+                                              return described;
+                                            },
+                                        .describe_together =
+                                            [&](const std::vector<std::string>& files) {
+                                              auto described = formats.DescribeTogether(files);
+                                              note(files.front(), described);
+                                              return described;
+                                            },
+                                        .may_find_nothing = true,
+                                        .on_unlisted = {},
+                                        .on_folder = {},
+                                        .examples = formats.Examples(),
+                                        .links = storm_store::EveryLink()};
   auto storms = storm_store::FindStorms(paths, search);
   if (!storms.ok()) return AsFileProblem(storms.status());
   found.storms = *std::move(storms);

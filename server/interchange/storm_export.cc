@@ -124,9 +124,10 @@ VdbMetadata OriginOf(const scene::Scene& scene, const storm_store::StormInfo& st
                        {"turbulent_detail", std::int64_t{options.detail ? 1 : 0}},
                        {"world_coordinates",
                         "metres: x east and y north of the domain's middle, z up from sea level"}};
-  if (storm.latitude_deg.has_value() && storm.longitude_deg.has_value()) {
-    metadata["origin_latitude_deg"] = *storm.latitude_deg;
-    metadata["origin_longitude_deg"] = *storm.longitude_deg;
+  const auto middle = storm_store::MiddleOf(storm, static_cast<std::size_t>(scene.time_index));
+  if (middle.has_value()) {
+    metadata["origin_latitude_deg"] = middle->latitude_deg;
+    metadata["origin_longitude_deg"] = middle->longitude_deg;
   }
   return metadata;
 }

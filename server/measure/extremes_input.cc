@@ -34,8 +34,9 @@ Extreme MixingRatios(const std::string& name, const std::vector<float>& values, 
                      int missing, float left_kg_per_m3) {
   return {name, [=](Probe&) -> absl::StatusOr<Verdict> {
             std::vector<float> held = values;
+            const storm_files::LayerAir air = AirOver(held);
             const volume::FieldStatistics found =
-                storm_files::MixingRatioToConcentration(AirOver(held), held);
+                storm_files::AmountToConcentration(air, air.dry_air_density_kg_per_m3, held);
             float left = 0.0F;
             bool usable = true;
             for (const float value : held) {

@@ -19,6 +19,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "base/byte_source.h"
 #include "base/file_descriptor.h"
 #include "base/memory_fit.h"
 #include "base/status.h"
@@ -155,16 +156,6 @@ void CleanPlainFloats(const Packing& packing, std::vector<float>& values) {
   }
 }
 
-struct MemoryFile {
-  std::string path;
-  std::span<const std::byte> bytes;
-};
-
-std::optional<MemoryFile>& InMemory() {
-  static std::optional<MemoryFile> file;
-  return file;
-}
-
 // A stream buffer that reads bytes in memory and never writes to them.
 class BytesBuffer final : public std::streambuf {
  public:
@@ -179,11 +170,11 @@ absl::Status CheckHeader(const std::string& path, std::istream& file) {
 }
 
 // Opens the bytes. NetCDF-C neither writes to the bytes nor frees them.
-int OpenMemory(const MemoryFile& file, int& handle) {
+int OpenMemory(const std::string& path, std::span<const std::byte> bytes, int& handle) {
   constexpr std::size_t kMagicBytes = 8;  // for fewer bytes, netCDF-C reports an invalid argument
-  if (file.bytes.size() < kMagicBytes) return NC_ENOTNC;
-  return nc_open_mem(file.path.c_str(), NC_NOWRITE, file.bytes.size(),
-                     const_cast<std::byte*>(file.bytes.data()), &handle);
+  if (bytes.size() < kMagicBytes) return NC_ENOTNC;
+  return nc_open_mem(path.c_str(), NC_NOWRITE, bytes.size(), const_cast<std::byte*>(bytes.data()),
+                     &handle);
 }
 
 }  // namespace
@@ -205,17 +196,19 @@ absl::Status NetcdfFile::CheckStart(const std::string& path, int file) {
 }
 
 absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
-  if (const std::optional<MemoryFile>& file = InMemory(); file.has_value()) {
-    if (path != file->path) return OpenError(path, EACCES);
-    if (file->bytes.empty()) return OpenError(path, NC_EHDFERR);
-    BytesBuffer buffer(file->bytes);
+  if (base::ReadsOnlyFromMemory()) {
+    const std::optional<std::span<const std::byte>> bytes = base::RegisteredBytes(path);
+    if (!bytes.has_value()) return OpenError(path, EACCES);
+    if (bytes->empty()) return OpenError(path, NC_EHDFERR);
+    BytesBuffer buffer(*bytes);
     std::istream header(&buffer);
     THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
     int handle = kNoHandle;
     const NetcdfLock lock;
-    THUNDERHEAD_RETURN_IF_ERROR(CheckHdf5Bytes(path, file->bytes));
-    if (const int code = OpenMemory(*file, handle); code != NC_NOERR) return OpenError(path, code);
-    return Checked(path, handle, file->bytes.size());
+    THUNDERHEAD_RETURN_IF_ERROR(CheckHdf5Bytes(path, *bytes));
+    if (const int code = OpenMemory(path, *bytes, handle); code != NC_NOERR)
+      return OpenError(path, code);
+    return Checked(path, handle, bytes->size());
   }
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return OpenError(path, ENOENT);
@@ -234,10 +227,6 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
   }
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   return Checked(path, handle, error ? std::numeric_limits<std::uintmax_t>::max() : bytes);
-}
-
-void NetcdfFile::ReadFromMemory(const std::string& path, std::span<const std::byte> bytes) {
-  InMemory() = MemoryFile{path, bytes};
 }
 
 absl::StatusOr<NetcdfFile> NetcdfFile::Checked(const std::string& path, int handle,

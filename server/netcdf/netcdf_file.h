@@ -16,13 +16,10 @@ namespace thunderhead::netcdf {
 
 class NetcdfFile {
  public:
-  // Opens `path` for reading. Errors: NOT_FOUND; INVALID_ARGUMENT (not a netCDF file); DATA_LOSS
-  // (truncated or damaged); UNAVAILABLE (another program is writing it).
+  // Opens `path` for reading, or its bytes if they were registered (base::ReadFromMemory). Errors:
+  // NOT_FOUND; INVALID_ARGUMENT (not a netCDF file); DATA_LOSS (truncated or damaged); UNAVAILABLE
+  // (another program is writing it).
   static absl::StatusOr<NetcdfFile> Open(const std::string& path);
-
-  // Makes Open read the file at `path` from `bytes`, and refuse every other path. It is for a
-  // process that may not open files. The bytes must stay valid.
-  static void ReadFromMemory(const std::string& path, std::span<const std::byte> bytes);
 
   NetcdfFile(NetcdfFile&& other) noexcept;
   NetcdfFile& operator=(NetcdfFile&& other) noexcept;

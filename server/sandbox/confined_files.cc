@@ -28,7 +28,7 @@ class ConfinedRecordReader final : public storm_files::RecordReader {
   }
 
   absl::StatusOr<storm_files::VerticalGrid> ReadVerticalGrid(std::size_t record) const override {
-    return files_->ReadVerticalGrid(description_.path, record);
+    return files_->ReadVerticalGrid(description_, record);
   }
 
  private:
@@ -41,6 +41,15 @@ Request RequestFor(Wanted wanted, const std::string& path, std::size_t record = 
   request.wanted = wanted;
   request.path = path;
   request.record = record;
+  return request;
+}
+
+// `paths` are the files of one time, or none if it is in one file.
+Request RequestFor(Wanted wanted, const std::string& path, const std::vector<std::string>& paths,
+                   std::size_t record = 0) {
+  Request request = RequestFor(wanted, path, record);
+  request.bundle = paths.empty() ? 0 : 1;
+  request.bundled = paths;
   return request;
 }
 
@@ -82,23 +91,67 @@ absl::Status ConfinedFiles::Run(Request request, Reply wanted, std::chrono::mill
 }
 
 absl::StatusOr<storm_files::StormFile> ConfinedFiles::Describe(const std::string& path) {
+  return DescribeTogether(path, {});
+}
+
+absl::StatusOr<storm_files::StormFile> ConfinedFiles::DescribeTogether(
+    const std::string& path, const std::vector<std::string>& paths) {
   storm_files::StormFile file;
-  THUNDERHEAD_RETURN_IF_ERROR(Run(RequestFor(Wanted::kDescription, path), Reply::kDescription,
-                                  std::min(options_.limits.time, kDescriptionTime), {},
-                                  [&file](Receiver& from_reader) {
-                                    Visit(from_reader, file);
-                                    return CheckPlausible(file);
-                                  }));
-  file.path = path;
-  file.reader = std::make_shared<ConfinedRecordReader>(shared_from_this(), file);
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Run(RequestFor(Wanted::kDescription, path, paths), Reply::kDescription,
+          std::min(options_.limits.time, kDescriptionTime), {}, [&file](Receiver& from_reader) {
+            Visit(from_reader, file);
+            return CheckPlausible(file);
+          }));
+  Own(path, paths, file);
   return file;
+}
+
+// Sets the members that are not sent.
+void ConfinedFiles::Own(const std::string& path, const std::vector<std::string>& paths,
+                        storm_files::StormFile& file) {
+  file.path = path;
+  file.parts = paths;
+  file.reader = std::make_shared<ConfinedRecordReader>(shared_from_this(), file);
+}
+
+std::vector<absl::StatusOr<storm_files::StormFile>> ConfinedFiles::DescribeEach(
+    const std::vector<std::string>& paths) {
+  std::vector<absl::StatusOr<storm_files::StormFile>> files;
+  std::vector<Description> descriptions;
+  const auto take = [&](Receiver& from_reader) -> absl::Status {
+    Visit(from_reader, descriptions);
+    if (descriptions.size() != paths.size()) return absl::InternalError("the number of its files");
+    for (const Description& each : descriptions) {
+      if (each.code == 0) THUNDERHEAD_RETURN_IF_ERROR(CheckPlausible(each.file));
+    }
+    return absl::OkStatus();
+  };
+  const bool together =
+      paths.size() > 1 &&
+      readers_
+          .Run(RequestFor(Wanted::kDescriptions, paths.front(), paths), Reply::kDescriptions,
+               std::min(options_.limits.time, kDescriptionTime), {}, take)
+          .ok();
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    if (!together) {
+      files.push_back(Describe(paths[i]));
+    } else if (descriptions[i].code != 0) {
+      files.emplace_back(absl::Status(static_cast<absl::StatusCode>(descriptions[i].code),
+                                      descriptions[i].message));
+    } else {
+      Own(paths[i], {}, descriptions[i].file);
+      files.emplace_back(std::move(descriptions[i].file));
+    }
+  }
+  return files;
 }
 
 absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
     const storm_files::StormFile& of, std::size_t record,
     const std::optional<storm_files::VerticalGrid>& grid,
     const storm_files::ReadCheckpoint& checkpoint) {
-  Request request = RequestFor(Wanted::kFields, of.path, record);
+  Request request = RequestFor(Wanted::kFields, of.path, of.parts, record);
   request.grid = grid;
   volume::HydrometeorFields fields;
   THUNDERHEAD_RETURN_IF_ERROR(Run(std::move(request), Reply::kFields, options_.limits.time,
@@ -109,11 +162,12 @@ absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
   return fields;
 }
 
-absl::StatusOr<storm_files::VerticalGrid> ConfinedFiles::ReadVerticalGrid(const std::string& path,
-                                                                          std::size_t record) {
+absl::StatusOr<storm_files::VerticalGrid> ConfinedFiles::ReadVerticalGrid(
+    const storm_files::StormFile& of, std::size_t record) {
   storm_files::VerticalGrid grid;
-  THUNDERHEAD_RETURN_IF_ERROR(Run(RequestFor(Wanted::kVerticalGrid, path, record), Reply::kGrid,
-                                  options_.limits.time, {}, [&grid](Receiver& from_reader) {
+  THUNDERHEAD_RETURN_IF_ERROR(Run(RequestFor(Wanted::kVerticalGrid, of.path, of.parts, record),
+                                  Reply::kGrid, options_.limits.time, {},
+                                  [&grid](Receiver& from_reader) {
                                     Visit(from_reader, grid);
                                     return CheckPlausible(grid);
                                   }));
@@ -122,7 +176,14 @@ absl::StatusOr<storm_files::VerticalGrid> ConfinedFiles::ReadVerticalGrid(const 
 
 storm_files::StormFormats Confined(storm_files::StormFormats formats,
                                    const std::shared_ptr<ConfinedFiles>& files) {
-  formats.LeaveTo([files](const std::string& path) { return files->Describe(path); });
+  formats.LeaveTo(
+      {.describe = [files](const std::string& path) { return files->Describe(path); },
+       .describe_each =
+           [files](const std::vector<std::string>& paths) { return files->DescribeEach(paths); },
+       .describe_together =
+           [files](const std::vector<std::string>& paths) {
+             return files->DescribeTogether(paths.front(), paths);
+           }});
   return formats;
 }
 

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -36,12 +37,19 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
   absl::Status Probe();
 
   absl::StatusOr<storm_files::StormFile> Describe(const std::string& path);
+  // Describes several files, each separately, by one reader. If that reader fails, another one
+  // describes each file.
+  std::vector<absl::StatusOr<storm_files::StormFile>> DescribeEach(
+      const std::vector<std::string>& paths);
+  // Describes the files at `paths` as one time. `path` is the first of them.
+  absl::StatusOr<storm_files::StormFile> DescribeTogether(const std::string& path,
+                                                          const std::vector<std::string>& paths);
   // Reads record `record` of the file that `of` describes.
   absl::StatusOr<volume::HydrometeorFields> Read(
       const storm_files::StormFile& of, std::size_t record,
       const std::optional<storm_files::VerticalGrid>& grid,
       const storm_files::ReadCheckpoint& checkpoint);
-  absl::StatusOr<storm_files::VerticalGrid> ReadVerticalGrid(const std::string& path,
+  absl::StatusOr<storm_files::VerticalGrid> ReadVerticalGrid(const storm_files::StormFile& of,
                                                              std::size_t record);
 
  private:
@@ -51,6 +59,9 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
     base::TimeSource::Clock::time_point when;
     absl::Status failure;
   };
+
+  void Own(const std::string& path, const std::vector<std::string>& paths,
+           storm_files::StormFile& file);
 
   // Sends the request to a reader, unless the same unchanged file has made a reader fail recently.
   absl::Status Run(Request request, Reply wanted, std::chrono::milliseconds patience,

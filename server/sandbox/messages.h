@@ -14,12 +14,19 @@
 
 namespace thunderhead::sandbox {
 
-enum class Wanted : std::uint8_t { kProbe, kDescription, kVerticalGrid, kFields };
+// The largest number of files that one reader gets at once.
+inline constexpr std::size_t kMostBundled = 20'000;
+
+enum class Wanted : std::uint8_t { kProbe, kDescription, kDescriptions, kVerticalGrid, kFields };
 
 struct Request {
   Wanted wanted = Wanted::kProbe;
   std::string version;  // version of the program that asks
   std::string path;     // path for error messages; the file itself is passed as an open descriptor
+  // True if the descriptor holds several files (file_bundle.h), which are described one by one
+  // (kDescriptions) or are together one time.
+  std::uint8_t bundle = 0;
+  std::vector<std::string> bundled;  // the paths of these files; not sent, as the bundle has them
   std::uint64_t record = 0;
   std::optional<storm_files::VerticalGrid> grid;
   std::uint64_t memory_bytes = 0;  // limit in bytes for reading, without the mapped file
@@ -30,7 +37,16 @@ struct Request {
 
 // The kinds of replies. A reader sends any number of kProgress and kLog, and then exactly one reply
 // of another kind.
-enum class Reply : std::uint8_t { kProgress, kLog, kError, kProbed, kDescription, kGrid, kFields };
+enum class Reply : std::uint8_t {
+  kProgress,
+  kLog,
+  kError,
+  kProbed,
+  kDescription,
+  kDescriptions,
+  kGrid,
+  kFields
+};
 
 // A line of the reader's log or, for Reply::kError, a status.
 struct Note {
@@ -47,11 +63,22 @@ void VisitOptional(Archive& archive, std::optional<Value>& value) {
   value = has == 1 ? std::optional(known) : std::nullopt;
 }
 
+// Sends at most kMostTexts texts.
+template <typename Archive>
+void VisitTexts(Archive& archive, std::vector<std::string>& texts) {
+  constexpr std::size_t kMostTexts = 100;
+  auto count = static_cast<std::uint32_t>(std::min(texts.size(), kMostTexts));
+  archive(count);
+  texts.resize(std::min<std::size_t>(count, kMostTexts));
+  for (std::string& text : texts) archive(text);
+}
+
 template <typename Archive>
 void Visit(Archive& archive, Request& request) {
   archive(request.wanted);
   archive(request.version);
   archive(request.path);
+  archive(request.bundle);
   archive(request.record);
   VisitOptional(archive, request.grid);
   archive(request.memory_bytes);
@@ -73,12 +100,12 @@ void Visit(Archive& archive, storm_files::VerticalGrid& grid) {
 // The functions below use structured bindings with all members of a type. If a type gets a new
 // member, its function therefore does not compile until it handles the member.
 
-// Sends all members except `path`, `reader`, `version`, `id` and `device`, which the server sets
-// itself. Times are sent as seconds and nanoseconds since 1970.
+// Sends all members except `path`, `parts`, `reader`, `version`, `id` and `device`, which the
+// server sets itself. Times are sent as seconds and nanoseconds since 1970.
 template <typename Archive>
 void Visit(Archive& archive, storm_files::StormFile& file) {
   auto& [path, cells, dx_m, dy_m, times, fields, about, domain, run, latitude_deg, longitude_deg,
-         projection, reader, version, id, device] = file;
+         middles, projection, member, assumptions, part, parts, reader, version, id, device] = file;
   archive(cells);
   archive(dx_m);
   archive(dy_m);
@@ -101,7 +128,32 @@ void Visit(Archive& archive, storm_files::StormFile& file) {
   archive(run);
   VisitOptional(archive, latitude_deg);
   VisitOptional(archive, longitude_deg);
+  archive(middles);
   archive(projection);
+  archive(member);
+  VisitTexts(archive, assumptions);
+  archive(part.of);
+  archive(part.at_all_times);
+}
+
+// The descriptions of several files, or why they cannot be described. Of a file, `code` is absl's
+// status code. If it is 0, `file` is set, and otherwise `message`.
+struct Description {
+  std::int32_t code = 0;
+  std::string message;
+  storm_files::StormFile file;
+};
+
+template <typename Archive>
+void Visit(Archive& archive, std::vector<Description>& descriptions) {
+  auto count = static_cast<std::uint32_t>(descriptions.size());
+  archive(count);
+  descriptions.resize(std::min<std::size_t>(count, kMostBundled));
+  for (Description& each : descriptions) {
+    archive(each.code);
+    archive(each.message);
+    if (each.code == 0) Visit(archive, each.file);
+  }
 }
 
 template <typename Archive>

@@ -147,24 +147,33 @@ absl::Status CheckAir(const volume::AirDensity& air, const glm::ivec3& cells) {
 }  // namespace
 
 absl::Status CheckPlausible(const storm_files::StormFile& file) {
-  THUNDERHEAD_RETURN_IF_ERROR(Require(AreCells(file.cells), "the number of its cells"));
-  THUNDERHEAD_RETURN_IF_ERROR(
-      Require(Within(file.dx_m, 1e-6, kFarthest_m) && Within(file.dy_m, 1e-6, kFarthest_m),
-              "the size of its cells"));
-  THUNDERHEAD_RETURN_IF_ERROR(
-      Require(!file.times.empty() && file.times.size() <= storm_files::kMaxTimes,
-              "the number of its times"));
   static const absl::Time kFirst = absl::FromCivil(absl::CivilYear(0), absl::UTCTimeZone());
   static const absl::Time kLast = absl::FromCivil(absl::CivilYear(10'000), absl::UTCTimeZone());
   const bool in_time = std::ranges::all_of(
       file.times, [](absl::Time time) { return time >= kFirst && time < kLast; });
   THUNDERHEAD_RETURN_IF_ERROR(Require(in_time, "its times"));
+  const bool is_part = !file.part.of.empty();
+  const bool may_be_empty = is_part && file.part.at_all_times;
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Require((may_be_empty || !file.times.empty()) && file.times.size() <= storm_files::kMaxTimes,
+              "the number of its times"));
+  // A part of a time says nothing more.
+  if (is_part) return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(Require(AreCells(file.cells), "the number of its cells"));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Require(Within(file.dx_m, 1e-6, kFarthest_m) && Within(file.dy_m, 1e-6, kFarthest_m),
+              "the size of its cells"));
   const bool fields = !file.fields.empty() && file.fields.size() <= physics::kHydrometeorCount &&
                       std::ranges::all_of(file.fields, IsKnown);
   THUNDERHEAD_RETURN_IF_ERROR(Require(fields, "its fields"));
   const bool place = Within(file.latitude_deg.value_or(0.0), -90.0, 90.0) &&
                      Within(file.longitude_deg.value_or(0.0), -360.0, 360.0);
-  return Require(place, "its place");
+  const bool middles = (file.middles.empty() || file.middles.size() == file.times.size()) &&
+                       std::ranges::all_of(file.middles, [](const volume::EarthPlace& middle) {
+                         return Within(middle.latitude_deg, -90.0, 90.0) &&
+                                Within(middle.longitude_deg, -360.0, 360.0);
+                       });
+  return Require(place && middles, "its place");
 }
 
 absl::Status CheckPlausible(const storm_files::VerticalGrid& grid) {

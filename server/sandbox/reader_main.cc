@@ -21,12 +21,13 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "base/byte_source.h"
 #include "base/guarded.h"
 #include "base/status.h"
 #include "base/version.h"
-#include "netcdf/netcdf_file.h"
 #include "sandbox/archive.h"
 #include "sandbox/confinement.h"
+#include "sandbox/file_bundle.h"
 #include "sandbox/messages.h"
 #include "spdlog/sinks/base_sink.h"
 #include "spdlog/spdlog.h"
@@ -57,7 +58,7 @@ class KeptLog final : public spdlog::sinks::base_sink<std::mutex> {
   std::vector<Note> notes_;
 };
 
-// Maps the file into memory. After this, no file needs to be opened.
+// Maps the file or the bundle into memory. After this, no file needs to be opened.
 absl::StatusOr<std::span<const std::byte>> MapFile() {
   struct stat information = {};
   if (fstat(kFileDescriptor, &information) != 0) {
@@ -120,11 +121,14 @@ class Reader {
     server(reply);
     Visit(server, value);
   }
-  // Describes the file, once for all requests.
+  // Describes the file, or all files as one time, once for all requests.
   absl::Status Describe(const Request& request);
+  // Describes each file separately.
+  absl::Status AnswerDescriptions();
 
   const storm_files::StormFormats& formats_;
   const std::span<std::byte> shared_;
+  std::vector<std::string> paths_;
   std::optional<storm_files::StormFile> file_;
   std::shared_ptr<KeptLog> log_ = std::make_shared<KeptLog>();
 };
@@ -133,17 +137,30 @@ absl::Status Reader::Prepare(const Request& first) {
   spdlog::set_default_logger(std::make_shared<spdlog::logger>("reader", log_));
   OfferToEndFirst();
   if (first.wanted != Wanted::kProbe) {
-    auto bytes = MapFile();
+    const auto bytes = MapFile();
     if (!bytes.ok()) return base::Annotate(bytes.status(), first.path);
-    netcdf::NetcdfFile::ReadFromMemory(first.path, *bytes);
+    if (first.bundle == 0) {
+      paths_ = {first.path};
+      base::ReadFromMemory(first.path, *bytes);
+    } else {
+      THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<BundledFile> files, FilesOfBundle(*bytes));
+      for (const BundledFile& file : files) {
+        paths_.push_back(file.path);
+        base::ReadFromMemory(file.path, file.bytes);
+      }
+    }
   }
   return Confine({first.memory_bytes, first.processor_s});
 }
 
 absl::Status Reader::Describe(const Request& request) {
-  if (!file_.has_value()) {
+  if (!file_.has_value() && request.bundle == 0) {
     THUNDERHEAD_ASSIGN_OR_RETURN(file_, storm_store::DescribeFile(request.path, formats_));
+  } else if (!file_.has_value()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(file_, formats_.DescribeTogether(paths_));
   }
+  // A part that belongs to all times has no time itself.
+  if (request.wanted == Wanted::kDescription) return absl::OkStatus();
   if (request.record < file_->times.size()) return absl::OkStatus();
   return absl::DataLossError(absl::StrCat(request.path, ": has no record ", request.record,
                                           "; the file is shorter than it was: was it replaced?"));
@@ -155,6 +172,7 @@ absl::Status Reader::Answer(const Request& request) {
     Send(Reply::kProbed, nothing);
     return absl::OkStatus();
   }
+  if (request.wanted == Wanted::kDescriptions) return AnswerDescriptions();
   THUNDERHEAD_RETURN_IF_ERROR(Describe(request));
   if (request.wanted == Wanted::kDescription) {
     Send(Reply::kDescription, *file_);
@@ -173,6 +191,22 @@ absl::Status Reader::Answer(const Request& request) {
                                  file_->reader->Read(request.record, request.grid, progress));
     Send(Reply::kFields, fields);
   }
+  return absl::OkStatus();
+}
+
+absl::Status Reader::AnswerDescriptions() {
+  std::vector<Description> descriptions;
+  for (const std::string& path : paths_) {
+    Description& each = descriptions.emplace_back();
+    absl::StatusOr<storm_files::StormFile> file = storm_store::DescribeFile(path, formats_);
+    if (file.ok()) {
+      each.file = *std::move(file);
+    } else {
+      each.code = static_cast<int>(file.status().code());
+      each.message = std::string(file.status().message());
+    }
+  }
+  Send(Reply::kDescriptions, descriptions);
   return absl::OkStatus();
 }
 

@@ -174,10 +174,9 @@ RestingReader::~RestingReader() {
   if (thread_.joinable()) thread_.join();
 }
 
-std::unique_ptr<StartedReader> RestingReader::Take(const std::string& path) {
-  const std::optional<base::FileStamp> now = base::StampOf(path);
+std::unique_ptr<StartedReader> RestingReader::Take(const Request& request) {
   const std::lock_guard lock(mutex_);
-  if (reader_ == nullptr || !reader_->Reads(path, now)) return nullptr;
+  if (reader_ == nullptr || !reader_->Reads(request.path, request.bundled)) return nullptr;
   return std::exchange(reader_, nullptr);
 }
 
@@ -256,7 +255,7 @@ absl::Status Readers::Run(Request request, Reply wanted, milliseconds patience,
   request.memory_bytes = MemoryOf(limits_);
   request.processor_s = static_cast<std::uint32_t>(
       std::max<std::int64_t>(1, std::chrono::ceil<std::chrono::seconds>(limits_.time).count()));
-  if (std::unique_ptr<StartedReader> rested = resting_.Take(request.path); rested != nullptr) {
+  if (std::unique_ptr<StartedReader> rested = resting_.Take(request); rested != nullptr) {
     std::optional<absl::Status> status =
         Ask(std::move(rested), true, request, wanted, patience, checkpoint, take);
     if (status.has_value()) return *status;

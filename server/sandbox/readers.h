@@ -49,8 +49,9 @@ class RestingReader {
   RestingReader(const RestingReader&) = delete;
   RestingReader& operator=(const RestingReader&) = delete;
 
-  // Returns the kept reader if it has opened the file to which `path` leads now, else null.
-  std::unique_ptr<StartedReader> Take(const std::string& path);
+  // Returns the kept reader if it has opened the files to which the request's paths lead now, else
+  // null.
+  std::unique_ptr<StartedReader> Take(const Request& request);
   // Keeps this reader, and ends the one that was kept before.
   void Put(std::unique_ptr<StartedReader> reader);
 

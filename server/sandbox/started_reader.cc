@@ -22,9 +22,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
-#include "netcdf/netcdf_file.h"
 #include "sandbox/archive.h"
+#include "sandbox/file_bundle.h"
 #include "sandbox/reader_main.h"
+#include "storm_files/storm_format.h"
 
 namespace thunderhead::sandbox {
 namespace {
@@ -105,6 +106,17 @@ base::FileDescriptor MovedUp(base::FileDescriptor file) {
 std::string PlaceOf(const base::FileDescriptor& file) {
   std::error_code error;
   return std::filesystem::read_symlink(absl::StrCat("/proc/self/fd/", file.Get()), error).string();
+}
+
+// Opens a storm file and checks its place and its first bytes. A folder may hold thousands of files
+// of other kinds, and none of them needs a process.
+absl::StatusOr<base::FileDescriptor> OpenStormFile(const std::string& path,
+                                                   const CheckOpened& check_opened) {
+  static const storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
+  THUNDERHEAD_ASSIGN_OR_RETURN(base::FileDescriptor file, OpenFile(path));
+  if (check_opened) THUNDERHEAD_RETURN_IF_ERROR(check_opened(path, PlaceOf(file)));
+  THUNDERHEAD_RETURN_IF_ERROR(formats.CheckStart(path, file.Get()));
+  return file;
 }
 
 // The descriptors that a reader inherits.
@@ -199,23 +211,30 @@ void SharedArrays::Empty() {
             static_cast<off_t>(Bytes().size()));
 }
 
+bool StartedReader::Reads(const std::string& path, const std::vector<std::string>& bundled) const {
+  if (path != path_ || bundled != bundled_ || stamps_.empty()) return false;
+  for (std::size_t i = 0; i < stamps_.size(); ++i) {
+    if (base::StampOf(bundled.empty() ? path : bundled[i]) != stamps_[i]) return false;
+  }
+  return true;
+}
+
 absl::StatusOr<std::unique_ptr<StartedReader>> StartedReader::Start(const std::string& program,
                                                                     const Request& first,
                                                                     const CheckOpened& check_opened,
                                                                     const base::TimeSource& time) {
-  base::FileDescriptor file;
-  std::optional<base::FileStamp> stamp;
+  FileBundle given;
   SharedArrays arrays;
-  if (first.wanted != Wanted::kProbe) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(base::FileDescriptor opened, OpenFile(first.path));
-    file = MovedUp(std::move(opened));
-    const std::string place = PlaceOf(file);
-    if (check_opened) THUNDERHEAD_RETURN_IF_ERROR(check_opened(first.path, place));
-    // A folder may hold thousands of files of other kinds, and none of them needs a process.
-    THUNDERHEAD_RETURN_IF_ERROR(netcdf::NetcdfFile::CheckStart(first.path, file.Get()));
-    stamp = base::StampOf(absl::StrCat("/proc/self/fd/", file.Get()));
-    arrays = SharedArrays::Make(first.memory_bytes);
+  const auto open = [&](const std::string& path) { return OpenStormFile(path, check_opened); };
+  if (first.bundle != 0) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(given, Bundle(first.bundled, open, first.memory_bytes));
+  } else if (first.wanted != Wanted::kProbe) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(given.file, open(first.path));
+    const auto stamp = base::StampOf(absl::StrCat("/proc/self/fd/", given.file.Get()));
+    if (stamp.has_value()) given.stamps.push_back(*stamp);
   }
+  given.file = MovedUp(std::move(given.file));
+  if (first.wanted != Wanted::kProbe) arrays = SharedArrays::Make(first.memory_bytes);
   std::array<int, 2> asking{};
   std::array<int, 2> answering{};
   if (pipe2(asking.data(), O_CLOEXEC) != 0) return NoReader(first.path, errno);
@@ -228,11 +247,12 @@ absl::StatusOr<std::unique_ptr<StartedReader>> StartedReader::Start(const std::s
   // size, the pipe keeps its default size.
   fcntl(replies_to.Get(), F_SETPIPE_SZ, 1 << 20);
   pid_t process = 0;
-  const int error =
-      Spawn(program, {requests_from.Get(), replies_to.Get(), file.Get(), arrays.File()}, process);
+  const int error = Spawn(
+      program, {requests_from.Get(), replies_to.Get(), given.file.Get(), arrays.File()}, process);
   if (error != 0) return NoReader(first.path, error);
   std::unique_ptr<StartedReader> reader(new StartedReader(first.path, process, time));
-  reader->stamp_ = stamp;
+  reader->bundled_ = first.bundled;
+  reader->stamps_ = std::move(given.stamps);
   reader->arrays_ = std::move(arrays);
   reader->requests_ = std::move(requests);
   reader->requests_from_ = std::move(requests_from);

@@ -74,20 +74,18 @@ class SharedArrays {
 
 class StartedReader {
  public:
-  // Opens the file that `first` names, unless `first` is a probe. Then starts `program` for the
-  // file, with the limits of memory and processor time in `first`. Returns UNAVAILABLE if no
-  // process can be started. If the file cannot be opened or is not a storm file, the error names
-  // the file. `time` must outlive the reader.
+  // Opens the file or the bundled files that `first` names, unless `first` is a probe. Then starts
+  // `program` for them, with the limits of memory and processor time in `first`. Returns
+  // UNAVAILABLE if no process can be started. If a file cannot be opened or is not a storm file,
+  // the error names the file. `time` must outlive the reader.
   static absl::StatusOr<std::unique_ptr<StartedReader>> Start(const std::string& program,
                                                               const Request& first,
                                                               const CheckOpened& check_opened,
                                                               const base::TimeSource& time);
 
-  // Returns whether the reader's file was opened by `path` and still has the identity, size and
-  // times (stamp) `now`.
-  bool Reads(const std::string& path, const std::optional<base::FileStamp>& now) const {
-    return path == path_ && now.has_value() && now == stamp_;
-  }
+  // Returns whether the reader's file was opened by `path`, or its files by `bundled`, and whether
+  // all of them still have the identity, size and times (stamp) that they had.
+  bool Reads(const std::string& path, const std::vector<std::string>& bundled) const;
 
   // Sends the request without blocking, because it fits into the pipe. Does not report an error if
   // the reader has ended.
@@ -104,7 +102,8 @@ class StartedReader {
 
   const std::string path_;
   const base::TimeSource::Clock::time_point began_;
-  std::optional<base::FileStamp> stamp_;
+  std::vector<std::string> bundled_;
+  std::vector<base::FileStamp> stamps_;  // of the file, or of the bundled files
   SharedArrays arrays_;
   base::FileDescriptor requests_;
   // The other end of `requests_`. It stays open here so that a reader's end causes no SIGPIPE.

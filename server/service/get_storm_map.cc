@@ -93,7 +93,7 @@ absl::Status Map(Engine& engine, const storm_store::StormInfo& storm,
     response.add_fields(ToMessage(fields->fields[index].hydrometeor));
   }
   response.set_projection(storm.projection);
-  ToMessage(map, StormPlaces(storm, *fields), response);
+  ToMessage(map, StormPlaces(storm, time_index, *fields), response);
   return absl::OkStatus();
 }
 

@@ -72,7 +72,8 @@ absl::Status Probe(Engine& engine, Asked& asked, v1::ProbeRayResponse& response)
   response.set_time_index(message.time_index());
   response.set_scene_revision(asked.scene.revision);
   response.set_first_cloud_depth(asked.request.first_cloud_depth());
-  ToMessage(ray, storm_ray, probe, StormPlaces(*asked.storm, *fields), response);
+  const StormPlaces places(*asked.storm, static_cast<int>(message.time_index()), *fields);
+  ToMessage(ray, storm_ray, probe, places, response);
   return absl::OkStatus();
 }
 

@@ -13,14 +13,9 @@ namespace {
 
 constexpr std::size_t kMaxCells = 100'000;
 
-// Relative tolerances. They are necessary because coordinates are often rounded when they are
+// A relative tolerance. It is necessary because coordinates are often rounded when they are
 // written, or stored as floats.
 constexpr double kEvenTolerance = 1e-2;
-constexpr double kLatticeTolerance = 1e-4;
-
-// The maximum number of cells per layer, on average, when uneven layers are divided into even
-// cells.
-constexpr int kMaxRefinement = 16;
 
 struct Coordinate {
   std::vector<double> centres_m;  // in the file's order
@@ -232,66 +227,11 @@ absl::StatusOr<std::vector<double>> FacesOfOne(const netcdf::NetcdfFile& file,
   return std::vector<double>{low_m, low_m + size_m};
 }
 
-double Thinnest_m(const std::vector<double>& faces_m) {
-  double thinnest_m = faces_m[1] - faces_m[0];
-  for (std::size_t i = 1; i < faces_m.size(); ++i) {
-    thinnest_m = std::min(thinnest_m, faces_m[i] - faces_m[i - 1]);
-  }
-  return thinnest_m;
-}
-
-// Returns the smallest number of cells in the thinnest layer with which every face of a layer is
-// also a face of a cell. Returns 0 if there is no such number.
-int CommonDivisor(const std::vector<double>& faces_m, int max_cells) {
-  const double thinnest_m = Thinnest_m(faces_m);
-  const double depth_m = faces_m.back() - faces_m.front();
-  for (int divisor = 1; divisor <= kMaxRefinement; ++divisor) {
-    const double spacing_m = thinnest_m / divisor;
-    if (depth_m / spacing_m > max_cells + 0.5) return 0;
-    const bool fits = std::ranges::all_of(faces_m, [&](double face_m) {
-      const double steps = (face_m - faces_m.front()) / spacing_m;
-      return std::abs(steps - std::round(steps)) <= kLatticeTolerance * std::max(steps, 1.0);
-    });
-    if (fits) return divisor;
-  }
-  return 0;
-}
-
 }  // namespace
 
 CfDescription DescribeCf(const netcdf::NetcdfFile& file, const std::string& variable) {
   const auto text = [&](const char* attribute) { return file.TextOrEmpty(variable, attribute); };
   return {variable, text("standard_name"), text("units"), text("axis"), text("positive")};
-}
-
-void EvenOut(const std::vector<double>& faces_m, CfAxis* axis) {
-  const int layers = static_cast<int>(faces_m.size()) - 1;
-  const double depth_m = faces_m.back() - faces_m.front();
-  const int max_cells = std::max(kMaxRefinement * layers, 256);
-  const int divisor = CommonDivisor(faces_m, max_cells);
-  axis->exact = divisor > 0;
-  const double thinnest_m = Thinnest_m(faces_m);
-  const double wanted = axis->exact ? std::round(depth_m * divisor / thinnest_m)
-                                    : std::min(std::ceil(depth_m / thinnest_m), 2.0 * layers);
-  axis->cells = static_cast<int>(wanted);
-  axis->low_m = faces_m.front();
-  axis->spacing_m = depth_m / axis->cells;
-  axis->shares.assign(static_cast<std::size_t>(axis->cells), {});
-  int lowest = 0;  // lowest layer that reaches into this cell or above
-  for (int cell = 0; cell < axis->cells; ++cell) {
-    const double low_m = axis->low_m + cell * axis->spacing_m;
-    while (lowest + 1 < layers && faces_m[static_cast<std::size_t>(lowest) + 1] <= low_m) ++lowest;
-    for (int layer = lowest; layer < layers; ++layer) {
-      const auto at = static_cast<std::size_t>(layer);
-      if (faces_m[at] >= low_m + axis->spacing_m) break;
-      const double overlap_m =
-          std::min(faces_m[at + 1], low_m + axis->spacing_m) - std::max(faces_m[at], low_m);
-      const double share = overlap_m / axis->spacing_m;
-      if (share > kLatticeTolerance) {
-        axis->shares[static_cast<std::size_t>(cell)].push_back({layer, std::min(share, 1.0)});
-      }
-    }
-  }
 }
 
 absl::StatusOr<CfAxis> ReadCfAxis(const netcdf::NetcdfFile& file, const std::string& dimension,
@@ -305,8 +245,7 @@ absl::StatusOr<CfAxis> ReadCfAxis(const netcdf::NetcdfFile& file, const std::str
                                ReadCoordinate(file, dimension, direction, sizes.metres_per_degree));
   CfAxis axis;
   axis.dimension = dimension;
-  axis.file_cells = static_cast<int>(length);
-  axis.cells = axis.file_cells;
+  axis.cells = static_cast<int>(length);
   axis.middle_deg = coordinate.middle_deg;
   std::vector<double>& centres_m = coordinate.centres_m;
   std::vector<double>& faces_m = coordinate.faces_m;
@@ -323,15 +262,13 @@ absl::StatusOr<CfAxis> ReadCfAxis(const netcdf::NetcdfFile& file, const std::str
   }
   if (faces_m.front() > faces_m.back()) std::ranges::reverse(faces_m);
   THUNDERHEAD_RETURN_IF_ERROR(CheckMonotonic(file, dimension, faces_m));
-  axis.low_m = faces_m.front();
   axis.spacing_m = (faces_m.back() - faces_m.front()) / axis.cells;
-  if (IsEven(faces_m)) return axis;
-  if (direction != CfDirection::kZ) {
+  if (direction != CfDirection::kZ && !IsEven(faces_m)) {
     return absl::InvalidArgumentError(
         absl::StrCat(file.Path(), ": the coordinate ", dimension,
                      " is not evenly spaced; interpolate to even spacing first"));
   }
-  EvenOut(faces_m, &axis);
+  axis.faces_m = std::move(faces_m);
   return axis;
 }
 

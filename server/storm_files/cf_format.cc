@@ -8,28 +8,10 @@
 #include "base/status.h"
 #include "storm_files/cf_metadata.h"
 #include "storm_files/cf_reader.h"
+#include "storm_files/fields_on_heights.h"
 
 namespace thunderhead::storm_files {
 namespace {
-
-class CfRecordReader final : public RecordReader {
- public:
-  explicit CfRecordReader(CfMetadata metadata) : metadata_(std::move(metadata)) {}
-
-  absl::StatusOr<volume::HydrometeorFields> Read(std::size_t record,
-                                                 const std::optional<VerticalGrid>&,
-                                                 const ReadCheckpoint& checkpoint) const override {
-    return ReadCfTime(metadata_, record, checkpoint);
-  }
-
-  absl::StatusOr<VerticalGrid> ReadVerticalGrid(std::size_t) const override {
-    const CfAxis& z = metadata_.axes[2];
-    return VerticalGrid{z.low_m, z.spacing_m, z.cells};
-  }
-
- private:
-  const CfMetadata metadata_;
-};
 
 // Returns StormFile::run: a text with the names of the variables and their layers, which is the
 // same for all files of one run.
@@ -37,7 +19,7 @@ std::string RunOf(const CfMetadata& metadata) {
   std::string run;
   for (const CfField& field : metadata.fields) absl::StrAppend(&run, field.variable.name, " ");
   const CfAxis& z = metadata.axes[2];
-  absl::StrAppend(&run, z.low_m, " ", z.spacing_m, " ", z.cells);
+  absl::StrAppend(&run, z.faces_m.front(), " ", z.spacing_m, " ", z.cells);
   return run;
 }
 
@@ -51,17 +33,17 @@ class CfFormat final : public StormFormat {
   }
 
   FormatFit Sniff(const UnknownFile& file) const override {
-    const bool fits = file.netcdf.ok() && LooksLikeCf(*file.netcdf);
+    const bool fits = file.Netcdf().ok() && LooksLikeCf(*file.Netcdf());
     return fits ? FormatFit::kConvention : FormatFit::kNone;
   }
 
   absl::StatusOr<StormFile> Describe(const UnknownFile& unknown) const override {
-    THUNDERHEAD_RETURN_IF_ERROR(unknown.netcdf.status());
-    THUNDERHEAD_ASSIGN_OR_RETURN(CfMetadata metadata, ReadCfMetadata(*unknown.netcdf));
+    THUNDERHEAD_RETURN_IF_ERROR(unknown.Netcdf().status());
+    THUNDERHEAD_ASSIGN_OR_RETURN(CfMetadata metadata, ReadCfMetadata(*unknown.Netcdf()));
     StormFile file;
     file.path = metadata.path;
     const auto& [x, y, z] = metadata.axes;
-    file.cells = {x.file_cells, y.file_cells, z.file_cells};
+    file.cells = {x.cells, y.cells, z.cells};
     file.dx_m = x.spacing_m;
     file.dy_m = y.spacing_m;
     file.times = metadata.times;
@@ -76,7 +58,7 @@ class CfFormat final : public StormFormat {
       // A projection exists only for degrees of longitude and latitude. The reader converts degrees
       // to metres with one scale, that at the middle of the domain. Degrees of a rotated grid are
       // not places on Earth.
-      const CfDescription described = DescribeCf(*unknown.netcdf, x.dimension);
+      const CfDescription described = DescribeCf(*unknown.Netcdf(), x.dimension);
       if (!absl::StartsWith(described.standard_name, "grid_")) {
         file.projection = absl::StrFormat(
             "+proj=eqc +lat_ts=%.10g +lat_0=%.10g +lon_0=%.10g +x_0=0 +y_0=0 +R=%.10g +units=m "
@@ -84,7 +66,9 @@ class CfFormat final : public StormFormat {
             *y.middle_deg, *y.middle_deg, *x.middle_deg, kCfEarthRadius_m);
       }
     }
-    file.reader = std::make_shared<CfRecordReader>(std::move(metadata));
+    file.reader =
+        MakeRecordReader([metadata = std::make_shared<const CfMetadata>(std::move(metadata))](
+                             std::size_t record) { return OpenCfTime(metadata, record); });
     return file;
   }
 };

@@ -166,11 +166,6 @@ absl::Status ReadAxes(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   sizes = {kMetresPerDegree * std::cos(latitude_deg * std::numbers::pi / 180.0), y.spacing_m};
   THUNDERHEAD_RETURN_IF_ERROR(read(first.x, CfDirection::kX, sizes, &x));
   THUNDERHEAD_RETURN_IF_ERROR(read(first.z, CfDirection::kZ, sizes, &z));
-  if (!metadata->axes[2].exact) {
-    spdlog::warn("{}: its layers are uneven; {} of them are averaged onto {} of {:.1f} m",
-                 file.Path(), metadata->axes[2].file_cells, metadata->axes[2].cells,
-                 metadata->axes[2].spacing_m);
-  }
   return absl::OkStatus();
 }
 

@@ -13,7 +13,7 @@ constexpr float kSmallestNormal = std::numeric_limits<float>::min();
 
 // Advection schemes produce small negative values, of about -1e-13. Values below this limit are
 // codes for "missing", such as -999.
-constexpr float kMinMixingRatio = -0.5F;
+constexpr float kMinAmount = -0.5F;
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -23,11 +23,11 @@ struct ScanRange {
 };
 
 // Converts the `values` of one level in place, and adds each cell's mass per area to its column's
-// `water_path`.
-void ScanLevel(const LayerAir& air, int level, float* values, volume::FieldStatistics& statistics,
-               ScanRange& range, std::vector<double>& water_path) {
+// `water_path`. `density` points to the level's densities.
+void ScanLevel(const LayerAir& air, int level, const float* density, float* values,
+               volume::FieldStatistics& statistics, ScanRange& range,
+               std::vector<double>& water_path) {
   const std::size_t offset = level * air.columns;
-  const float* density = air.dry_air_density_kg_per_m3.data() + offset;
   const float* bottom_m = air.interface_height_m.data() + offset;
   const float* top_m = bottom_m + air.columns;
   std::int64_t missing_cells = 0;
@@ -35,7 +35,7 @@ void ScanLevel(const LayerAir& air, int level, float* values, volume::FieldStati
   for (std::size_t i = 0; i < air.columns; ++i) {
     const float value = values[i];
     // All comparisons fail for NaN.
-    const bool present = value > kMinMixingRatio && value < kInfinity && density[i] > 0.0F;
+    const bool present = value > kMinAmount && value < kInfinity && density[i] > 0.0F;
     missing_cells += present ? 0 : 1;
     negative_cells += present && value < 0.0F ? 1 : 0;
     range.minimum = present ? std::min(range.minimum, value) : range.minimum;
@@ -51,15 +51,31 @@ void ScanLevel(const LayerAir& air, int level, float* values, volume::FieldStati
   statistics.negative_cells += negative_cells;
 }
 
+// Returns a density of 1 for each column of the level, or 0 where the level has no thickness.
+std::vector<float> OneWhereLayersRise(const LayerAir& air, int level) {
+  std::vector<float> one(air.columns);
+  const float* bottom_m = air.interface_height_m.data() + level * air.columns;
+  for (std::size_t i = 0; i < air.columns; ++i) {
+    one[i] = bottom_m[i + air.columns] > bottom_m[i] ? 1.0F : 0.0F;
+  }
+  return one;
+}
+
 }  // namespace
 
-volume::FieldStatistics MixingRatioToConcentration(const LayerAir& air,
-                                                   std::vector<float>& values) {
+volume::FieldStatistics AmountToConcentration(const LayerAir& air,
+                                              const std::vector<float>& density_kg_per_m3,
+                                              std::vector<float>& values) {
   volume::FieldStatistics statistics;
   ScanRange range;
   std::vector<double> water_path(air.columns, 0.0);
+  const bool per_volume = density_kg_per_m3.empty();
+  std::vector<float> one;
   for (int level = 0; level < air.levels; ++level) {
-    ScanLevel(air, level, values.data() + level * air.columns, statistics, range, water_path);
+    const std::size_t offset = level * air.columns;
+    if (per_volume) one = OneWhereLayersRise(air, level);
+    ScanLevel(air, level, per_volume ? one.data() : density_kg_per_m3.data() + offset,
+              values.data() + offset, statistics, range, water_path);
   }
   if (range.minimum <= range.maximum) {
     statistics.minimum = range.minimum;

@@ -1,5 +1,4 @@
-// Converts the mixing ratios of a file into mass per volume of air, and collects statistics about
-// them.
+// Converts the amounts of a file into mass per volume of air, and collects statistics about them.
 #pragma once
 
 #include <vector>
@@ -9,9 +8,12 @@
 
 namespace thunderhead::storm_files {
 
-// Replaces mixing ratios (kg per kg of dry air, NaN where missing) by concentrations (kg/m3), in
-// place. Negative and missing values become zero and are counted.
-volume::FieldStatistics MixingRatioToConcentration(const LayerAir& air, std::vector<float>& values);
+// Replaces amounts (NaN where missing) by concentrations (kg/m3), in place. `density_kg_per_m3` is
+// the density of the air of which the amounts are a share. It is empty if the amounts are already
+// per volume. Negative and missing values become zero and are counted.
+volume::FieldStatistics AmountToConcentration(const LayerAir& air,
+                                              const std::vector<float>& density_kg_per_m3,
+                                              std::vector<float>& values);
 
 // Returns the smallest box of cells with condensate. Sets subnormal values to zero.
 volume::CellBox FlushAndBound(const volume::RegularGrid& grid,

@@ -12,19 +12,32 @@ namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
-float DensityOf(float pressure_Pa, float potential_temperature_K, float vapour_kg_per_kg) {
-  // Comparisons fail for NaN. The bounds are far outside any atmosphere and catch fill codes like
-  // -999.
-  constexpr float kHighestPressure_Pa = 1e6F;
-  constexpr float kHighestTheta_K = 1e5F;
-  constexpr float kLowestVapour = -0.5F;  // advection can make values slightly negative
-  const bool usable = pressure_Pa > 0.0F && pressure_Pa < kHighestPressure_Pa &&
-                      potential_temperature_K > 0.0F && potential_temperature_K < kHighestTheta_K &&
-                      vapour_kg_per_kg > kLowestVapour;
+// Comparisons with these bounds fail for NaN. The bounds are far outside any atmosphere and catch
+// fill codes like -999.
+constexpr float kHighestPressure_Pa = 1e6F;
+constexpr float kHighestTheta_K = 1e5F;
+constexpr float kHighestDensity_kg_per_m3 = 100.0F;
+constexpr float kLowestVapour = -0.5F;  // advection can make values slightly negative
+
+// Returns the density of dry air in cell `i`, or NaN.
+float DensityAt(const LayerState& state, std::size_t i) {
+  const float vapour = state.vapour_kg_per_kg.empty() ? 0.0F : state.vapour_kg_per_kg[i];
+  if (!(vapour > kLowestVapour)) return kMissing;
+  const float q_v = std::max(vapour, 0.0F);
+  if (!state.air_density_kg_per_m3.empty()) {
+    const float density = state.air_density_kg_per_m3[i];
+    const bool usable = density > 0.0F && density < kHighestDensity_kg_per_m3;
+    return usable ? density / (1.0F + q_v) : kMissing;
+  }
+  const float pressure_Pa = state.pressure_Pa[i];
+  const bool potential = state.temperature_K.empty();
+  const float given_K = potential ? state.potential_temperature_K[i] : state.temperature_K[i];
+  const bool usable = pressure_Pa > 0.0F && pressure_Pa < kHighestPressure_Pa && given_K > 0.0F &&
+                      given_K < kHighestTheta_K;
   if (!usable) return kMissing;
-  const double temperature_K = physics::Temperature_K(potential_temperature_K, pressure_Pa);
-  return static_cast<float>(physics::DryAirDensity_kg_per_m3(pressure_Pa, temperature_K,
-                                                             std::max(vapour_kg_per_kg, 0.0F)));
+  const double temperature_K =
+      potential ? physics::Temperature_K(given_K, pressure_Pa) : static_cast<double>(given_K);
+  return static_cast<float>(physics::DryAirDensity_kg_per_m3(pressure_Pa, temperature_K, q_v));
 }
 
 }  // namespace
@@ -39,6 +52,9 @@ void GeopotentialToHeight(const std::vector<float>& base, std::vector<float>& ge
 }
 
 std::vector<float> Temperature(const LayerState& state) {
+  if (!state.temperature_K.empty() || state.potential_temperature_K.empty()) {
+    return state.temperature_K;
+  }
   std::vector<float> temperature_K(state.pressure_Pa.size());
   for (std::size_t i = 0; i < temperature_K.size(); ++i) {
     temperature_K[i] = static_cast<float>(
@@ -49,11 +65,22 @@ std::vector<float> Temperature(const LayerState& state) {
 
 std::vector<float> DryAirDensity(LayerState state, const std::vector<float>& interface_height_m,
                                  std::size_t columns) {
-  std::vector<float> density = std::move(state.pressure_Pa);
+  std::vector<float>& density =
+      state.air_density_kg_per_m3.empty() ? state.pressure_Pa : state.air_density_kg_per_m3;
   for (std::size_t i = 0; i < density.size(); ++i) {
     const bool rises = interface_height_m[i + columns] > interface_height_m[i];
-    const float vapour = state.vapour_kg_per_kg.empty() ? 0.0F : state.vapour_kg_per_kg[i];
-    density[i] = rises ? DensityOf(density[i], state.potential_temperature_K[i], vapour) : kMissing;
+    density[i] = rises ? DensityAt(state, i) : kMissing;
+  }
+  return std::move(density);
+}
+
+std::vector<float> WholeAirDensity(const std::vector<float>& dry_air_density_kg_per_m3,
+                                   const std::vector<float>& vapour_kg_per_kg,
+                                   const std::vector<float>& condensate) {
+  std::vector<float> density = dry_air_density_kg_per_m3;
+  for (std::size_t i = 0; i < density.size(); ++i) {
+    const float vapour = vapour_kg_per_kg.empty() ? 0.0F : std::max(vapour_kg_per_kg[i], 0.0F);
+    density[i] *= (1.0F + vapour) / (1.0F - condensate[i]);
   }
   return density;
 }

@@ -1,4 +1,4 @@
-// The heights of a WRF file's layers and the density of dry air in them.
+// The heights of a model's layers and the density of the air in them.
 #pragma once
 
 #include <cstddef>
@@ -12,26 +12,38 @@ struct LayerAir {
   std::size_t columns = 0;
   std::vector<float> interface_height_m;         // (levels + 1) * columns; NaN where missing
   std::vector<float> dry_air_density_kg_per_m3;  // levels * columns; NaN where an input is missing
-  std::vector<float> temperature_K;              // levels * columns; empty if no field needs it
+  // The density of dry air, vapour and condensate together. Empty if no field needs it.
+  std::vector<float> whole_air_density_kg_per_m3;
+  std::vector<float> temperature_K;  // levels * columns; empty if no field needs it
 };
 
 // Computes heights from the sum of perturbation and base geopotential (m2/s2), in place.
 // Implausible heights become NaN.
 void GeopotentialToHeight(const std::vector<float>& base, std::vector<float>& geopotential);
 
-// The state of the air in each layer, as the file gives it. Missing values are NaN.
+// The state of the air in each layer, as the file gives it. Missing values are NaN. A file has
+// pressure and either temperature, or the density instead of all three.
 struct LayerState {
   std::vector<float> pressure_Pa;
   std::vector<float> potential_temperature_K;
-  std::vector<float> vapour_kg_per_kg;  // empty if the air is dry
+  std::vector<float> vapour_kg_per_kg;  // per kg of dry air; empty if the air is dry
+  std::vector<float> temperature_K;
+  std::vector<float> air_density_kg_per_m3;  // of dry air and vapour together
 };
 
-// Returns the temperature of every layer. It is meaningless where the density is NaN.
+// Returns the temperature of every layer, or an empty array if the file has only the density. It
+// is meaningless where the density is NaN.
 std::vector<float> Temperature(const LayerState& state);
 
-// Returns the density of dry air in every layer. Reuses the memory of `state.pressure_Pa`. The
-// density of a layer with missing or unordered interfaces is NaN.
+// Returns the density of dry air in every layer. Reuses the memory of `state`. The density of a
+// layer with missing or unordered interfaces is NaN.
 std::vector<float> DryAirDensity(LayerState state, const std::vector<float>& interface_height_m,
                                  std::size_t columns);
+
+// Returns the density of dry air, vapour and condensate together. `condensate` is the share of the
+// whole mass that is condensate, and `vapour_kg_per_kg` may be empty.
+std::vector<float> WholeAirDensity(const std::vector<float>& dry_air_density_kg_per_m3,
+                                   const std::vector<float>& vapour_kg_per_kg,
+                                   const std::vector<float>& condensate);
 
 }  // namespace thunderhead::storm_files

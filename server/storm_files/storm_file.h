@@ -14,6 +14,7 @@
 #include "absl/time/time.h"
 #include "storm_files/vertical_remap.h"
 #include "volume/hydrometeor_fields.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::storm_files {
 
@@ -46,6 +47,16 @@ inline constexpr std::size_t kMaxTimes = 1'000'000;
 // this function before it reads the file's times.
 absl::Status CheckRecords(const std::string& path, std::size_t records);
 
+// What a file contributes to a storm, if a time of the storm is spread over several files.
+struct StormPart {
+  // A text that is equal for all files of one run on one grid, and different for other files. It is
+  // empty if the file is a complete storm.
+  std::string of;
+  // True if the file belongs to every time of the run, for example with the heights of the layers.
+  // Then StormFile::times is empty.
+  bool at_all_times = false;
+};
+
 struct StormFile {
   std::string path;
   glm::ivec3 cells{0};  // west-east, south-north, bottom-top
@@ -60,7 +71,16 @@ struct StormFile {
                                              // different for other runs
   std::optional<double> latitude_deg;        // latitude of the middle of the domain
   std::optional<double> longitude_deg;
+  // The middle of the domain at each record, if the domain moves (a moving nest). Otherwise empty.
+  std::vector<volume::EarthPlace> middles;
   std::string projection;  // the grid's projection, as PROJ writes it; empty if none
+  std::string member;      // the ensemble member, e.g. "mem05"; empty if the file has only one run
+  // What the reader assumed because the file does not say it, a sentence each, for users.
+  std::vector<std::string> assumptions;
+  // Set if the file alone is not a storm. StormFormats::DescribeTogether describes such files.
+  StormPart part;
+  // The paths of all files, `path` among them, if a time is spread over several. Otherwise empty.
+  std::vector<std::string> parts;
   std::shared_ptr<const RecordReader> reader;
   // A number that changes if another file replaces this file, or if the file is written anew. The
   // number stays the same while the file only gets more times.

@@ -1,5 +1,10 @@
 #include "storm_files/storm_format.h"
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <span>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/time/civil_time.h"
@@ -36,6 +41,7 @@ absl::Status CheckDescribed(StormFile& file) {
                      absl::FormatTime(time, absl::UTCTimeZone()), "); check its units"));
   }
   file.about = base::Printable(file.about);
+  file.member = base::Printable(file.member);
   return absl::OkStatus();
 }
 
@@ -47,9 +53,35 @@ absl::Status CheckRecords(const std::string& path, std::size_t records) {
                                                  " are the most; split it, or correct its size"));
 }
 
-absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const {
-  if (elsewhere_) return elsewhere_(path);
-  const UnknownFile file{path, netcdf::NetcdfFile::Open(path)};
+UnknownFile::UnknownFile(const std::string& path) : path_(path), bytes_(base::OpenBytes(path)) {
+  if (!bytes_.ok()) return;
+  start_.resize(std::min<std::uint64_t>(kStart_bytes, (*bytes_)->Size_bytes()));
+  if (!(*bytes_)->Read(0, std::as_writable_bytes(std::span(start_))).ok()) start_.clear();
+}
+
+const absl::StatusOr<netcdf::NetcdfFile>& UnknownFile::Netcdf() const {
+  if (!netcdf_.has_value()) netcdf_.emplace(netcdf::NetcdfFile::Open(path_));
+  return *netcdf_;
+}
+
+bool StormFormat::MayBegin(std::string_view) const { return false; }
+
+absl::Status StormFormats::CheckStart(const std::string& path, int file) const {
+  std::string start(UnknownFile::kStart_bytes, '\0');
+  const ssize_t count = pread(file, start.data(), start.size(), 0);
+  start.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  const bool known =
+      std::ranges::any_of(formats_, [&](const auto& format) { return format->MayBegin(start); });
+  return known ? absl::OkStatus() : netcdf::NetcdfFile::CheckStart(path, file);
+}
+
+absl::StatusOr<StormFile> StormFormat::DescribeTogether(
+    const std::vector<UnknownFile>& files) const {
+  return absl::InternalError(absl::StrCat(files.front().Path(), ": ", std::string(Name()),
+                                          " does not spread a time over several files"));
+}
+
+absl::StatusOr<const StormFormat*> StormFormats::FormatOf(const UnknownFile& file) const {
   FormatFit best = FormatFit::kNone;
   std::vector<const StormFormat*> fitting;  // fit as well as `best`
   for (const std::shared_ptr<const StormFormat>& format : formats_) {
@@ -60,22 +92,50 @@ absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const 
     fitting.push_back(format.get());
   }
   if (fitting.empty()) return NoneFits(file);
-  if (fitting.size() == 1) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(StormFile described, fitting.front()->Describe(file));
-    THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(described));
-    return described;
-  }
+  if (fitting.size() == 1) return fitting.front();
   const auto append_name = [](std::string* out, const StormFormat* format) {
     out->append(format->Name());
   };
   return absl::InvalidArgumentError(
-      absl::StrCat(path, ": could be any of ", absl::StrJoin(fitting, ", ", append_name),
+      absl::StrCat(file.Path(), ": could be any of ", absl::StrJoin(fitting, ", ", append_name),
                    ", which are read differently; give a file with the marks of one only"));
 }
 
+absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const {
+  if (elsewhere_.describe) return elsewhere_.describe(path);
+  const UnknownFile file(path);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const StormFormat* const format, FormatOf(file));
+  THUNDERHEAD_ASSIGN_OR_RETURN(StormFile described, format->Describe(file));
+  if (described.part.of.empty()) THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(described));
+  return described;
+}
+
+std::vector<absl::StatusOr<StormFile>> StormFormats::DescribeEach(
+    const std::vector<std::string>& paths) const {
+  if (elsewhere_.describe_each) return elsewhere_.describe_each(paths);
+  std::vector<absl::StatusOr<StormFile>> files;
+  files.reserve(paths.size());
+  for (const std::string& path : paths) files.push_back(Describe(path));
+  return files;
+}
+
+absl::StatusOr<StormFile> StormFormats::DescribeTogether(
+    const std::vector<std::string>& paths) const {
+  if (elsewhere_.describe_together) return elsewhere_.describe_together(paths);
+  std::vector<UnknownFile> files;
+  files.reserve(paths.size());
+  for (const std::string& path : paths) files.emplace_back(path);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const StormFormat* const format, FormatOf(files.front()));
+  THUNDERHEAD_ASSIGN_OR_RETURN(StormFile described, format->DescribeTogether(files));
+  described.path = paths.front();
+  described.parts = paths;
+  THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(described));
+  return described;
+}
+
 absl::Status StormFormats::NoneFits(const UnknownFile& file) const {
-  if (!file.netcdf.ok()) return file.netcdf.status();
-  std::string message = absl::StrCat(file.path, ": is ");
+  if (!file.Netcdf().ok()) return file.Netcdf().status();
+  std::string message = absl::StrCat(file.Path(), ": is ");
   for (std::size_t i = 0; i < formats_.size(); ++i) {
     const char* first = formats_.size() > 1 ? "neither " : "not ";
     absl::StrAppend(&message, i == 0 ? first : " nor ", std::string(formats_[i]->Requirement()));

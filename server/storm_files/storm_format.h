@@ -4,22 +4,44 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "base/byte_source.h"
 #include "netcdf/netcdf_file.h"
 #include "storm_files/storm_file.h"
 
 namespace thunderhead::storm_files {
 
-// A file whose format is not known yet. It is opened once, and all formats examine the open file.
-struct UnknownFile {
-  std::string path;
-  absl::StatusOr<netcdf::NetcdfFile> netcdf;  // the open file, or the error why it cannot be opened
-                                              // as netCDF
+// A file whose format is not known yet. It is opened once, and all formats examine its bytes.
+class UnknownFile {
+ public:
+  explicit UnknownFile(const std::string& path);
+
+  const std::string& Path() const { return path_; }
+
+  // Returns the file's bytes, or the error why they cannot be read.
+  const absl::StatusOr<std::shared_ptr<const base::ByteSource>>& Bytes() const { return bytes_; }
+
+  // Returns the first kStart_bytes bytes. They are fewer if the file is shorter, and none if it
+  // cannot be read.
+  std::string_view Start() const { return start_; }
+
+  // Returns the file opened as netCDF, or the error why it cannot be opened so. The first call
+  // opens it. Not safe from several threads.
+  const absl::StatusOr<netcdf::NetcdfFile>& Netcdf() const;
+
+  static constexpr std::size_t kStart_bytes = 4096;
+
+ private:
+  const std::string path_;
+  const absl::StatusOr<std::shared_ptr<const base::ByteSource>> bytes_;
+  std::string start_;
+  mutable std::optional<absl::StatusOr<netcdf::NetcdfFile>> netcdf_;
 };
 
 // How closely a file fits a format. The format with the closest fit is used. A model's own layout
@@ -45,12 +67,22 @@ class StormFormat {
   // messages. An example is "WRF output (it has no dimension bottom_top)".
   virtual std::string_view Requirement() const = 0;
 
+  // Returns whether a file that begins with these bytes may have this format. A file that no format
+  // may read is refused before a process is started for it. By default a file may be netCDF, which
+  // is checked elsewhere.
+  virtual bool MayBegin(std::string_view start) const;
+
   // Checks the file quickly. Reads no fields and never fails.
   virtual FormatFit Sniff(const UnknownFile& file) const = 0;
 
   // Reads and checks the metadata of a file that fits this format, and sets its reader. Errors name
-  // the file, the variable and what it lacks.
+  // the file, the variable and what it lacks. If a time is spread over several files, this sets
+  // StormFile::part, times and about, and nothing else is needed.
   virtual absl::StatusOr<StormFile> Describe(const UnknownFile& file) const = 0;
+
+  // Describes the files of one time, which have this format and an equal StormPart::of, and sets
+  // the reader. Errors name what is missing. Only formats that set StormFile::part implement it.
+  virtual absl::StatusOr<StormFile> DescribeTogether(const std::vector<UnknownFile>& files) const;
 };
 
 // The formats that a store of storms reads. This is a plain value, so adding a format to a copy
@@ -62,20 +94,42 @@ class StormFormats {
 
   void Add(std::shared_ptr<const StormFormat> format) { formats_.push_back(std::move(format)); }
 
-  // Makes `elsewhere` describe every file, for example in another process. Each file is then read
-  // by the reader in its description.
-  using Elsewhere = std::function<absl::StatusOr<StormFile>(const std::string& path)>;
+  // Functions that describe files somewhere else, for example in another process. They do what the
+  // functions of StormFormats with the same names do. Each file is then read by the reader in its
+  // description. `describe_each` may be empty. `describe_together` may be empty if no format
+  // spreads a time over several files.
+  struct Elsewhere {
+    std::function<absl::StatusOr<StormFile>(const std::string& path)> describe;
+    std::function<std::vector<absl::StatusOr<StormFile>>(const std::vector<std::string>& paths)>
+        describe_each = {};
+    std::function<absl::StatusOr<StormFile>(const std::vector<std::string>& paths)>
+        describe_together = {};
+  };
   void LeaveTo(Elsewhere elsewhere) { elsewhere_ = std::move(elsewhere); }
+
+  // Checks an open file before a process is started to read it. Returns an error if it begins like
+  // no format's files. Returns UNAVAILABLE while another program writes it and has locked it.
+  absl::Status CheckStart(const std::string& path, int file) const;
 
   // Describes the file at `path` by the format that fits it best. It is an error if no format fits,
   // or if two fit equally well.
   absl::StatusOr<StormFile> Describe(const std::string& path) const;
+
+  // Describes several files, each separately, in the order of `paths`. This is faster than to
+  // describe small files one after the other.
+  std::vector<absl::StatusOr<StormFile>> DescribeEach(const std::vector<std::string>& paths) const;
+
+  // Describes the files of one time that is spread over several files. The description has the
+  // first path.
+  absl::StatusOr<StormFile> DescribeTogether(const std::vector<std::string>& paths) const;
 
   // Returns the formats' examples for a message: "wrfout_..., or CF netCDF".
   std::string Examples() const;
 
  private:
   absl::Status NoneFits(const UnknownFile& file) const;
+  // Returns the format that fits the file best.
+  absl::StatusOr<const StormFormat*> FormatOf(const UnknownFile& file) const;
 
   std::vector<std::shared_ptr<const StormFormat>> formats_;
   Elsewhere elsewhere_;

@@ -152,6 +152,30 @@ VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, in
   return {range.low_m, spacing_m, std::clamp(cells, 1, max_cells)};
 }
 
+bool LayersAreCells(const std::vector<float>& interface_height_m, int levels, std::size_t columns,
+                    const VerticalGrid& grid) {
+  if (levels != grid.cells || !(grid.spacing_m > 0.0)) return false;
+  // Coordinates are often rounded when they are written, or stored in single precision.
+  constexpr double kTolerance = 1e-2;
+  for (int level = 0; level <= levels; ++level) {
+    const double face_m = grid.low_m + level * grid.spacing_m;
+    const float* height_m = interface_height_m.data() + level * columns;
+    const bool even = std::all_of(height_m, height_m + columns, [&](float each_m) {
+      return std::abs(each_m - face_m) <= kTolerance * grid.spacing_m;
+    });
+    if (!even) return false;
+  }
+  return true;
+}
+
+VerticalGrid GridOfEvenLayers(const std::vector<float>& interface_height_m, int levels,
+                              std::size_t columns) {
+  const HeightRange range = RangeOf(interface_height_m);
+  const VerticalGrid grid{range.low_m, (range.high_m - range.low_m) / levels, levels};
+  const bool even = LayersAreCells(interface_height_m, levels, columns, grid);
+  return even ? grid : VerticalGrid{};
+}
+
 VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m) {
   const HeightRange range = RangeOf(interface_height_m);
   // Heights are in single precision, so differences of centimetres are rounding.

@@ -33,6 +33,15 @@ struct Layers {
 VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, int levels,
                                 std::size_t columns);
 
+// Returns the grid of which the layers of every column are the cells. VerticalGrid::cells is zero
+// if there is none, because layers differ in thickness or columns in height by more than 1 %.
+VerticalGrid GridOfEvenLayers(const std::vector<float>& interface_height_m, int levels,
+                              std::size_t columns);
+
+// Returns whether the layers of every column are the cells of `grid`, to 1 % of a cell.
+bool LayersAreCells(const std::vector<float>& interface_height_m, int levels, std::size_t columns,
+                    const VerticalGrid& grid);
+
 // Returns `grid` extended by whole cells below and above until it contains every interface.
 VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m);
 

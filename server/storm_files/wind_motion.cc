@@ -108,13 +108,16 @@ glm::dvec2 WindAt(double height_m, const std::vector<glm::dvec2>& winds,
 
 }  // namespace
 
-Wind WindInCells(const StaggeredWind& wind, const std::vector<float>& interface_height_m) {
+Wind WindInCells(const ModelWind& wind, const std::vector<float>& interface_height_m) {
+  const auto in_cells = [&wind](const std::vector<float>& values, int axis) {
+    return wind.on_faces ? MiddlesOf(values, wind.cells, axis) : values;
+  };
   return {wind.cells,
           wind.dx_m,
           wind.dy_m,
-          MiddlesOf(wind.u_m_per_s, wind.cells, 0),
-          MiddlesOf(wind.v_m_per_s, wind.cells, 1),
-          MiddlesOf(wind.w_m_per_s, wind.cells, 2),
+          in_cells(wind.u_m_per_s, 0),
+          in_cells(wind.v_m_per_s, 1),
+          in_cells(wind.w_m_per_s, 2),
           MiddlesOf(interface_height_m, wind.cells, 2)};
 }
 

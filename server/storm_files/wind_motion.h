@@ -12,13 +12,17 @@
 namespace thunderhead::storm_files {
 
 // In all arrays x runs fastest, then y, then levels upwards. Missing values are NaN.
-struct StaggeredWind {
+struct ModelWind {
   glm::ivec3 cells{0};
   double dx_m = 0.0;
   double dy_m = 0.0;
-  std::vector<float> u_m_per_s;  // (x + 1) * y * z values, on the cells' western and eastern faces
-  std::vector<float> v_m_per_s;  // x * (y + 1) * z values, on the southern and northern faces
-  std::vector<float> w_m_per_s;  // x * y * (z + 1) values, on the lower and upper faces
+  // True if the wind is on the cells' faces. Then u has one value more along x (on the western and
+  // eastern faces), and v one more along y (southern and northern). W has one more along z (lower
+  // and upper). Otherwise all values are at the cells' centres.
+  bool on_faces = true;
+  std::vector<float> u_m_per_s;
+  std::vector<float> v_m_per_s;
+  std::vector<float> w_m_per_s;
 };
 
 struct Wind {
@@ -32,7 +36,7 @@ struct Wind {
   std::vector<float> height_m;
 };
 
-Wind WindInCells(const StaggeredWind& wind, const std::vector<float>& interface_height_m);
+Wind WindInCells(const ModelWind& wind, const std::vector<float>& interface_height_m);
 
 // Returns the turbulent kinetic energy (m2/s2) of the subgrid eddies in each cell. The eddies are
 // assumed to be in equilibrium with the deformation |D| of the resolved wind. The energy is (0.4 l

@@ -4,29 +4,12 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
+#include "storm_files/fields_on_heights.h"
 #include "storm_files/wrf_metadata.h"
 #include "storm_files/wrf_reader.h"
 
 namespace thunderhead::storm_files {
 namespace {
-
-class WrfRecordReader final : public RecordReader {
- public:
-  explicit WrfRecordReader(WrfMetadata metadata) : metadata_(std::move(metadata)) {}
-
-  absl::StatusOr<volume::HydrometeorFields> Read(std::size_t record,
-                                                 const std::optional<VerticalGrid>& grid,
-                                                 const ReadCheckpoint& checkpoint) const override {
-    return ReadWrfTime(metadata_, record, grid, checkpoint);
-  }
-
-  absl::StatusOr<VerticalGrid> ReadVerticalGrid(std::size_t record) const override {
-    return ReadWrfVerticalGrid(metadata_, record);
-  }
-
- private:
-  const WrfMetadata metadata_;
-};
 
 class WrfFormat final : public StormFormat {
  public:
@@ -37,9 +20,9 @@ class WrfFormat final : public StormFormat {
   }
 
   FormatFit Sniff(const UnknownFile& file) const override {
-    if (!file.netcdf.ok()) return FormatFit::kNone;
+    if (!file.Netcdf().ok()) return FormatFit::kNone;
     const auto has = [&file](const char* name) {
-      return file.netcdf->DimensionLength(name).has_value();
+      return file.Netcdf()->DimensionLength(name).has_value();
     };
     const bool fits =
         has("bottom_top") || has("bottom_top_stag") || (has("west_east") && has("south_north"));
@@ -47,8 +30,8 @@ class WrfFormat final : public StormFormat {
   }
 
   absl::StatusOr<StormFile> Describe(const UnknownFile& unknown) const override {
-    THUNDERHEAD_RETURN_IF_ERROR(unknown.netcdf.status());
-    THUNDERHEAD_ASSIGN_OR_RETURN(WrfMetadata metadata, ReadWrfMetadata(*unknown.netcdf));
+    THUNDERHEAD_RETURN_IF_ERROR(unknown.Netcdf().status());
+    THUNDERHEAD_ASSIGN_OR_RETURN(WrfMetadata metadata, ReadWrfMetadata(*unknown.Netcdf()));
     StormFile file;
     file.path = metadata.path;
     file.cells = metadata.cells;
@@ -65,7 +48,9 @@ class WrfFormat final : public StormFormat {
     file.latitude_deg = metadata.latitude_deg;
     file.longitude_deg = metadata.longitude_deg;
     file.projection = metadata.projection;
-    file.reader = std::make_shared<WrfRecordReader>(std::move(metadata));
+    file.reader =
+        MakeRecordReader([metadata = std::make_shared<const WrfMetadata>(std::move(metadata))](
+                             std::size_t record) { return OpenWrfTime(metadata, record); });
     return file;
   }
 };

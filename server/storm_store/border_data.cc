@@ -352,9 +352,11 @@ absl::StatusOr<std::vector<volume::BorderLine>> BorderData::LinesOf(
 }
 
 std::shared_ptr<const volume::BorderMap> BorderData::MapOf(const StormInfo& storm,
+                                                           std::size_t time_index,
                                                            const volume::RegularGrid& grid) {
-  if (!storm.latitude_deg.has_value() || !storm.longitude_deg.has_value()) return nullptr;
-  const volume::EarthPlace middle{*storm.latitude_deg, *storm.longitude_deg};
+  const std::optional<volume::EarthPlace> at = MiddleOf(storm, time_index);
+  if (!at.has_value()) return nullptr;
+  const volume::EarthPlace& middle = *at;
   const std::optional<volume::MapProjection> projection =
       volume::MapProjection::Of(storm.projection, middle);
   if (!projection.has_value()) return nullptr;
@@ -365,7 +367,7 @@ std::shared_ptr<const volume::BorderMap> BorderData::MapOf(const StormInfo& stor
                 size_m.y};
   const std::lock_guard lock(mutex_);
   std::erase_if(maps_, [](const auto& made) { return made.second.expired(); });
-  if (const auto at = maps_.find(key); at != maps_.end()) return at->second.lock();
+  if (const auto made = maps_.find(key); made != maps_.end()) return made->second.lock();
   const base::Stopwatch stopwatch;
   const absl::StatusOr<std::vector<volume::BorderLine>> lines = LinesOf(*projection, around);
   if (!lines.ok()) {

@@ -32,10 +32,11 @@ class BorderData {
   // Returns the data in `folder`, or null if the folder contains no border data.
   static std::shared_ptr<BorderData> Find(const std::string& folder);
 
-  // Returns the map of lines around a storm's grid, from the coarsest data set that is as fine as
-  // the map's texels. If an equal map is still in use, returns this map. Returns null for a storm
-  // without a map projection. If the data cannot be read, returns null and logs the error.
-  std::shared_ptr<const volume::BorderMap> MapOf(const StormInfo& storm,
+  // Returns the map of lines around a storm's grid at a time of the storm, from the coarsest data
+  // set that is as fine as the map's texels. If an equal map is still in use, returns this map.
+  // Returns null for a storm without a map projection. If the data cannot be read, returns null and
+  // logs the error.
+  std::shared_ptr<const volume::BorderMap> MapOf(const StormInfo& storm, std::size_t time_index,
                                                  const volume::RegularGrid& grid);
 
   // Returns the coastlines and borders that cross the area of `grid`, in world metres.

@@ -374,7 +374,8 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
                                  }));
     THUNDERHEAD_RETURN_IF_ERROR(CheckNotReplaced(file, ReplacedRetryAfter()));
     if (options_.borders != nullptr) {
-      counted->fields.borders = options_.borders->MapOf(place.storm->info, counted->fields.grid);
+      counted->fields.borders =
+          options_.borders->MapOf(place.storm->info, place.time, counted->fields.grid);
     }
     if (options_.memory != nullptr) {
       scratch = {};

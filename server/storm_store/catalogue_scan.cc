@@ -36,7 +36,10 @@ absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
   look_again_at_.reset();
   Result result;
   const StormSearch search{
-      .describe = [this, now](const std::string& path) { return Describe(path, now); },
+      .describe = [this,
+                   now](const std::vector<std::string>& paths) { return Describe(paths, now); },
+      .describe_together =
+          [this](const std::vector<std::string>& paths) { return DescribeTogether(paths); },
       .may_find_nothing = true,
       .on_unlisted =
           [this](const std::string& path, const absl::Status& status) {
@@ -55,6 +58,9 @@ absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
   const std::size_t gone = std::erase_if(known_, [this](const auto& entry) {
     const auto hangs = [&entry](const std::string& path) { return entry.first.starts_with(path); };
     return entry.second.scan != scans_ && std::ranges::none_of(hanging_, hangs);
+  });
+  std::erase_if(together_, [this](const auto& entry) {
+    return hanging_.empty() && entry.second.scan != scans_;
   });
   result.changed = changed_ || gone > 0;
   if (result.changed) LogNotes(result.storms);
@@ -82,18 +88,66 @@ bool CatalogueScan::Answers(const std::string& path) {
   return false;
 }
 
-absl::StatusOr<storm_files::StormFile> CatalogueScan::Describe(const std::string& path, Time now) {
-  if (stopping_) return absl::CancelledError("the search was told to stop");
-  const std::optional<Stamp> stamp = StampOf(path);
-  if (!stamp.has_value()) return absl::CancelledError("it has just gone");
-  Known& known = known_[path];
-  Look(path, *stamp, now, known);
-  known.scan = scans_;
-  if (known.description.has_value()) return *known.description;
-  return absl::CancelledError(known.settled ? "it is no storm" : "it is still being written");
+std::vector<absl::StatusOr<storm_files::StormFile>> CatalogueScan::Describe(
+    const std::vector<std::string>& paths, Time now) {
+  std::vector<std::string> to_open;
+  for (const std::string& path : paths) {
+    if (stopping_) break;
+    const std::optional<Stamp> stamp = StampOf(path);
+    if (!stamp.has_value()) continue;
+    Known& known = known_[path];
+    if (Look(*stamp, now, known)) to_open.push_back(path);
+    known.scan = scans_;
+  }
+  std::vector<absl::StatusOr<storm_files::StormFile>> opened =
+      DescribeInBatches(to_open, options_.formats, [this] {
+        if (!stopping_) options_.before_file();
+        return !stopping_;
+      });
+  for (std::size_t i = 0; i < to_open.size() && !stopping_; ++i) {
+    Take(to_open[i], now, std::move(opened[i]), known_[to_open[i]]);
+  }
+  std::vector<absl::StatusOr<storm_files::StormFile>> files;
+  for (const std::string& path : paths) {
+    const auto known = known_.find(path);
+    if (known == known_.end() || known->second.scan != scans_) {
+      files.emplace_back(absl::CancelledError("it has just gone"));
+    } else if (known->second.description.has_value()) {
+      files.emplace_back(*known->second.description);
+    } else {
+      files.emplace_back(absl::CancelledError(known->second.settled ? "it is no storm"
+                                                                    : "it is still being written"));
+    }
+  }
+  return files;
 }
 
-void CatalogueScan::Look(const std::string& path, const Stamp& stamp, Time now, Known& known) {
+absl::StatusOr<storm_files::StormFile> CatalogueScan::DescribeTogether(
+    const std::vector<std::string>& paths) {
+  if (stopping_) return absl::CancelledError("the search was told to stop");
+  std::vector<std::uint64_t> versions;
+  for (const std::string& path : paths) versions.push_back(known_[path].description->version);
+  KnownTogether& known = together_[paths];
+  known.scan = scans_;
+  if (known.versions == versions) {
+    // An error is logged once.
+    if (!known.description.ok()) return absl::CancelledError("it is still not whole");
+    return *known.description;
+  }
+  known.versions = std::move(versions);
+  options_.before_file();
+  known.description = options_.formats.DescribeTogether(paths);
+  changed_ = true;
+  if (!known.description.ok()) return known.description.status();
+  storm_files::StormFile& file = *known.description;
+  const storm_files::StormFile& first = *known_[paths.front()].description;
+  file.version = ++versions_;
+  file.id = first.id;
+  file.device = first.device;
+  return file;
+}
+
+bool CatalogueScan::Look(const Stamp& stamp, Time now, Known& known) {
   const bool fresh = known.scan == 0;
   if (fresh || known.stamp != stamp) {
     const bool same_file = !fresh && known.stamp.file == stamp.file;
@@ -115,18 +169,21 @@ void CatalogueScan::Look(const std::string& path, const Stamp& stamp, Time now, 
     known.tried_at.reset();
   }
   if (!known.settled && now - known.unchanged_since < options_.settle) {
-    return LookAgainAt(known.unchanged_since + options_.settle);
+    LookAgainAt(known.unchanged_since + options_.settle);
+    return false;
   }
   known.settled = true;
-  Open(path, now, known);
+  return MustOpen(now, known);
 }
 
-void CatalogueScan::Open(const std::string& path, Time now, Known& known) {
-  const bool failed = known.tried_at.has_value() && !known.complaint.empty();
-  if (known.tried_at.has_value() && !(failed && now - *known.tried_at >= options_.retry)) return;
+bool CatalogueScan::MustOpen(Time now, const Known& known) const {
+  if (!known.tried_at.has_value()) return true;
+  return !known.complaint.empty() && now - *known.tried_at >= options_.retry;
+}
+
+void CatalogueScan::Take(const std::string& path, Time now,
+                         absl::StatusOr<storm_files::StormFile> file, Known& known) {
   known.tried_at = now;
-  options_.before_file();
-  absl::StatusOr<storm_files::StormFile> file = DescribeFile(path, options_.formats);
   // The file was being written while it was read, so its description is out of date.
   if (StampOf(path) != known.stamp) {
     known.tried_at.reset();

@@ -33,7 +33,8 @@ class CatalogueScan {
     // The time after which an unchanged file that could not be read is tried again, because its
     // writer may have released a lock meanwhile.
     std::chrono::milliseconds retry{};
-    // A function that is called before each file is opened. It may wait.
+    // A function that is called before each file, or each batch of small files, is opened. It may
+    // wait.
     std::function<void()> before_file = [] {};
     // A function that is called for each path before it is searched, to find out whether the path's
     // storage responds. It may hang.
@@ -94,12 +95,25 @@ class CatalogueScan {
     std::uint64_t scan = 0;  // number of the scan that last saw the file
   };
 
+  // One time that is spread over several files.
+  struct KnownTogether {
+    std::vector<std::uint64_t> versions;  // StormFile::version of each file
+    absl::StatusOr<storm_files::StormFile> description = absl::CancelledError();
+    std::uint64_t scan = 0;  // number of the scan that last saw it
+  };
+
   // Returns false while the path's storage hangs.
   bool Answers(const std::string& path);
   static std::optional<Stamp> StampOf(const std::string& path);
-  absl::StatusOr<storm_files::StormFile> Describe(const std::string& path, Time now);
-  void Look(const std::string& path, const Stamp& stamp, Time now, Known& known);
-  void Open(const std::string& path, Time now, Known& known);
+  std::vector<absl::StatusOr<storm_files::StormFile>> Describe(
+      const std::vector<std::string>& paths, Time now);
+  absl::StatusOr<storm_files::StormFile> DescribeTogether(const std::vector<std::string>& paths);
+  // Returns whether the file must be opened now.
+  bool Look(const Stamp& stamp, Time now, Known& known);
+  bool MustOpen(Time now, const Known& known) const;
+  // Takes the description of a file that was opened.
+  void Take(const std::string& path, Time now, absl::StatusOr<storm_files::StormFile> file,
+            Known& known);
   void Lose(Known& known);  // removes the description
   void LookAgainAt(Time time);
 
@@ -109,6 +123,8 @@ class CatalogueScan {
   FoundByPath found_;
   std::set<std::string> hanging_;  // paths whose storage hangs
   std::map<std::string, Known> known_;
+  // The times that are spread over several files, by the paths of these files.
+  std::map<std::vector<std::string>, KnownTogether> together_;
   std::set<std::string> unlisted_;  // folders for which a warning was logged
   std::uint64_t scans_ = 0;
   std::uint64_t versions_ = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <new>
 #include <set>
@@ -72,7 +73,7 @@ std::string NameOfFolder(const fs::path& path) {
 // Returns a key that is equal for files that may be parts of one run.
 auto RunKey(const storm_files::StormFile& file) {
   return std::make_tuple(file.domain, file.cells.x, file.cells.y, file.cells.z, file.dx_m,
-                         file.dy_m, file.run, file.fields);
+                         file.dy_m, file.run, file.member, file.fields);
 }
 
 // Returns whether the files belong to one run. The times of such files overlap at most at their
@@ -180,6 +181,11 @@ absl::StatusOr<Folder> List(const fs::path& path, FolderWalk& walk) {
   return folder;
 }
 
+// Each member of an ensemble is a separate storm.
+std::string WithMember(const std::string& name, const storm_files::StormFile& file) {
+  return file.member.empty() ? name : absl::StrCat(name, "/", file.member);
+}
+
 // Groups a folder's files into runs. Files that do not continue one another become separate storms.
 std::vector<NamedStorm> GroupRuns(const fs::path& folder,
                                   std::vector<storm_files::StormFile> files) {
@@ -188,12 +194,14 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder,
   for (std::vector<storm_files::StormFile>& run : FilesOfRuns(std::move(files))) {
     if (run.size() > 1 && ContinueOneAnother(run)) {
       series.push_back(storms.size());
-      storms.push_back({NameOfFolder(folder), std::move(run)});
+      const std::string name = WithMember(NameOfFolder(folder), run.front());
+      storms.push_back({name, std::move(run)});
       continue;
     }
     for (storm_files::StormFile& file : run) {
-      const std::string name = NameOfFile(file.path);
-      storms.push_back({name, {}});
+      // No file of a time that is spread over several files stands for all of them.
+      const std::string name = file.parts.empty() ? NameOfFile(file.path) : NameOfFolder(folder);
+      storms.push_back({WithMember(name, file), {}});
       storms.back().files.push_back(std::move(file));
     }
   }
@@ -204,6 +212,49 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder,
     }
   }
   return storms;
+}
+
+// The files of one run whose times are spread over several files each.
+struct PartsOfRun {
+  std::vector<std::string> at_all_times;
+  std::map<absl::Time, std::vector<std::string>> at;
+};
+
+void Add(const storm_files::StormFile& part, PartsOfRun& run) {
+  if (part.part.at_all_times) run.at_all_times.push_back(part.path);
+  for (const absl::Time time : part.times) run.at[time].push_back(part.path);
+}
+
+// Reports a file that is left out. A file of another kind, such as a read-me, is normal. A storm
+// that cannot be read deserves a warning.
+void ReportLeftOut(FolderWalk& walk, const absl::Status& why) {
+  if (absl::IsCancelled(why)) return;
+  walk.first_failure.Update(why);
+  const bool other = absl::IsInvalidArgument(why);
+  spdlog::log(other ? spdlog::level::info : spdlog::level::warn, "left out: {}",
+              std::string(why.message()));
+}
+
+// Describes each time of the run. A time that lacks a file is left out.
+std::vector<storm_files::StormFile> TimesOf(const PartsOfRun& run, FolderWalk& walk) {
+  std::vector<storm_files::StormFile> files;
+  for (const auto& [time, parts] : run.at) {
+    // The time's own files come first, because the first path identifies it in messages.
+    std::vector<std::string> paths = parts;
+    paths.insert(paths.end(), run.at_all_times.begin(), run.at_all_times.end());
+    absl::StatusOr<storm_files::StormFile> whole = walk.search.describe_together(paths);
+    if (whole.ok()) {
+      files.push_back(*std::move(whole));
+    } else {
+      ReportLeftOut(walk, whole.status());
+    }
+  }
+  if (run.at.empty() && !run.at_all_times.empty()) {
+    ReportLeftOut(walk, absl::InvalidArgumentError(absl::StrCat(
+                            run.at_all_times.front(), ": belongs to all times of a run, and no ",
+                            "file of this run with a time is beside it; put them together")));
+  }
+  return files;
 }
 
 // Searches a folder and its subfolders. Each folder is searched only once, because links can make
@@ -217,20 +268,21 @@ absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
   }
   if (walk.search.on_folder) walk.search.on_folder(path.string());
   THUNDERHEAD_ASSIGN_OR_RETURN(const Folder folder, List(path, walk));
+  std::vector<std::string> paths;
+  for (const fs::path& file : folder.files) paths.push_back(file.string());
   std::vector<storm_files::StormFile> files;
-  for (const fs::path& file : folder.files) {
-    absl::StatusOr<storm_files::StormFile> metadata = walk.search.describe(file.string());
-    if (metadata.ok()) {
-      files.push_back(*std::move(metadata));
-      continue;
+  std::map<std::string, PartsOfRun> runs;  // by StormPart::of
+  for (absl::StatusOr<storm_files::StormFile>& described : walk.search.describe(paths)) {
+    if (!described.ok()) {
+      ReportLeftOut(walk, described.status());
+    } else if (described->part.of.empty()) {
+      files.push_back(*std::move(described));
+    } else {
+      Add(*described, runs[described->part.of]);
     }
-    if (absl::IsCancelled(metadata.status())) continue;
-    walk.first_failure.Update(metadata.status());
-    // A file of another kind, such as a read-me, is normal. A storm that cannot be read deserves a
-    // warning.
-    const bool other = absl::IsInvalidArgument(metadata.status());
-    spdlog::log(other ? spdlog::level::info : spdlog::level::warn, "left out: {}",
-                std::string(metadata.status().message()));
+  }
+  for (const auto& [of, run] : runs) {
+    std::ranges::move(TimesOf(run, walk), std::back_inserter(files));
   }
   if (!files.empty()) std::ranges::move(GroupRuns(path, std::move(files)), back_inserter(storms));
   if (depth == kDeepestFolder) return absl::OkStatus();
@@ -265,7 +317,11 @@ absl::Status Search(const std::string& path, FolderWalk walk, std::vector<NamedS
     return absl::OkStatus();
   }
   if (!fs::is_directory(path, error)) {
-    absl::StatusOr<storm_files::StormFile> metadata = search.describe(path);
+    absl::StatusOr<storm_files::StormFile> metadata = search.describe({path}).front();
+    if (metadata.ok() && !metadata->part.of.empty()) {
+      metadata = absl::InvalidArgumentError(absl::StrCat(
+          path, ": is one of several files of a time; give the folder with all of them"));
+    }
     if (!metadata.ok() && search.may_find_nothing) return absl::OkStatus();
     THUNDERHEAD_RETURN_IF_ERROR(metadata.status());
     storms.push_back({NameOfFile(path), {}});
@@ -294,10 +350,34 @@ void DropRepeated(std::vector<NamedStorm>& storms) {
     std::erase_if(storm.files, [&seen](const storm_files::StormFile& file) {
       std::error_code error;
       const fs::path canonical = fs::canonical(file.path, error);
-      return !seen.insert(error ? file.path : canonical.string()).second;
+      std::string key = error ? file.path : canonical.string();
+      // Two times may share their first file, if it holds both.
+      if (!file.parts.empty()) absl::StrAppend(&key, " ", absl::FormatTime(file.times.front()));
+      return !seen.insert(key).second;
     });
   }
   std::erase_if(storms, [](const NamedStorm& storm) { return storm.files.empty(); });
+}
+
+// Describes each of the files.
+std::vector<absl::StatusOr<storm_files::StormFile>> Describe(
+    const std::vector<std::string>& paths, const storm_files::StormFormats& formats) {
+  const base::SlowCall call(paths.front());
+  std::vector<absl::StatusOr<storm_files::StormFile>> files;
+  try {
+    files = formats.DescribeEach(paths);
+  } catch (const std::bad_alloc&) {
+    files.assign(
+        paths.size(),
+        absl::ResourceExhaustedError(absl::StrCat(
+            paths.front(), ": its metadata does not fit in memory; the file is probably damaged")));
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (!files[i].ok() || files[i]->device != 0) continue;
+    const std::optional<base::FileStamp> stamp = base::StampOf(paths[i]);
+    if (stamp.has_value()) files[i]->device = stamp->device;
+  }
+  return files;
 }
 
 }  // namespace
@@ -366,6 +446,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
                           .elapsed_s = absl::ToDoubleSeconds(time - sources.begin()->first),
                           .file = file.path,
                           .version = file.version});
+    if (!file.middles.empty()) info.times.back().middle = file.middles[source.record];
     storm.sources.push_back(source);
   }
   for (const storm_files::StormFile& file : files) info.files.push_back(file.path);
@@ -381,6 +462,13 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
     info.run_start = FormatValidTime(*start);
   }
   info.projection = first.projection;
+  for (const storm_files::StormFile& file : files) {
+    for (const std::string& assumption : file.assumptions) {
+      if (std::ranges::find(info.assumptions, assumption) == info.assumptions.end()) {
+        info.assumptions.push_back(base::Printable(assumption));
+      }
+    }
+  }
   storm.files = std::move(files);
   return storm;
 }
@@ -393,28 +481,54 @@ void LogNotes(const std::vector<CataloguedStorm>& storms) {
 
 absl::StatusOr<storm_files::StormFile> DescribeFile(const std::string& path,
                                                     const storm_files::StormFormats& formats) {
-  const base::SlowCall call(path);
-  try {
-    absl::StatusOr<storm_files::StormFile> file = formats.Describe(path);
-    if (file.ok() && file->device == 0) {
-      if (const auto stamp = base::StampOf(path); stamp.has_value()) file->device = stamp->device;
+  return Describe({path}, formats).front();
+}
+
+std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(
+    const std::vector<std::string>& paths, const storm_files::StormFormats& formats,
+    const std::function<bool()>& before) {
+  // A batch of files of this size takes about a second, so a search can be stopped soon.
+  constexpr std::size_t kMostInBatch = 50;
+  constexpr std::uintmax_t kSmallFile_bytes = 8 << 20;
+  std::vector<absl::StatusOr<storm_files::StormFile>> described;
+  for (std::size_t first = 0, last = 0; first < paths.size(); first = last) {
+    bool small = true;
+    while (last < paths.size() && last - first < kMostInBatch && small) {
+      std::error_code error;
+      small = fs::file_size(paths[last], error) <= kSmallFile_bytes && !error;
+      // A large file is a batch alone.
+      if (small || last == first) ++last;
     }
-    return file;
-  } catch (const std::bad_alloc&) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat(path, ": its metadata does not fit in memory; the file is probably damaged"));
+    if (!before()) {
+      const absl::StatusOr<storm_files::StormFile> stopped =
+          absl::CancelledError("the search was told to stop");
+      described.resize(paths.size(), stopped);
+      return described;
+    }
+    const auto begin = paths.begin();
+    std::ranges::move(Describe({begin + static_cast<std::ptrdiff_t>(first),
+                                begin + static_cast<std::ptrdiff_t>(last)},
+                               formats),
+                      std::back_inserter(described));
   }
+  return described;
 }
 
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const storm_files::StormFormats& formats,
                                                         const LinkPolicy& links) {
-  auto storms = FindStorms(
-      paths, {.describe = [&](const std::string& path) { return DescribeFile(path, formats); },
-              .on_unlisted = {},
-              .on_folder = {},
-              .examples = formats.Examples(),
-              .links = links});
+  const auto describe = [&](const std::vector<std::string>& files) {
+    return DescribeInBatches(files, formats, [] { return true; });
+  };
+  const auto together = [&](const std::vector<std::string>& files) {
+    return formats.DescribeTogether(files);
+  };
+  auto storms = FindStorms(paths, {.describe = describe,
+                                   .describe_together = together,
+                                   .on_unlisted = {},
+                                   .on_folder = {},
+                                   .examples = formats.Examples(),
+                                   .links = links});
   if (storms.ok()) LogNotes(*storms);
   return storms;
 }

@@ -43,8 +43,15 @@ using FoundByPath = std::map<std::string, std::vector<NamedFiles>>;
 
 // Options and callbacks of a search.
 struct StormSearch {
-  // Describes the file at a path. Returns CANCELLED for a file that must be skipped silently.
-  std::function<absl::StatusOr<storm_files::StormFile>(const std::string&)> describe;
+  // Describes the files of a folder, or one file, each separately. The result is CANCELLED for a
+  // file that must be skipped silently.
+  std::function<std::vector<absl::StatusOr<storm_files::StormFile>>(
+      const std::vector<std::string>&)>
+      describe;
+  // Describes the files of one time that is spread over several. Returns CANCELLED for a time that
+  // must be skipped silently.
+  std::function<absl::StatusOr<storm_files::StormFile>(const std::vector<std::string>&)>
+      describe_together;
   // True if a missing path and a folder without storms are not errors.
   bool may_find_nothing = false;
   // Called with a folder or link below a path that is left out, and the reason. If the function is
@@ -74,6 +81,12 @@ absl::Status CheckPlace(const std::vector<std::string>& paths, const LinkPolicy&
 // Describes a file by the formats. Returns an error if the file's metadata exhaust the memory.
 absl::StatusOr<storm_files::StormFile> DescribeFile(const std::string& path,
                                                     const storm_files::StormFormats& formats);
+
+// Describes each of the files, small files in batches. Before each batch `before` is called, and if
+// it returns false, the rest is CANCELLED.
+std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(
+    const std::vector<std::string>& paths, const storm_files::StormFormats& formats,
+    const std::function<bool()>& before);
 
 // Returns the storms under `paths`, in the order of the paths and by id within a path. The rules
 // and errors are those of StormStore::Open.

@@ -34,6 +34,8 @@ struct StormTime {
   std::string file = {};  // the path; empty for a storm without files
   // StormFile::version of `file`, or 0 for a storm without files.
   std::uint64_t version = 0;
+  // The middle of the domain at this time, if the domain moves. Otherwise use StormInfo.
+  std::optional<volume::EarthPlace> middle = {};
 
   bool operator==(const StormTime&) const = default;
 };
@@ -48,15 +50,26 @@ struct StormInfo {
   double dx_m = 0.0;
   double dy_m = 0.0;
   std::vector<physics::Hydrometeor> fields;  // fields in the file
-  std::optional<double> latitude_deg;        // latitude of the middle of the domain; nothing if
-                                             // idealised
+  std::optional<double> latitude_deg;        // latitude of the middle of the domain at the first
+                                             // time; nothing if idealised
   std::optional<double> longitude_deg;
   std::optional<std::string> run_start;  // start of the model run, in the format of valid times;
                                          // nothing if unknown
   // The grid's map projection as a PROJ string. The domain's middle is at latitude_deg and
   // longitude_deg. The string is empty if the grid has no projection.
   std::string projection;
+  // What the files' reader assumed because they do not say it, a sentence each, for users.
+  std::vector<std::string> assumptions;
 };
+
+// Returns the place of the domain's middle at a time of the storm, or nothing for an idealised run.
+inline std::optional<volume::EarthPlace> MiddleOf(const StormInfo& storm, std::size_t time_index) {
+  if (time_index < storm.times.size() && storm.times[time_index].middle.has_value()) {
+    return storm.times[time_index].middle;
+  }
+  if (!storm.latitude_deg.has_value() || !storm.longitude_deg.has_value()) return std::nullopt;
+  return volume::EarthPlace{*storm.latitude_deg, *storm.longitude_deg};
+}
 
 // A description never changes. A storm that grows gets a new description.
 using StormInfoPtr = std::shared_ptr<const StormInfo>;

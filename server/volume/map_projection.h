@@ -14,6 +14,8 @@ namespace thunderhead::volume {
 struct EarthPlace {
   double latitude_deg = 0.0;   // north
   double longitude_deg = 0.0;  // east, -180 to 180
+
+  bool operator==(const EarthPlace&) const = default;
 };
 
 class MapProjection {

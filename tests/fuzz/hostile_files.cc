@@ -273,7 +273,7 @@ int OutcomeOf(const std::string& path, const std::string& bytes) {
   if (child == 0) {
     spdlog::set_level(spdlog::level::off);
     NoteSignals();
-    netcdf::NetcdfFile::ReadFromMemory(path, std::as_bytes(std::span(bytes)));
+    base::ReadFromMemory(path, std::as_bytes(std::span(bytes)));
     if (!sandbox::Confine({kMemory, 10}).ok()) _exit(kNotConfined);
     const absl::Status status = base::Guarded([&] { return ReadStorm(path); });
     const std::string message(status.message());

@@ -36,8 +36,9 @@ PictureTexts TextsOf(const v1::RenderImageResponse& picture, const storm_store::
   }
   if (!storm.projection.empty()) {
     texts[kProjectionText] = storm.projection;
-    texts[kMiddleText] = absl::StrFormat("%.7f %.7f", storm.latitude_deg.value_or(0.0),
-                                         storm.longitude_deg.value_or(0.0));
+    const volume::EarthPlace middle =
+        storm_store::MiddleOf(storm, time_index).value_or(volume::EarthPlace());
+    texts[kMiddleText] = absl::StrFormat("%.7f %.7f", middle.latitude_deg, middle.longitude_deg);
   }
   if (picture.has_accuracy()) {
     texts[kErrorText] = absl::StrCat(picture.accuracy().estimated_error());

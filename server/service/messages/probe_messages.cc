@@ -76,12 +76,10 @@ void SetFieldMaximum(const volume::FieldPeak& peak, const StormPlaces& places,
 
 }  // namespace
 
-StormPlaces::StormPlaces(const storm_store::StormInfo& storm,
+StormPlaces::StormPlaces(const storm_store::StormInfo& storm, int time_index,
                          const volume::HydrometeorFields& fields)
-    : storm_(storm), fields_(fields) {
-  if (!storm.latitude_deg.has_value() || !storm.longitude_deg.has_value()) return;
-  projection_ =
-      volume::MapProjection::Of(storm.projection, {*storm.latitude_deg, *storm.longitude_deg});
+    : middle_(storm_store::MiddleOf(storm, static_cast<std::size_t>(time_index))), fields_(fields) {
+  if (middle_.has_value()) projection_ = volume::MapProjection::Of(storm.projection, *middle_);
 }
 
 std::optional<v1::EarthPlace> StormPlaces::OnEarth(const glm::dvec2& place_m) const {
@@ -92,8 +90,8 @@ std::optional<v1::EarthPlace> StormPlaces::OnEarth(const glm::dvec2& place_m) co
 }
 
 std::optional<v1::EarthPlace> StormPlaces::Middle() const {
-  if (!storm_.latitude_deg.has_value() || !storm_.longitude_deg.has_value()) return std::nullopt;
-  return PlaceMessage(volume::EarthPlace{*storm_.latitude_deg, *storm_.longitude_deg});
+  if (!middle_.has_value()) return std::nullopt;
+  return PlaceMessage(*middle_);
 }
 
 v1::RayPlace StormPlaces::Of(const scene::StormRay& ray, double along_m) const {

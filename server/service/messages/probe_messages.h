@@ -19,8 +19,10 @@ namespace thunderhead::service {
 // Computes the heights and the geographic positions of places in a storm.
 class StormPlaces {
  public:
-  // Both arguments must outlive it.
-  StormPlaces(const storm_store::StormInfo& storm, const volume::HydrometeorFields& fields);
+  // Computes places at time `time_index` of the storm, whose fields are `fields`. `fields` must
+  // outlive this object.
+  StormPlaces(const storm_store::StormInfo& storm, int time_index,
+              const volume::HydrometeorFields& fields);
 
   // Returns the place on Earth, or nothing if the storm has no projection.
   std::optional<v1::EarthPlace> OnEarth(const glm::dvec2& place_m) const;
@@ -35,7 +37,7 @@ class StormPlaces {
   const volume::HydrometeorFields& fields() const { return fields_; }
 
  private:
-  const storm_store::StormInfo& storm_;
+  std::optional<volume::EarthPlace> middle_;
   const volume::HydrometeorFields& fields_;
   std::optional<volume::MapProjection> projection_;
 };

@@ -389,10 +389,14 @@ void ToMessage(const storm_store::StormInfo& storm, const volume::HydrometeorFie
     SetField(field, fields.grid, *message.add_fields());
   }
   message.set_time_index(static_cast<std::uint32_t>(time_index));
-  if (storm.latitude_deg.has_value()) message.set_latitude_deg(*storm.latitude_deg);
-  if (storm.longitude_deg.has_value()) message.set_longitude_deg(*storm.longitude_deg);
+  const auto middle = storm_store::MiddleOf(storm, static_cast<std::size_t>(time_index));
+  if (middle.has_value()) {
+    message.set_latitude_deg(middle->latitude_deg);
+    message.set_longitude_deg(middle->longitude_deg);
+  }
   message.set_projection(storm.projection);
-  FillClockDefaults(*message.mutable_sun_clock(), storm);
+  for (const std::string& assumption : storm.assumptions) message.add_assumptions(assumption);
+  FillClockDefaults(*message.mutable_sun_clock(), storm, time_index);
   message.set_bytes_per_time(fields.Bytes());
   message.set_turbulence_source(MessageOf(kTurbulenceSources, fields.motion.source));
   message.set_turbulence_variable(base::Printable(fields.motion.variable));

@@ -50,7 +50,7 @@ void FillSunDefaults(v1::Sun& sun, const storm_store::StormInfo& storm, int time
   }
   if (sun.source() != v1::Sun::SOURCE_BY_TIME) return;
   v1::SunClock& clock = *sun.mutable_clock();
-  FillClockDefaults(clock, storm);
+  FillClockDefaults(clock, storm, time_index);
   const std::optional<absl::Time> first = base::ParseUtcTime(clock.date_time());
   if (!first.has_value()) return;  // CheckSun reports the error
   const double unix_s = absl::ToDoubleSeconds(*first - absl::UnixEpoch()) +
@@ -61,16 +61,17 @@ void FillSunDefaults(v1::Sun& sun, const storm_store::StormInfo& storm, int time
   sun.set_elevation_deg(static_cast<float>(position.elevation_deg));
 }
 
-void FillClockDefaults(v1::SunClock& clock, const storm_store::StormInfo& storm) {
+void FillClockDefaults(v1::SunClock& clock, const storm_store::StormInfo& storm, int time_index) {
   const std::string& first = storm.times.front().valid_time;
   if (clock.date_time().empty()) clock.set_date_time(IsReal(first) ? first : kStormSeason);
+  const auto middle = storm_store::MiddleOf(storm, static_cast<std::size_t>(time_index));
   if (!clock.has_latitude_deg()) {
-    clock.set_latitude_deg(HasPlace(storm) ? static_cast<float>(*storm.latitude_deg)
-                                           : kOklahomaLatitude_deg);
+    clock.set_latitude_deg(middle.has_value() ? static_cast<float>(middle->latitude_deg)
+                                              : kOklahomaLatitude_deg);
   }
   if (!clock.has_longitude_deg()) {
-    clock.set_longitude_deg(HasPlace(storm) ? static_cast<float>(*storm.longitude_deg)
-                                            : kOklahomaLongitude_deg);
+    clock.set_longitude_deg(middle.has_value() ? static_cast<float>(middle->longitude_deg)
+                                               : kOklahomaLongitude_deg);
   }
 }
 

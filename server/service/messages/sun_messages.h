@@ -17,7 +17,7 @@ absl::Status CheckSun(const v1::Sun& sun);
 void FillSunDefaults(v1::Sun& sun, const storm_store::StormInfo& storm, int time_index);
 
 // Fills in the storm's time and place if they are absent.
-void FillClockDefaults(v1::SunClock& clock, const storm_store::StormInfo& storm);
+void FillClockDefaults(v1::SunClock& clock, const storm_store::StormInfo& storm, int time_index);
 
 void ToMessage(const scene::Sun& sun, v1::Sun& message);
 

@@ -499,10 +499,10 @@ TEST_F(ConfinedFilesTest, AStoreGoesOnBesideHostileFiles) {
   storm_store::StormStoreOptions options;
   options.read_ahead = 0;
   options.formats = FormatsWithMisbehaving();
-  options.formats.LeaveTo([this, files = Files()](const std::string& path) {
+  options.formats.LeaveTo({.describe = [this, files = Files()](const std::string& path) {
     const bool hangs = absl::StrContains(path, "hang.bad");
     return hangs ? DescribeInTime(*files, path) : files->Describe(path);
-  });
+  }});
   const auto store = storm_store::StormStore::Open({folder_.Path().string()}, options);
   ASSERT_TRUE(store.ok()) << store.status();
   ASSERT_EQ((*store)->Storms().size(), 1U);

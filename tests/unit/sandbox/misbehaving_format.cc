@@ -179,15 +179,15 @@ class MisbehavingFormat final : public storm_files::StormFormat {
   std::string_view Requirement() const override { return "a misbehaving file"; }
 
   storm_files::FormatFit Sniff(const storm_files::UnknownFile& file) const override {
-    return file.path.ends_with(".bad") ? storm_files::FormatFit::kModelLayout
-                                       : storm_files::FormatFit::kNone;
+    return file.Path().ends_with(".bad") ? storm_files::FormatFit::kModelLayout
+                                         : storm_files::FormatFit::kNone;
   }
 
   absl::StatusOr<StormFile> Describe(const storm_files::UnknownFile& unknown) const override {
-    const std::string name = std::filesystem::path(unknown.path).stem();
+    const std::string name = std::filesystem::path(unknown.Path()).stem();
     if (absl::Status status = MisbehaveWhenDescribed(name); !status.ok()) return status;
     StormFile file;
-    file.path = unknown.path;
+    file.path = unknown.Path();
     file.cells = {2, 3, 4};
     file.dx_m = 1000.0;
     file.dy_m = 1000.0;

@@ -64,25 +64,25 @@ class ToyFormat final : public StormFormat {
   std::string_view Example() const override { return "*.toy"; }
   std::string_view Requirement() const override { return "a toy (it does not begin so)"; }
 
+  bool MayBegin(std::string_view start) const override { return start.starts_with("toy"); }
+
   FormatFit Sniff(const UnknownFile& file) const override {
-    std::string word;
-    std::ifstream(file.path) >> word;
-    return word == "toy" ? FormatFit::kModelLayout : FormatFit::kNone;
+    return MayBegin(file.Start()) ? FormatFit::kModelLayout : FormatFit::kNone;
   }
 
   absl::StatusOr<StormFile> Describe(const UnknownFile& unknown) const override {
     std::string word;
     int cells = 0;
-    std::ifstream(unknown.path) >> word >> cells;
-    if (cells < 1) return absl::DataLossError(absl::StrCat(unknown.path, ": has no cells"));
+    std::ifstream(unknown.Path()) >> word >> cells;
+    if (cells < 1) return absl::DataLossError(absl::StrCat(unknown.Path(), ": has no cells"));
     StormFile file;
-    file.path = unknown.path;
+    file.path = unknown.Path();
     file.cells = glm::ivec3(cells);
     file.dx_m = file.dy_m = 100.0;
     file.times = {absl::UnixEpoch()};
     file.fields = {physics::Hydrometeor::kRain};
     file.about = "of the test";
-    file.reader = std::make_shared<ToyReader>(unknown.path);
+    file.reader = std::make_shared<ToyReader>(unknown.Path());
     return file;
   }
 };
@@ -97,7 +97,7 @@ class Greedy final : public StormFormat {
   std::string_view Example() const override { return "*.nc"; }
   std::string_view Requirement() const override { return "netCDF"; }
   FormatFit Sniff(const UnknownFile& file) const override {
-    return file.netcdf.ok() ? fit_ : FormatFit::kNone;
+    return file.Netcdf().ok() ? fit_ : FormatFit::kNone;
   }
   absl::StatusOr<StormFile> Describe(const UnknownFile&) const override {
     return absl::UnimplementedError("described as any netCDF");

@@ -32,9 +32,14 @@ std::vector<float> Faces(const glm::ivec3& cells, int axis, const Component& com
   return values;
 }
 
-StaggeredWind WindOf(const Component& u, const Component& v, const Component& w) {
+ModelWind WindOf(const Component& u, const Component& v, const Component& w) {
   const glm::ivec3 cells(5, 4, 6);
-  return {cells, kDx_m, kDx_m, Faces(cells, 0, u), Faces(cells, 1, v), Faces(cells, 2, w)};
+  return {.cells = cells,
+          .dx_m = kDx_m,
+          .dy_m = kDx_m,
+          .u_m_per_s = Faces(cells, 0, u),
+          .v_m_per_s = Faces(cells, 1, v),
+          .w_m_per_s = Faces(cells, 2, w)};
 }
 
 std::vector<float> Heights(const glm::ivec3& cells) {
@@ -44,8 +49,8 @@ std::vector<float> Heights(const glm::ivec3& cells) {
 const Component kStill = [](double, double, double) { return 0.0; };
 
 TEST(EnergyOfDeformation, IsZeroInSolidRotation) {
-  const StaggeredWind wind = WindOf([](double, double y_m, double) { return -0.01 * y_m; },
-                                    [](double x_m, double, double) { return 0.01 * x_m; }, kStill);
+  const ModelWind wind = WindOf([](double, double y_m, double) { return -0.01 * y_m; },
+                                [](double x_m, double, double) { return 0.01 * x_m; }, kStill);
   for (const float energy : EnergyOfDeformation(WindInCells(wind, Heights(wind.cells)))) {
     EXPECT_NEAR(energy, 0.0, 1e-6);
   }
@@ -54,12 +59,12 @@ TEST(EnergyOfDeformation, IsZeroInSolidRotation) {
 TEST(EnergyOfDeformation, IsThatOfShearAndOfStretching) {
   const double length_m = std::cbrt(kDx_m * kDx_m * kDz_m);
   const double unit = std::pow(0.4 * length_m * 0.01, 2);
-  const StaggeredWind shear =
+  const ModelWind shear =
       WindOf([](double, double, double z_m) { return 0.01 * z_m; }, kStill, kStill);
   for (const float energy : EnergyOfDeformation(WindInCells(shear, Heights(shear.cells)))) {
     EXPECT_NEAR(energy / unit, 1.0, 1e-3);
   }
-  const StaggeredWind stretch =
+  const ModelWind stretch =
       WindOf(kStill, kStill, [](double, double, double z_m) { return 0.01 * z_m; });
   for (const float energy : EnergyOfDeformation(WindInCells(stretch, Heights(stretch.cells)))) {
     EXPECT_NEAR(energy / unit, 2.0, 2e-3);
@@ -67,8 +72,7 @@ TEST(EnergyOfDeformation, IsThatOfShearAndOfStretching) {
 }
 
 TEST(EnergyOfDeformation, IsZeroWhereWindIsMissing) {
-  StaggeredWind wind =
-      WindOf([](double, double, double z_m) { return 0.01 * z_m; }, kStill, kStill);
+  ModelWind wind = WindOf([](double, double, double z_m) { return 0.01 * z_m; }, kStill, kStill);
   wind.u_m_per_s[0] = std::numeric_limits<float>::quiet_NaN();
   const std::vector<float> energy = EnergyOfDeformation(WindInCells(wind, Heights(wind.cells)));
   EXPECT_EQ(energy[0], 0.0F);
@@ -80,8 +84,8 @@ TEST(LayerMeans, LieBetweenInterfaces) {
 }
 
 TEST(MeanWinds, AreThoseOfEachLevel) {
-  const StaggeredWind wind = WindOf([](double, double, double z_m) { return 0.01 * z_m; },
-                                    [](double, double, double) { return -3.0; }, kStill);
+  const ModelWind wind = WindOf([](double, double, double z_m) { return 0.01 * z_m; },
+                                [](double, double, double) { return -3.0; }, kStill);
   const std::vector<glm::dvec2> winds = MeanWinds(wind.u_m_per_s, wind.v_m_per_s, wind.cells.z);
   ASSERT_EQ(winds.size(), 6U);
   EXPECT_NEAR(winds[0].x, 0.5, 1e-6);

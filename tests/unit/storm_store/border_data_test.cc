@@ -48,7 +48,7 @@ class BorderDataTest : public ::testing::Test {
   std::shared_ptr<const volume::BorderMap> Map(const StormInfo& storm, int columns = 200) {
     const auto data = BorderData::Find(folder_.Path().string());
     EXPECT_NE(data, nullptr);
-    return data->MapOf(storm, Columns(columns));
+    return data->MapOf(storm, 0, Columns(columns));
   }
 
   testing::TemporaryFolder folder_;

@@ -43,7 +43,11 @@ class FolderLinks : public ::testing::Test {
     const storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
     const auto storms = FindStorms(
         {data_.string()},
-        {.describe = [&](const std::string& path) { return DescribeFile(path, formats); },
+        {.describe =
+             [&](const std::vector<std::string>& paths) {
+               return DescribeInBatches(paths, formats, [] { return true; });
+             },
+         .describe_together = {},
          .may_find_nothing = true,
          .on_unlisted = [&](const std::string&,
                             const absl::Status& why) { left_out_.emplace_back(why.message()); },

@@ -242,11 +242,13 @@ TEST_F(LiveFolder, OpensAFileOnlyWhenItHasChanged) {
   PutOld(File(0), WrfBytes({0}));
   PutOld(data_ + "/README", "no storm");
   int opened = 0;
-  CatalogueScan scan({.paths = {data_},
-                      .formats = storm_files::StormFormats::BuiltIn(),
-                      .settle = seconds(3),
-                      .retry = seconds(30),
-                      .before_file = [&opened] { ++opened; }});
+  storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
+  formats.LeaveTo({.describe = [&opened](const std::string& path) {
+    ++opened;
+    return storm_files::StormFormats::BuiltIn().Describe(path);
+  }});
+  CatalogueScan scan(
+      {.paths = {data_}, .formats = formats, .settle = seconds(3), .retry = seconds(30)});
   TimesAt(scan, seconds(0));
   EXPECT_EQ(opened, 2);
   TimesAt(scan, seconds(10));
@@ -256,8 +258,13 @@ TEST_F(LiveFolder, OpensAFileOnlyWhenItHasChanged) {
   EXPECT_EQ(opened, 3) << "what could not be read is tried again";
 }
 
-TEST_F(LiveFolder, AScanThatIsStoppedOpensNoOtherFile) {
-  for (int hour = 0; hour < 3; ++hour) PutOld(File(hour), WrfBytes({hour}));
+TEST_F(LiveFolder, AScanThatIsStoppedOpensNoOtherBatchOfFiles) {
+  for (int hour = 0; hour < 3; ++hour) {
+    // A large file is a batch alone.
+    std::string bytes = WrfBytes({hour});
+    bytes.resize(9 << 20);
+    PutOld(File(hour), bytes);
+  }
   int opened = 0;
   std::function<void()> stop;
   CatalogueScan scan({.paths = {data_},
@@ -305,10 +312,10 @@ TEST_F(LiveFolder, ASearchThatTakesLongDoesNotHoldUpTheStart) {
   options.read_ahead = 0;
   options.live = LiveCatalogueOptions{.first_search = milliseconds(0)};
   options.time = &time_;
-  options.formats.LeaveTo([goes_on](const std::string& path) {
+  options.formats.LeaveTo({.describe = [goes_on](const std::string& path) {
     goes_on.wait();
     return storm_files::StormFormats::BuiltIn().Describe(path);
-  });
+  }});
   const auto store = StormStore::Open({data_}, options);
   ASSERT_TRUE(store.ok()) << store.status();
   EXPECT_TRUE((*store)->IsSearching());

@@ -75,19 +75,19 @@ class CubeFormat final : public storm_files::StormFormat {
   std::string_view Example() const override { return "*.cube"; }
   std::string_view Requirement() const override { return "a cube"; }
   storm_files::FormatFit Sniff(const storm_files::UnknownFile& file) const override {
-    return file.path.ends_with(".cube") ? storm_files::FormatFit::kModelLayout
-                                        : storm_files::FormatFit::kNone;
+    return file.Path().ends_with(".cube") ? storm_files::FormatFit::kModelLayout
+                                          : storm_files::FormatFit::kNone;
   }
   absl::StatusOr<storm_files::StormFile> Describe(
       const storm_files::UnknownFile& file) const override {
     storm_files::StormFile described;
-    described.path = file.path;
-    std::ifstream(file.path) >> described.cells.x;
+    described.path = file.Path();
+    std::ifstream(file.Path()) >> described.cells.x;
     described.cells = glm::ivec3(described.cells.x);
     described.dx_m = described.dy_m = 100.0;
     for (int i = 0; i < kManyTimes; ++i) described.times.push_back(absl::FromUnixSeconds(60 * i));
     described.fields = {physics::Hydrometeor::kRain};
-    const bool far = file.path.find("/far") != std::string::npos;
+    const bool far = file.Path().find("/far") != std::string::npos;
     if (far) described.device = kFarDevice;
     described.reader = std::make_shared<Reader>(far ? storage_ : nullptr, described.cells);
     return described;

@@ -1,0 +1,485 @@
+#include "storm_files/fields_on_heights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+#include "storm_files/field_scan.h"
+
+namespace thunderhead::storm_files {
+namespace {
+
+using physics::Hydrometeor;
+
+// The largest amount in kg/kg or kg/m3 that is accepted. Air never carries half its mass in
+// condensate, so larger values are in g.
+constexpr float kMaxAmount = 0.5F;
+
+struct RemappedField {
+  volume::HydrometeorField field;
+  volume::CellBox condensate;
+};
+
+// Reads one time. Variables are read on the calling thread, one at a time. At the same time another
+// thread remaps the previous variable, because reading and remapping take about equally long.
+class TimeReader {
+ public:
+  explicit TimeReader(LayerSource& source) : source_(source), domain_(source.Domain()) {
+    air_.levels = domain_.cells.z;
+    air_.columns = domain_.Columns();
+  }
+
+  absl::StatusOr<VerticalGrid> ReadHeights();
+  absl::StatusOr<volume::HydrometeorFields> Read(const std::optional<VerticalGrid>& grid,
+                                                 const ReadCheckpoint& checkpoint);
+
+ private:
+  absl::Status Advance();
+  absl::Status CheckSize(const std::string& what, const std::vector<float>& values,
+                         std::size_t expected) const;
+  absl::StatusOr<VerticalGrid> GridFor(const std::optional<VerticalGrid>& storm_grid) const;
+  absl::Status ReadTerrain(volume::HydrometeorFields& result);
+  absl::Status ReadLand(volume::HydrometeorFields& result);
+  absl::StatusOr<std::shared_future<void>> ReadAir();
+  absl::StatusOr<std::vector<float>> CondensateShare();
+  absl::Status ReadFields(volume::HydrometeorFields& result);
+  absl::Status CheckAir() const;
+  const std::vector<float>& DensityFor(const LayerField& field) const;
+  absl::StatusOr<RemappedField> Remap(const LayerField& from, LayerAmounts amounts) const;
+  volume::ParticleSizes OriginOf(const LayerField& from) const;
+  void RemapSizes(const std::vector<float>& concentration, std::vector<float> radii,
+                  volume::HydrometeorField& field) const;
+  volume::AirDensity MeanDensity(const std::vector<float>& density_kg_per_m3) const;
+  std::vector<float> OntoGrid(const std::vector<float>& values) const;
+  std::vector<std::uint8_t> BytesOntoGrid(const std::vector<float>& values) const;
+  absl::Status ReadMotion(volume::HydrometeorFields& result);
+  void TakeWind(const ModelWind& wind, volume::HydrometeorFields& result) const;
+  bool NeedsAir() const;
+  bool NeedsWholeAir() const;
+  bool NeedsTemperature() const;
+
+  LayerSource& source_;
+  const LayerDomain& domain_;
+  LayerAir air_;
+  VerticalGrid own_grid_;
+  VerticalGrid grid_;
+  bool layers_are_cells_ = false;  // true if the layers are the grid's cells, in every column
+  volume::RegularGrid regular_;
+  ReadCheckpoint checkpoint_;
+  int steps_done_ = 0;
+};
+
+absl::Status TimeReader::Advance() {
+  if (!checkpoint_) return absl::OkStatus();
+  // Apart from the fields, a step each are the heights, the ground, the air, the turbulence, the
+  // wind and the end. The first step reports 0.
+  const auto steps = static_cast<double>(domain_.fields.size() + 5);
+  return checkpoint_(std::min(1.0, steps_done_++ / steps));
+}
+
+absl::Status TimeReader::CheckSize(const std::string& what, const std::vector<float>& values,
+                                   std::size_t expected) const {
+  if (values.size() == expected) return absl::OkStatus();
+  return absl::InternalError(absl::StrCat(domain_.path, ": ", what, " has ", values.size(),
+                                          " values where ", expected, " are expected"));
+}
+
+absl::StatusOr<VerticalGrid> TimeReader::ReadHeights() {
+  THUNDERHEAD_RETURN_IF_ERROR(Advance());
+  THUNDERHEAD_ASSIGN_OR_RETURN(air_.interface_height_m, source_.InterfaceHeights_m());
+  THUNDERHEAD_RETURN_IF_ERROR(
+      CheckSize("the layers' heights", air_.interface_height_m, (air_.levels + 1) * air_.columns));
+  own_grid_ = domain_.fixed_heights
+                  ? GridOfEvenLayers(air_.interface_height_m, air_.levels, air_.columns)
+                  : VerticalGrid{};
+  if (own_grid_.cells > 0) return own_grid_;
+  own_grid_ = ChooseVerticalGrid(air_.interface_height_m, air_.levels, air_.columns);
+  if (own_grid_.cells == 0) {
+    return absl::DataLossError(
+        absl::StrCat(domain_.path, ": ", domain_.heights_from, " of record ", domain_.record,
+                     " give no layer whose top is above its bottom; write the file again"));
+  }
+  return own_grid_;
+}
+
+absl::StatusOr<VerticalGrid> TimeReader::GridFor(
+    const std::optional<VerticalGrid>& storm_grid) const {
+  if (!storm_grid.has_value()) return own_grid_;
+  const VerticalGrid grid = Extended(*storm_grid, air_.interface_height_m);
+  constexpr int kFewCells = 8;
+  if (grid.cells <= 2 * storm_grid->cells + kFewCells) return grid;
+  return absl::DataLossError(absl::StrCat(
+      domain_.path, ": the heights of record ", domain_.record, " (", domain_.heights_from,
+      ") reach from ", grid.low_m, " to ", grid.High_m(), " m where the storm's first time has ",
+      storm_grid->low_m, " to ", storm_grid->High_m(), " m; give files of one run only"));
+}
+
+// Reads the terrain. Where the height is missing, the ground is the lowest interface. If the layers
+// do not follow the terrain, it is at sea level or, if lower, at the bottom of the domain.
+absl::Status TimeReader::ReadTerrain(volume::HydrometeorFields& result) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> terrain, source_.Terrain_m());
+  const auto bottom_m = static_cast<float>(grid_.low_m);
+  terrain.resize(air_.columns, std::nanf(""));
+  for (std::size_t i = 0; i < air_.columns; ++i) {
+    if (!std::isnan(terrain[i])) continue;
+    terrain[i] = domain_.on_terrain ? air_.interface_height_m[i] : std::min(0.0F, bottom_m);
+    if (std::isnan(terrain[i])) terrain[i] = bottom_m;
+  }
+  result.terrain_height_m = std::move(terrain);
+  return absl::OkStatus();
+}
+
+absl::Status TimeReader::ReadLand(volume::HydrometeorFields& result) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::LandColumns columns, source_.Land());
+  if (columns.land_use.empty()) return absl::OkStatus();
+  result.land = volume::MakeLandSurface(columns, glm::ivec2(domain_.cells));
+  return absl::OkStatus();
+}
+
+bool TimeReader::NeedsAir() const {
+  return std::ranges::any_of(domain_.fields, [](const LayerField& field) {
+    return field.quantity == volume::Quantity::kMixingRatio;
+  });
+}
+
+bool TimeReader::NeedsWholeAir() const {
+  return std::ranges::any_of(domain_.fields, [](const LayerField& field) {
+    return field.quantity == volume::Quantity::kMixingRatio && field.per == AirMass::kWhole;
+  });
+}
+
+// Returns whether the sizes of snow come from the scheme's distribution, which depends on
+// temperature.
+bool TimeReader::NeedsTemperature() const {
+  return physics::HasDistribution(domain_.microphysics, Hydrometeor::kSnow) &&
+         std::ranges::find(domain_.fields, Hydrometeor::kSnow, &LayerField::hydrometeor) !=
+             domain_.fields.end();
+}
+
+// Returns for each cell the share of the whole mass that is condensate, from the fields that are
+// given per mass of the whole air.
+absl::StatusOr<std::vector<float>> TimeReader::CondensateShare() {
+  std::vector<float> share(air_.levels * air_.columns, 0.0F);
+  for (std::size_t i = 0; i < domain_.fields.size(); ++i) {
+    const LayerField& field = domain_.fields[i];
+    if (field.quantity != volume::Quantity::kMixingRatio || field.per != AirMass::kWhole) continue;
+    THUNDERHEAD_ASSIGN_OR_RETURN(const LayerAmounts from, source_.Amounts(i));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckSize(field.variable, from.amounts, share.size()));
+    for (std::size_t cell = 0; cell < share.size(); ++cell) {
+      const float amount = from.amounts[cell];
+      if (amount > 0.0F && amount < kMaxAmount) share[cell] += amount;
+    }
+  }
+  for (float& each : share) each = std::min(each, kMaxAmount);
+  return share;
+}
+
+// Reads the state of the air, and computes its density on another thread.
+absl::StatusOr<std::shared_future<void>> TimeReader::ReadAir() {
+  if (!NeedsAir()) return std::async(std::launch::deferred, [] {}).share();
+  THUNDERHEAD_ASSIGN_OR_RETURN(LayerState state, source_.Air());
+  // A density in the file is taken as that of the whole air.
+  std::vector<float> condensate;
+  if (NeedsWholeAir() && !state.air_density_kg_per_m3.empty()) {
+    condensate.assign(state.air_density_kg_per_m3.size(), 0.0F);
+  } else if (NeedsWholeAir()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(condensate, CondensateShare());
+  }
+  return std::async(std::launch::async,
+                    [this, state = std::move(state), condensate = std::move(condensate)]() mutable {
+                      if (NeedsTemperature()) air_.temperature_K = Temperature(state);
+                      std::vector<float> vapour;
+                      if (!condensate.empty()) vapour = state.vapour_kg_per_kg;
+                      air_.dry_air_density_kg_per_m3 =
+                          DryAirDensity(std::move(state), air_.interface_height_m, air_.columns);
+                      if (condensate.empty()) return;
+                      air_.whole_air_density_kg_per_m3 =
+                          WholeAirDensity(air_.dry_air_density_kg_per_m3, vapour, condensate);
+                    })
+      .share();
+}
+
+const std::vector<float>& TimeReader::DensityFor(const LayerField& field) const {
+  static const std::vector<float> kPerVolume;
+  if (field.quantity != volume::Quantity::kMixingRatio) return kPerVolume;
+  return field.per == AirMass::kWhole ? air_.whole_air_density_kg_per_m3
+                                      : air_.dry_air_density_kg_per_m3;
+}
+
+absl::StatusOr<RemappedField> TimeReader::Remap(const LayerField& from, LayerAmounts given) const {
+  std::vector<float> values = std::move(given.amounts);
+  std::vector<float> sizes = std::move(given.sizes);
+  if (!sizes.empty()) volume::ToRadius(from.hydrometeor, from.sizes, values, sizes);
+  RemappedField remapped;
+  volume::HydrometeorField& field = remapped.field;
+  field.hydrometeor = from.hydrometeor;
+  field.variable = from.variable;
+  field.quantity = from.quantity;
+  field.sizes = OriginOf(from);
+  field.statistics = AmountToConcentration(air_, DensityFor(from), values);
+  if (from.quantity != volume::Quantity::kExtinction && field.statistics.maximum > kMaxAmount) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(domain_.path, ": ", field.variable, " of record ", domain_.record, " reaches ",
+                     field.statistics.maximum, " ", std::string(volume::UnitOf(field.quantity)),
+                     ", more than air can hold; if it is in g (g/kg, g m-3), convert it or set its "
+                     "units attribute"));
+  }
+  if (field.statistics.maximum_water_path_kg_per_m2 > 0.0) {
+    field.concentration_kg_per_m3 = OntoGrid(values);
+    remapped.condensate = FlushAndBound(regular_, field.concentration_kg_per_m3);
+    if (remapped.condensate.Empty()) field.concentration_kg_per_m3 = {};
+  }
+  if (field.sizes.origin != volume::SizeOrigin::kObserved &&
+      !field.concentration_kg_per_m3.empty()) {
+    RemapSizes(values, std::move(sizes), field);
+  }
+  return remapped;
+}
+
+// Returns the sizes of a field with only their origin and its name set.
+volume::ParticleSizes TimeReader::OriginOf(const LayerField& from) const {
+  volume::ParticleSizes sizes;
+  if (!from.sizes.name.empty()) {
+    sizes.origin =
+        from.sizes.is_count ? volume::SizeOrigin::kNumber : volume::SizeOrigin::kEffectiveRadius;
+    sizes.name = from.sizes.name;
+  } else if (physics::HasDistribution(domain_.microphysics, from.hydrometeor)) {
+    sizes.origin = volume::SizeOrigin::kScheme;
+    sizes.name = std::string(physics::NameOf(domain_.microphysics));
+  }
+  return sizes;
+}
+
+// Remaps sizes. Extinction is proportional to concentration over radius, so that ratio is remapped,
+// and each column keeps its optical depth. `radii` is empty if the file has none.
+void TimeReader::RemapSizes(const std::vector<float>& concentration, std::vector<float> radii,
+                            volume::HydrometeorField& field) const {
+  radii.resize(concentration.size(), std::nanf(""));
+  volume::ToConcentrationPerRadius(field.hydrometeor, domain_.microphysics, concentration,
+                                   air_.temperature_K, radii);
+  field.sizes = volume::SizesOf(field.sizes, field.concentration_kg_per_m3, OntoGrid(radii));
+}
+
+absl::Status TimeReader::CheckAir() const {
+  if (std::ranges::any_of(air_.dry_air_density_kg_per_m3, [](float rho) { return rho > 0.0F; })) {
+    return absl::OkStatus();
+  }
+  return absl::DataLossError(absl::StrCat(
+      domain_.path, ": pressure, temperature and humidity of record ", domain_.record,
+      " give no usable air density in any cell; check their values and units (Pa, K, kg kg-1)"));
+}
+
+absl::Status TimeReader::ReadFields(volume::HydrometeorFields& result) {
+  THUNDERHEAD_RETURN_IF_ERROR(Advance());
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_future<void> air_ready, ReadAir());
+  std::future<absl::StatusOr<RemappedField>> pending;
+  const auto take = [&]() -> absl::Status {
+    if (!pending.valid()) return absl::OkStatus();
+    THUNDERHEAD_ASSIGN_OR_RETURN(RemappedField remapped, pending.get());
+    result.condensate = Union(result.condensate, remapped.condensate);
+    result.fields.push_back(std::move(remapped.field));
+    return absl::OkStatus();
+  };
+  for (std::size_t i = 0; i < domain_.fields.size(); ++i) {
+    const LayerField& field = domain_.fields[i];
+    THUNDERHEAD_RETURN_IF_ERROR(Advance());
+    THUNDERHEAD_ASSIGN_OR_RETURN(LayerAmounts amounts, source_.Amounts(i));
+    THUNDERHEAD_RETURN_IF_ERROR(
+        CheckSize(field.variable, amounts.amounts, air_.levels * air_.columns));
+    THUNDERHEAD_RETURN_IF_ERROR(take());
+    pending = std::async(std::launch::async,
+                         [this, air_ready, &field, amounts = std::move(amounts)]() mutable {
+                           air_ready.get();
+                           return Remap(field, std::move(amounts));
+                         });
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(take());
+  if (!NeedsAir()) return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(CheckAir());
+  // There is one density for all fields: that of the first mass ratio, even if others differ.
+  const auto ratio =
+      std::ranges::find(domain_.fields, volume::Quantity::kMixingRatio, &LayerField::quantity);
+  result.air = MeanDensity(DensityFor(*ratio));
+  return absl::OkStatus();
+}
+
+volume::AirDensity TimeReader::MeanDensity(const std::vector<float>& density_kg_per_m3) const {
+  volume::AirDensityMeans means(regular_);
+  const glm::ivec2 stride = means.Stride();
+  for (int y = 0; y < domain_.cells.y; y += stride.y) {
+    for (int x = 0; x < domain_.cells.x; x += stride.x) {
+      std::size_t at = regular_.Offset(x, y, 0);
+      for (int level = 0; level < air_.levels; ++level, at += air_.columns) {
+        means.Add(x, y, air_.interface_height_m[at], air_.interface_height_m[at + air_.columns],
+                  density_kg_per_m3[at]);
+      }
+    }
+  }
+  return means.Means();
+}
+
+// Returns values, none below 0 and none NaN, on the regular grid.
+std::vector<float> TimeReader::OntoGrid(const std::vector<float>& values) const {
+  if (layers_are_cells_) return values;
+  return RemapColumns(air_.interface_height_m, values, air_.levels, air_.columns, grid_);
+}
+
+// Returns values from 0 to 255 in layers on the regular grid. Missing values become 0.
+std::vector<std::uint8_t> TimeReader::BytesOntoGrid(const std::vector<float>& values) const {
+  const std::vector<float> remapped = OntoGrid(values);
+  std::vector<std::uint8_t> bytes(remapped.size());
+  std::ranges::transform(remapped, bytes.begin(), [](float value) {
+    return static_cast<std::uint8_t>(std::min(value + 0.5F, 255.0F));
+  });
+  return bytes;
+}
+
+absl::Status TimeReader::ReadMotion(volume::HydrometeorFields& result) {
+  volume::AirMotion& motion = result.motion;
+  THUNDERHEAD_RETURN_IF_ERROR(Advance());
+  THUNDERHEAD_ASSIGN_OR_RETURN(LayerEnergy energy, source_.TurbulentEnergy());
+  if (!energy.variable.empty()) {
+    motion.source = volume::TurbulenceSource::kEnergy;
+    motion.variable = energy.variable;
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(Advance());
+  THUNDERHEAD_ASSIGN_OR_RETURN(const ModelWind wind, source_.Wind());
+  if (!wind.u_m_per_s.empty()) {
+    if (energy.variable.empty()) {
+      energy.energy_m2_per_s2 = EnergyOfDeformation(WindInCells(wind, air_.interface_height_m));
+      motion.source = volume::TurbulenceSource::kDeformation;
+    }
+    TakeWind(wind, result);
+  }
+  std::vector<float>& turbulence = energy.energy_m2_per_s2;
+  if (turbulence.empty()) return absl::OkStatus();
+  std::ranges::transform(turbulence, turbulence.begin(), volume::TurbulenceByte);
+  motion.turbulence = BytesOntoGrid(turbulence);
+  return absl::OkStatus();
+}
+
+void TimeReader::TakeWind(const ModelWind& wind, volume::HydrometeorFields& result) const {
+  volume::AirMotion& motion = result.motion;
+  std::vector<float> ascent =
+      wind.on_faces ? LayerMeans(wind.w_m_per_s, air_.levels, air_.columns) : wind.w_m_per_s;
+  std::ranges::transform(ascent, ascent.begin(), volume::AscentByte);
+  motion.ascent = BytesOntoGrid(ascent);
+  const std::vector<glm::dvec2> winds = MeanWinds(wind.u_m_per_s, wind.v_m_per_s, wind.cells.z);
+  motion.steering_m_per_s =
+      SteeringWind_m_per_s(winds, LevelMeans(air_.interface_height_m, air_.levels + 1));
+  motion.time_s = absl::ToDoubleSeconds(domain_.time - absl::UnixEpoch());
+  std::vector<double> first_column_m;
+  for (std::size_t i = 0; i < air_.interface_height_m.size(); i += air_.columns) {
+    first_column_m.push_back(air_.interface_height_m[i]);
+  }
+  motion.shear_m_per_s = Shear_m_per_s(result, winds, first_column_m);
+}
+
+// Removes those cells above the storm's grid that hold no condensate.
+void TrimTop(const VerticalGrid& storm_grid, volume::HydrometeorFields& fields) {
+  volume::RegularGrid& grid = fields.grid;
+  const double storm_top = (storm_grid.High_m() - grid.low_corner_m.z) / grid.spacing_m.z;
+  const int cells = std::max(static_cast<int>(std::lround(storm_top)), fields.condensate.high.z);
+  if (cells >= grid.cells.z) return;
+  grid.cells.z = cells;
+  for (std::vector<std::uint8_t>* values : {&fields.motion.turbulence, &fields.motion.ascent}) {
+    if (!values->empty()) values->resize(grid.CellCount());
+  }
+  if (!fields.air.Empty()) {
+    const auto blocks = static_cast<std::size_t>(fields.air.blocks.x * fields.air.blocks.y);
+    fields.air.kg_per_m3.resize(blocks * static_cast<std::size_t>(cells));
+  }
+  for (volume::HydrometeorField& field : fields.fields) {
+    if (field.concentration_kg_per_m3.empty()) continue;
+    field.concentration_kg_per_m3.resize(grid.CellCount());
+    field.concentration_kg_per_m3.shrink_to_fit();
+  }
+}
+
+absl::StatusOr<volume::HydrometeorFields> TimeReader::Read(const std::optional<VerticalGrid>& grid,
+                                                           const ReadCheckpoint& checkpoint) {
+  checkpoint_ = checkpoint;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadHeights().status());
+  THUNDERHEAD_ASSIGN_OR_RETURN(grid_, GridFor(grid));
+  layers_are_cells_ = LayersAreCells(air_.interface_height_m, air_.levels, air_.columns, grid_);
+  regular_.cells = {domain_.cells.x, domain_.cells.y, grid_.cells};
+  regular_.spacing_m = {domain_.dx_m, domain_.dy_m, grid_.spacing_m};
+  regular_.low_corner_m = {-0.5 * domain_.dx_m * domain_.cells.x,
+                           -0.5 * domain_.dy_m * domain_.cells.y, grid_.low_m};
+  volume::HydrometeorFields result;
+  result.grid = regular_;
+  THUNDERHEAD_RETURN_IF_ERROR(Advance());
+  THUNDERHEAD_RETURN_IF_ERROR(ReadTerrain(result));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadLand(result));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadFields(result));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadMotion(result));
+  if (grid.has_value()) TrimTop(*grid, result);
+  THUNDERHEAD_RETURN_IF_ERROR(Advance());
+  return result;
+}
+
+// Runs `read` on a reader of the source. Running out of memory counts as an error of the input,
+// because it must not end the server.
+template <typename Result, typename ReadFunction>
+absl::StatusOr<Result> WithReader(LayerSource& source, ReadFunction read) {
+  const LayerDomain& domain = source.Domain();
+  try {
+    TimeReader reader(source);
+    return read(reader);
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  return absl::ResourceExhaustedError(
+      absl::StrCat(domain.path, ": one time of ", domain.cells.x, " x ", domain.cells.y, " x ",
+                   domain.cells.z, " cells does not fit in memory; cut a smaller domain"));
+}
+
+}  // namespace
+
+absl::StatusOr<volume::HydrometeorFields> ReadOnHeights(LayerSource& source,
+                                                        const std::optional<VerticalGrid>& grid,
+                                                        const ReadCheckpoint& checkpoint) {
+  return WithReader<volume::HydrometeorFields>(
+      source, [&](TimeReader& reader) { return reader.Read(grid, checkpoint); });
+}
+
+absl::StatusOr<VerticalGrid> HeightGridOf(LayerSource& source) {
+  return WithReader<VerticalGrid>(source, [](TimeReader& reader) { return reader.ReadHeights(); });
+}
+
+namespace {
+
+class LayerRecordReader final : public RecordReader {
+ public:
+  explicit LayerRecordReader(OpenRecord open) : open_(std::move(open)) {}
+
+  absl::StatusOr<volume::HydrometeorFields> Read(std::size_t record,
+                                                 const std::optional<VerticalGrid>& grid,
+                                                 const ReadCheckpoint& checkpoint) const override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<LayerSource> source, open_(record));
+    return ReadOnHeights(*source, grid, checkpoint);
+  }
+
+  absl::StatusOr<VerticalGrid> ReadVerticalGrid(std::size_t record) const override {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<LayerSource> source, open_(record));
+    return HeightGridOf(*source);
+  }
+
+ private:
+  const OpenRecord open_;
+};
+
+}  // namespace
+
+std::shared_ptr<const RecordReader> MakeRecordReader(OpenRecord open) {
+  return std::make_shared<LayerRecordReader>(std::move(open));
+}
+
+}  // namespace thunderhead::storm_files
