@@ -103,7 +103,7 @@ void WatchedFolder::ForgetGone(const std::set<std::string>& there) {
 }
 
 void WatchedFolder::Open(const std::string& path, File& file, RunProgress& progress) const {
-  absl::StatusOr<storm_files::StormFile> storm = formats_.Describe(path);
+  absl::StatusOr<storm_files::StormFile> storm = storm_store::DescribeFile(path, formats_);
   if (storm.ok()) {
     file.storm = *std::move(storm);
     file.state = State::kReady;

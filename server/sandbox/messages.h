@@ -100,12 +100,13 @@ void Visit(Archive& archive, storm_files::VerticalGrid& grid) {
 // The functions below use structured bindings with all members of a type. If a type gets a new
 // member, its function therefore does not compile until it handles the member.
 
-// Sends all members except `path`, `parts`, `reader`, `version`, `id` and `device`, which the
-// server sets itself. Times are sent as seconds and nanoseconds since 1970.
+// Sends all members except those that the server sets itself: `path`, `parts`, `reader`, `version`,
+// `id`, `device` and `modified_ns`. Times are sent as seconds and nanoseconds since 1970.
 template <typename Archive>
 void Visit(Archive& archive, storm_files::StormFile& file) {
   auto& [path, cells, dx_m, dy_m, times, fields, about, domain, run, latitude_deg, longitude_deg,
-         middles, projection, member, assumptions, part, parts, reader, version, id, device] = file;
+         middles, projection, member, assumptions, part, parts, reader, version, id, device,
+         modified_ns] = file;
   archive(cells);
   archive(dx_m);
   archive(dy_m);

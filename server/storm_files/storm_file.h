@@ -90,6 +90,8 @@ struct StormFile {
   std::uint64_t id = 0;
   // The device of the file when it was described (base::FileStamp::device). 0 means unknown.
   std::uint64_t device = 0;
+  // When the file was last written (base::FileStamp::modified_ns). 0 means unknown.
+  std::int64_t modified_ns = 0;
 };
 
 }  // namespace thunderhead::storm_files

@@ -98,6 +98,13 @@ bool AreOfOneStorage(const storm_files::StormFile& file, const std::string& path
   return fs::path(file.path).parent_path() == fs::path(path).parent_path();
 }
 
+// Returns the first time whose file is there. The file of a deleted time cannot be read, and
+// another file may have its path. Returns 0 if all times are deleted.
+std::size_t FirstTimeThere(const StormInfo& storm) {
+  const auto first = std::ranges::find(storm.times, false, &StormTime::deleted);
+  return first == storm.times.end() ? 0 : static_cast<std::size_t>(first - storm.times.begin());
+}
+
 // Fields and the reservation of their memory, which lasts as long as the fields are in use.
 struct CountedFields {
   volume::HydrometeorFields fields;
@@ -402,7 +409,8 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
   return fields;
 }
 
-// Returns the height grid of the storm's first time, whichever time is read first. A time's image
+// Returns the height grid of the storm's first time that is not deleted, whichever time is read
+// first. A time's image
 // therefore does not depend on which times were viewed before. If an earlier time is added to the
 // storm later, the grid stays the same. Returns nothing if `place` is the first time, or if the
 // first time cannot be read.
@@ -410,9 +418,10 @@ absl::StatusOr<std::optional<storm_files::VerticalGrid>> CachedStormStore::Verti
     Lock& lock, const Place& place) {
   const std::optional<ChosenGrid>& known = storms_[place.key.storm].grid;
   if (known.has_value()) return known->grid;
-  if (place.time == 0) return std::nullopt;
   const CataloguedStorm& storm = *place.storm;
-  const TimeSource first = storm.sources.front();
+  const std::size_t first_time = FirstTimeThere(storm.info);
+  if (place.time == first_time) return std::nullopt;
+  const TimeSource first = storm.sources[first_time];
   const storm_files::StormFile& file = storm.files[first.file];
   const std::shared_ptr<const storm_files::RecordReader> reader = file.reader;
   lock.unlock();
@@ -434,7 +443,7 @@ void CachedStormStore::Choose(const Place& place, const storm_files::VerticalGri
   // If the storm has been replaced meanwhile, the grid does not belong to the current storm.
   if (chosen.has_value() || !PlaceOf(place.key).has_value()) return;
   const CataloguedStorm& storm = *place.storm;
-  const storm_files::StormFile& first = storm.files[storm.sources.front().file];
+  const storm_files::StormFile& first = FileOf(storm, FirstTimeThere(storm.info));
   chosen = {grid, first.path, first.version};
 }
 

@@ -15,6 +15,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "base/file_stamp.h"
 #include "base/slow_calls.h"
 #include "base/status.h"
@@ -73,7 +74,7 @@ std::string NameOfFolder(const fs::path& path) {
 // Returns a key that is equal for files that may be parts of one run.
 auto RunKey(const storm_files::StormFile& file) {
   return std::make_tuple(file.domain, file.cells.x, file.cells.y, file.cells.z, file.dx_m,
-                         file.dy_m, file.run, file.member, file.fields);
+                         file.dy_m, file.run, file.member);
 }
 
 // Returns whether the files belong to one run. The times of such files overlap at most at their
@@ -375,9 +376,71 @@ std::vector<absl::StatusOr<storm_files::StormFile>> Describe(
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!files[i].ok() || files[i]->device != 0) continue;
     const std::optional<base::FileStamp> stamp = base::StampOf(paths[i]);
-    if (stamp.has_value()) files[i]->device = stamp->device;
+    if (!stamp.has_value()) continue;
+    files[i]->device = stamp->device;
+    files[i]->modified_ns = stamp->modified_ns;
   }
   return files;
+}
+
+// Returns whether `later` was written at least as late as `file`. Of files that were written at the
+// same time, the one with the later name counts as written later.
+bool WasWrittenLater(const storm_files::StormFile& file, const storm_files::StormFile& later) {
+  return std::tie(later.modified_ns, later.path) >= std::tie(file.modified_ns, file.path);
+}
+
+// Returns a note for users about a time that two records have.
+std::string NoteOfDouble(const std::vector<storm_files::StormFile>& files, absl::Time time,
+                         const TimeSource& used, const TimeSource& other) {
+  const storm_files::StormFile& file = files[used.file];
+  if (used.file == other.file) {
+    return absl::StrCat(file.path, ": has the time ", FormatValidTime(time), " twice, in records ",
+                        other.record, " and ", used.record, "; the later record is used");
+  }
+  const bool newer = file.modified_ns != files[other.file].modified_ns;
+  return absl::StrCat(FormatValidTime(time), " is in ", files[other.file].path, " and in ",
+                      file.path, "; the latter is used, ",
+                      newer ? "because it was written later" : "because its name is later");
+}
+
+// Returns the fields that any of the files has, and adds a note for each field that some lack.
+std::vector<physics::Hydrometeor> FieldsOfAny(const std::vector<storm_files::StormFile>& files,
+                                              std::vector<std::string>& notes) {
+  std::vector<physics::Hydrometeor> fields;
+  for (const physics::Hydrometeor field : physics::kHydrometeors) {
+    const auto lacks = [field](const storm_files::StormFile& file) {
+      return std::ranges::find(file.fields, field) == file.fields.end();
+    };
+    const std::ptrdiff_t lacking = std::ranges::count_if(files, lacks);
+    if (lacking == std::ssize(files)) continue;
+    fields.push_back(field);
+    if (lacking == 0) continue;
+    const std::string others =
+        lacking > 1 ? absl::StrCat(" (nor have ", lacking - 1, " more files)") : "";
+    notes.push_back(absl::StrCat(std::ranges::find_if(files, lacks)->path, ": has no ",
+                                 std::string(physics::NameOf(field)), others,
+                                 ", which other files of the run have; its times are drawn "
+                                 "without it"));
+  }
+  return fields;
+}
+
+// Adds the first of the notes to the texts that users see. These users need not know in which
+// folders the server has its files.
+void AddNotes(const std::vector<std::string>& notes,
+              const std::vector<storm_files::StormFile>& files, std::vector<std::string>& texts) {
+  constexpr std::size_t kMost = 5;
+  for (std::size_t i = 0; i < std::min(notes.size(), kMost); ++i) {
+    std::string text = notes[i];
+    for (const storm_files::StormFile& file : files) {
+      const std::string folder = fs::path(file.path).parent_path().string() + "/";
+      if (folder != "/") text = absl::StrReplaceAll(text, {{folder, ""}});
+    }
+    texts.push_back(base::Printable(text));
+  }
+  if (notes.size() > kMost) {
+    texts.push_back(absl::StrCat("There are ", notes.size() - kMost, " more notes in the log."));
+  }
 }
 
 }  // namespace
@@ -430,12 +493,13 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
   for (std::size_t file = 0; file < files.size(); ++file) {
     for (std::size_t record = 0; record < files[file].times.size(); ++record) {
       const absl::Time time = files[file].times[record];
-      const auto [at, added] = sources.try_emplace(time, TimeSource{file, record});
+      const TimeSource source{file, record};
+      const auto [at, added] = sources.try_emplace(time, source);
       if (added) continue;
-      storm.notes.push_back(absl::StrCat(FormatValidTime(time), " is in ",
-                                         files[at->second.file].path, " and in ", files[file].path,
-                                         "; the latter is used"));
-      at->second = {file, record};
+      TimeSource& kept = at->second;
+      const TimeSource other = kept;
+      if (WasWrittenLater(files[kept.file], files[file])) kept = source;
+      storm.notes.push_back(NoteOfDouble(files, time, kept, kept.file == file ? other : source));
     }
   }
   StormInfo& info = storm.info;
@@ -455,7 +519,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
   info.file_cells = first.cells;
   info.dx_m = first.dx_m;
   info.dy_m = first.dy_m;
-  info.fields = first.fields;
+  info.fields = FieldsOfAny(files, storm.notes);
   info.latitude_deg = first.latitude_deg;
   info.longitude_deg = first.longitude_deg;
   if (const auto start = storm_files::RunStart(first); start.has_value()) {
@@ -469,6 +533,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
       }
     }
   }
+  AddNotes(storm.notes, files, info.assumptions);
   storm.files = std::move(files);
   return storm;
 }

@@ -26,7 +26,7 @@ struct CataloguedStorm {
   StormInfo info;
   std::vector<storm_files::StormFile> files;
   std::vector<TimeSource> sources;  // one for each of info.times
-  std::vector<std::string> notes;   // messages for the log about times that several files have
+  std::vector<std::string> notes;   // messages for the log about what is odd in the files
 };
 
 // Returns the file that a time of the storm is in.
@@ -98,13 +98,14 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
 
 void LogNotes(const std::vector<CataloguedStorm>& storms);
 
-// Groups the files by model run. Files of one run have the same domain, grid, fields and start of
+// Groups the files by model run. Files of one run have the same domain, grid, member and start of
 // the run.
 std::vector<std::vector<storm_files::StormFile>> FilesOfRuns(
     std::vector<storm_files::StormFile> files);
 
 // Makes one storm of the files of one run, with its times in order. If several files have the same
-// time, the last file is used. `files` must not be empty.
+// time, the file that was written last is used. If one file has a time twice, the later record is
+// used. Notes report both, and fields that only some files have. `files` must not be empty.
 CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::StormFile> files);
 
 }  // namespace thunderhead::storm_store

@@ -298,8 +298,8 @@ TEST_F(WatchCommand, OfTwoFilesWithOneTimeItSaysWhichItDraws) {
       0)
       << Contents(err_);
   const std::string said = Contents(err_);
-  const std::string note =
-      absl::StrCat(" is in ", RunFile(inbox_, 0), " and in ", copy, "; the latter is used");
+  const std::string note = absl::StrCat(" is in ", RunFile(inbox_, 0), " and in ", copy,
+                                        "; the latter is used, because it was written later");
   const std::size_t at = said.find(note);
   ASSERT_NE(at, std::string::npos) << said;
   EXPECT_EQ(said.find(note, at + 1), std::string::npos) << said;

@@ -16,6 +16,7 @@
 #include "netcdf/netcdf_lock.h"
 #include "storm_store/catalogue_scan.h"
 #include "storm_store/storm_store.h"
+#include "tests/support/captured_log.h"
 #include "tests/support/manual_time.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
@@ -29,6 +30,7 @@ using std::chrono::milliseconds;
 using std::chrono::minutes;
 using std::chrono::seconds;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using testing::SyntheticWrf;
 using testing::TemporaryFolder;
 using testing::WrfCell;
@@ -399,6 +401,65 @@ TEST_F(LiveFolder, ADeletedTimeStaysWhileItIsLookedAt) {
   EXPECT_EQ(*store->Get(storm->id, 0, {}), *shown);
   shown = absl::NotFoundError("");
   EXPECT_TRUE(Eventually([&] { return TimesOf(*store) == 1; }));
+}
+
+TEST_F(LiveFolder, AFileThatReplacesTheOneInViewIsRead) {
+  PutOld(File(0), WrfBytes({0}, 1e-3));
+  const auto store = Open(milliseconds(100));
+  const std::string id = store->Storms()[0]->id;
+  const auto shown = store->Get(id, 0, {});
+  ASSERT_TRUE(shown.ok());
+  MoveInto(File(0), WrfBytes({5}, 2e-3));
+  ASSERT_TRUE(Eventually([&] { return TimesOf(*store) == 2; })) << "the old time is in view";
+  EXPECT_TRUE(store->Storms()[0]->times[0].deleted);
+  const auto next = store->Get(id, 1, {});
+  ASSERT_TRUE(next.ok()) << next.status();
+  EXPECT_FLOAT_EQ((*next)->fields[0].statistics.maximum, 2e-3F);
+}
+
+TEST_F(LiveFolder, OfTwoFilesWithOneTimeTheOneWrittenLastIsUsed) {
+  PutOld(File(1), WrfBytes({0, 1}, 1e-3));
+  Put(File(0), WrfBytes({1, 2}, 2e-3));  // an earlier name, but written later
+  const testing::CapturedLog log;
+  const auto found = FindStorms({data_}, storm_files::StormFormats::BuiltIn());
+  ASSERT_TRUE(found.ok()) << found.status();
+  ASSERT_EQ(found->size(), 1U);
+  const CataloguedStorm& storm = found->front();
+  ASSERT_EQ(storm.info.times.size(), 3U);
+  EXPECT_EQ(storm.info.times[1].file, File(0));
+  EXPECT_THAT(log.Text(), HasSubstr("the latter is used, because it was written later"));
+  EXPECT_THAT(storm.info.assumptions,
+              ElementsAre("2013-05-20T01:00:00Z is in wrfout_d01_01:00:00 and in "
+                          "wrfout_d01_00:00:00; the latter is used, because it was written later"));
+}
+
+TEST_F(LiveFolder, ATimeThatAFileHasTwiceIsReported) {
+  PutOld(File(0), WrfBytes({0, 1, 1}));
+  const auto found = FindStorms({data_}, storm_files::StormFormats::BuiltIn());
+  ASSERT_TRUE(found.ok()) << found.status();
+  const CataloguedStorm& storm = found->front();
+  ASSERT_EQ(storm.info.times.size(), 2U);
+  EXPECT_EQ(storm.sources[1].record, 2U);
+  EXPECT_THAT(storm.info.assumptions, ElementsAre(HasSubstr("in records 1 and 2")));
+}
+
+TEST_F(LiveFolder, AFieldThatOneFileLacksLeavesTheSeriesWhole) {
+  for (const int hour : {0, 1, 2}) PutOld(File(hour), WrfBytes({hour}));
+  SyntheticWrf other;
+  other.top_m = top_m_;
+  other.times = {"2013-05-20_01:00:00"};
+  for (const char* name : {"QCLOUD", "QRAIN"}) {
+    other.mixing_ratios[name] = [](const WrfCell&) { return 1e-3; };
+  }
+  testing::WriteWrf(other, File(1));
+  fs::last_write_time(File(1), fs::file_time_type::clock::now() - std::chrono::hours(1));
+  const auto found = FindStorms({data_}, storm_files::StormFormats::BuiltIn());
+  ASSERT_TRUE(found.ok()) << found.status();
+  ASSERT_EQ(found->size(), 1U);
+  EXPECT_EQ(found->front().info.times.size(), 3U);
+  EXPECT_THAT(found->front().info.fields,
+              ElementsAre(physics::Hydrometeor::kCloud, physics::Hydrometeor::kRain));
+  EXPECT_THAT(found->front().info.assumptions, ElementsAre(HasSubstr("has no rain")));
 }
 
 TEST_F(LiveFolder, ADeletedStormStaysWhileItIsLookedAt) {
