@@ -42,6 +42,7 @@ export function describeStorm(stormId: string, timeIndex: number, later = 0) {
     id: stormId,
     title: stormId,
     timeIndex,
+    assumptions: stormId === "late" ? ["Mixing ratios are per kg of dry air."] : [],
     // These two storms are runs of one model. The domains of the others are unknown.
     grid: ["supercell", "late"].includes(stormId)
       ? { nx: 200, ny: 160, nz: 68, dxM: 1000, dyM: 1000, dzM: 300 }

@@ -183,6 +183,16 @@ describe("the page in a session", () => {
     expect(page.state.scene.value.camera).toEqual(camera);
   });
 
+  it("tells what was assumed of the storm that is chosen", async () => {
+    const { page } = await visit();
+    expect(page.state.assumptions.value).toEqual([]);
+    service.grow();
+    await pass(100);
+    page.showStorm("late");
+    await pass(300);
+    expect(page.state.assumptions.value).toEqual(["Mixing ratios are per kg of dry air."]);
+  });
+
   it("knows which times of the storm shown are in the server's memory", async () => {
     const { teacher, viewer } = await classroom();
     const first = teacher.page.state.timeIndex.value;

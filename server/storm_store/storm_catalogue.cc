@@ -415,12 +415,15 @@ std::vector<physics::Hydrometeor> FieldsOfAny(const std::vector<storm_files::Sto
     if (lacking == std::ssize(files)) continue;
     fields.push_back(field);
     if (lacking == 0) continue;
-    const std::string others =
-        lacking > 1 ? absl::StrCat(" (nor have ", lacking - 1, " more files)") : "";
-    notes.push_back(absl::StrCat(std::ranges::find_if(files, lacks)->path, ": has no ",
-                                 std::string(physics::NameOf(field)), others,
-                                 ", which other files of the run have; its times are drawn "
-                                 "without it"));
+    const std::string& first = std::ranges::find_if(files, lacks)->path;
+    const std::string field_name(physics::NameOf(field));
+    notes.push_back(
+        lacking == 1
+            ? absl::StrCat(first, ": has no ", field_name,
+                           ", which other files of the run have; its times are drawn without it")
+            : absl::StrCat(first, " and ", lacking - 1, " more files have no ", field_name,
+                           ", which other files of the run have; their times are drawn without "
+                           "it"));
   }
   return fields;
 }

@@ -272,6 +272,8 @@ export class PageState {
   readonly run = computed(() => {
     return nameOfRun(this.#describedStorm.value?.runStart ?? "");
   });
+  // What the reader of the storm's files assumed, a sentence each.
+  readonly assumptions = computed(() => this.#describedStorm.value?.assumptions ?? []);
   readonly shownTime = computed(() => {
     const count = this.timeCount.value;
     const times = this.#describedStorm.value?.times ?? [];

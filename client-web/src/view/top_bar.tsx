@@ -13,7 +13,10 @@ export function TopBar({ page }: { page: Page }) {
   const { state } = page;
   return (
     <header class="top-bar" data-testid="top-bar">
-      <Storm page={page} />
+      <div class="named-storm">
+        <Storm page={page} />
+        <Assumptions page={page} />
+      </div>
       <When page={page} />
       <div class="top-buttons">
         <Connection state={state} />
@@ -51,6 +54,24 @@ function Storm({ page }: { page: Page }) {
         </span>
       )}
     </button>
+  );
+}
+
+// What was assumed because the storm's files do not say it. A click lists it.
+function Assumptions({ page }: { page: Page }) {
+  const assumptions = page.state.assumptions.value;
+  if (assumptions.length === 0) return null;
+  return (
+    <details class="assumptions" data-testid="assumptions">
+      <summary title="What was assumed because the files do not say it">
+        {assumptions.length === 1 ? "1 assumption" : `${assumptions.length} assumptions`}
+      </summary>
+      <ul class="assumptions-body">
+        {assumptions.map((text) => (
+          <li key={text}>{text}</li>
+        ))}
+      </ul>
+    </details>
   );
 }
 

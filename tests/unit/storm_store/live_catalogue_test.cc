@@ -459,7 +459,7 @@ TEST_F(LiveFolder, AFieldThatOneFileLacksLeavesTheSeriesWhole) {
   EXPECT_EQ(found->front().info.times.size(), 3U);
   EXPECT_THAT(found->front().info.fields,
               ElementsAre(physics::Hydrometeor::kCloud, physics::Hydrometeor::kRain));
-  EXPECT_THAT(found->front().info.assumptions, ElementsAre(HasSubstr("has no rain")));
+  EXPECT_THAT(found->front().info.assumptions, ElementsAre(HasSubstr("1 more files have no rain")));
 }
 
 TEST_F(LiveFolder, ADeletedStormStaysWhileItIsLookedAt) {
