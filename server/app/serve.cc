@@ -26,6 +26,7 @@
 #include "app/serve_flags.h"
 #include "app/state_folder.h"
 #include "base/error_details.h"
+#include "base/program_folder.h"
 #include "base/status.h"
 #include "drawing/gl_frame_source.h"
 #include "gateway/gateway.h"
@@ -50,7 +51,7 @@ constexpr std::chrono::seconds kEndPatience{12};
 // neither.
 std::string DefaultPageFolder() {
   std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  const std::filesystem::path program = base::ProgramFolder();
   for (const char* place : {"../share/thunderhead/page", "../../../client-web/dist"}) {
     if (std::filesystem::exists(program / place / "index.html", error)) return program / place;
   }

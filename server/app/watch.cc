@@ -174,26 +174,16 @@ std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
   return pictures;
 }
 
-// Logs the assumptions about the storms, for example which of two files with the same time is
-// drawn. Each note is logged once and then added to `told`.
-void TellNotes(const std::vector<FolderStorm>& storms, std::set<std::string>& told) {
-  for (const FolderStorm& storm : storms) {
-    for (const std::string& note : storm.storm.notes) {
-      if (told.insert(note).second) spdlog::warn("{}", note);
-    }
-  }
-}
-
 // Draws the files that have become ready.
 absl::Status DrawReady(const MovieOptions& movie, WatchedFolder& folder, PictureRun& run,
                        RunProgress& progress, std::set<std::string>& told,
                        const std::stop_token& stop) {
   if (folder.Unsettled().empty()) return absl::OkStatus();
   const std::vector<FolderStorm> storms = folder.Storms();
-  TellNotes(storms, told);
   std::vector<storm_store::CataloguedStorm> catalogue;
   catalogue.reserve(storms.size());
   for (const FolderStorm& storm : storms) catalogue.push_back(storm.storm);
+  storm_store::LogNotes(catalogue, &told);
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<PlannedPicture> all,
                                PlanWatched(run.Options(), storms, catalogue, folder));
   std::vector<PlannedPicture> made;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <csignal>
 #include <cstring>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -14,6 +13,7 @@
 #include "base/error_details.h"
 #include "base/file_stamp.h"
 #include "base/guarded.h"
+#include "base/program_folder.h"
 #include "base/status.h"
 #include "base/utf8.h"
 #include "base/version.h"
@@ -272,9 +272,7 @@ absl::Status Readers::Run(Request request, Reply wanted, milliseconds patience,
 
 absl::StatusOr<std::string> ReaderProgram() {
   constexpr char kRemedy[] = "; install Thunderhead whole, and start this program again";
-  std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  static const std::string path = (self.parent_path() / kReaderName).string();
+  static const std::string path = (base::ProgramFolder() / kReaderName).string();
   static const std::optional<base::FileStamp> first = base::StampOf(path);
   if (!first.has_value()) {
     return absl::InternalError(

@@ -541,9 +541,11 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
   return storm;
 }
 
-void LogNotes(const std::vector<CataloguedStorm>& storms) {
+void LogNotes(const std::vector<CataloguedStorm>& storms, std::set<std::string>* logged) {
   for (const CataloguedStorm& storm : storms) {
-    for (const std::string& note : storm.notes) spdlog::warn("{}", note);
+    for (const std::string& note : storm.notes) {
+      if (logged == nullptr || logged->insert(note).second) spdlog::warn("{}", note);
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <set>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -96,7 +97,9 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const StormSearch& search);
 
-void LogNotes(const std::vector<CataloguedStorm>& storms);
+// Logs the assumptions about the storms, for example which of two files with the same time is used.
+// If `logged` is not null, the notes in it are skipped, and those that are logged are added to it.
+void LogNotes(const std::vector<CataloguedStorm>& storms, std::set<std::string>* logged = nullptr);
 
 // Groups the files by model run. Files of one run have the same domain, grid, member and start of
 // the run.
