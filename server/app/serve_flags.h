@@ -46,7 +46,7 @@ struct ServeFlags {
   std::vector<std::string> auth = {"none"};
   std::string jwt_issuer;
   std::string jwt_audience;
-  service::TlsFiles tls;
+  rpc_port::TlsFiles tls;
   bool insecure = false;
   std::vector<std::string> allowed_hosts;
   std::vector<std::string> allowed_origins;

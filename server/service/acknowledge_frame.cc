@@ -1,7 +1,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/status.h"
-#include "service/finished.h"
+#include "rpc_port/finished.h"
 #include "service/handlers.h"
 #include "service/messages/limits_check.h"
 
@@ -27,7 +27,8 @@ grpc::ServerUnaryReactor* AcknowledgeFrame(Engine& engine, grpc::CallbackServerC
                                            const CallerRef& caller,
                                            const v1::AcknowledgeFrameRequest* request,
                                            v1::AcknowledgeFrameResponse* response) {
-  return Finished(engine.limits, context, caller, Acknowledge(engine, *request), *response);
+  return rpc_port::Finished(engine.limits, context, caller, Acknowledge(engine, *request),
+                            *response);
 }
 
 }  // namespace thunderhead::service

@@ -1,7 +1,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/status.h"
-#include "service/finished.h"
+#include "rpc_port/finished.h"
 #include "service/handlers.h"
 #include "service/messages/limits_check.h"
 
@@ -28,8 +28,8 @@ grpc::ServerUnaryReactor* CloseSession(Engine& engine, grpc::CallbackServerConte
   absl::Status status = CheckLimits(*request);
   if (status.ok()) status = engine.sessions.Close(request->session_id());
   caller->Report("CloseSession", status);
-  if (!status.ok()) return Refused(context, status);
-  auto* const answer = new Answer(context, engine.limits, caller, *response);
+  if (!status.ok()) return rpc_port::Refused(context, status);
+  auto* const answer = new rpc_port::Answer(context, engine.limits, caller, *response);
   SaveThen(engine, [answer](const session::SessionKeeper::Outcome& outcome) {
     answer->Give(EndSaved(outcome.removed));
   });

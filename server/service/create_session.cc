@@ -2,12 +2,12 @@
 #include "base/guarded.h"
 #include "base/patient_calls.h"
 #include "base/status.h"
-#include "service/finished.h"
+#include "rpc_port/finished.h"
+#include "service/engine/scene_update.h"
 #include "service/handlers.h"
-#include "service/interact_requests.h"
+#include "service/interact/interact_requests.h"
 #include "service/messages/limits_check.h"
 #include "service/messages/prepare_scene.h"
-#include "service/scene_update.h"
 #include "telemetry/metrics.h"
 
 namespace thunderhead::service {
@@ -49,8 +49,8 @@ grpc::ServerUnaryReactor* CreateSession(Engine& engine, grpc::CallbackServerCont
   scene = request->scene();
   if (status.ok()) status = PrepareScene(engine.store, engine.loop.Techniques(), scene);
   if (status.ok()) status = CheckSize(engine.limits, scene);
-  if (!status.ok()) return Refused(context, *caller, status);
-  auto* const answer = new Answer(context, engine.limits, caller, *response);
+  if (!status.ok()) return rpc_port::Refused(context, *caller, status);
+  auto* const answer = new rpc_port::Answer(context, engine.limits, caller, *response);
   const session::Rules rules = RulesOf(request->rules(), {});
   FrameThen(engine, caller->identity().name, scene, [=, &engine](const absl::Status& framed) {
     const absl::Status opened =

@@ -1,7 +1,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/guarded.h"
 #include "base/status.h"
-#include "service/finished.h"
+#include "rpc_port/finished.h"
 #include "service/handlers.h"
 #include "service/messages/limits_check.h"
 
@@ -34,9 +34,9 @@ grpc::ServerUnaryReactor* DeleteCloud(Engine& engine, grpc::CallbackServerContex
                                       const v1::DeleteCloudRequest* request,
                                       v1::DeleteCloudResponse* response) {
   if (const absl::Status limits = CheckLimits(*request); !limits.ok()) {
-    return Refused(context, *caller, limits);
+    return rpc_port::Refused(context, *caller, limits);
   }
-  auto* const answer = new Answer(context, engine.limits, caller, *response);
+  auto* const answer = new rpc_port::Answer(context, engine.limits, caller, *response);
   engine.executor.Submit(caller->identity().name, [=, &engine](const absl::Status& status) {
     const absl::Status deleted =
         status.ok() ? base::Guarded([&] { return Delete(engine, request->storm_id()); }) : status;

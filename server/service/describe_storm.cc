@@ -1,5 +1,5 @@
 #include "base/status.h"
-#include "service/finished.h"
+#include "rpc_port/finished.h"
 #include "service/handlers.h"
 #include "service/messages/limits_check.h"
 #include "service/messages/prepare_scene.h"
@@ -32,10 +32,11 @@ grpc::ServerUnaryReactor* DescribeStorm(Engine& engine, grpc::CallbackServerCont
                                         const v1::DescribeStormRequest* request,
                                         v1::DescribeStormResponse* response) {
   const auto storm = CheckDescribe(engine, *request);
-  if (!storm.ok()) return Refused(context, *caller, storm.status());
-  return FinishedBy(engine, context, caller, *response, [=, &engine] {
-    return Describe(engine, **storm, static_cast<int>(request->time_index()), *response);
-  });
+  if (!storm.ok()) return rpc_port::Refused(context, *caller, storm.status());
+  return rpc_port::FinishedBy(
+      engine.executor, engine.limits, context, caller, *response, [=, &engine] {
+        return Describe(engine, **storm, static_cast<int>(request->time_index()), *response);
+      });
 }
 
 }  // namespace thunderhead::service

@@ -2,7 +2,7 @@
 
 #include "base/guarded.h"
 #include "base/status.h"
-#include "service/finished.h"
+#include "rpc_port/finished.h"
 #include "service/handlers.h"
 #include "service/messages/cloud_messages.h"
 #include "service/messages/limits_check.h"
@@ -38,8 +38,8 @@ grpc::ServerUnaryReactor* GenerateCloud(Engine& engine, grpc::CallbackServerCont
                                         const v1::GenerateCloudRequest* request,
                                         v1::GenerateCloudResponse* response) {
   auto shape = Check(*request);
-  if (!shape.ok()) return Refused(context, *caller, shape.status());
-  auto* const answer = new Answer(context, engine.limits, caller, *response);
+  if (!shape.ok()) return rpc_port::Refused(context, *caller, shape.status());
+  auto* const answer = new rpc_port::Answer(context, engine.limits, caller, *response);
   engine.executor.Submit(
       caller->identity().name, [=, &engine, shape = *std::move(shape)](const absl::Status& status) {
         const absl::Status made = status.ok() ? base::Guarded([&] {

@@ -1,5 +1,5 @@
 #include "base/version.h"
-#include "service/finished.h"
+#include "rpc_port/finished.h"
 #include "service/handlers.h"
 #include "service/messages/technique_messages.h"
 
@@ -19,7 +19,7 @@ grpc::ServerUnaryReactor* GetServerInfo(Engine& engine, grpc::CallbackServerCont
     ToMessage(technique, *response->add_techniques());
   }
   AddPresets(*response);
-  return Finished(engine.limits, context, caller, absl::OkStatus(), *response);
+  return rpc_port::Finished(engine.limits, context, caller, absl::OkStatus(), *response);
 }
 
 }  // namespace thunderhead::service

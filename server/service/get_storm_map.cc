@@ -6,7 +6,7 @@
 #include "absl/strings/str_join.h"
 #include "base/error_details.h"
 #include "base/status.h"
-#include "service/finished.h"
+#include "rpc_port/finished.h"
 #include "service/handlers.h"
 #include "service/messages/limits_check.h"
 #include "service/messages/prepare_scene.h"
@@ -104,9 +104,9 @@ grpc::ServerUnaryReactor* GetStormMap(Engine& engine, grpc::CallbackServerContex
                                       const v1::GetStormMapRequest* request,
                                       v1::GetStormMapResponse* response) {
   const auto storm = CheckMap(engine, *request);
-  if (!storm.ok()) return Refused(context, *caller, storm.status());
-  return FinishedBy(engine, context, caller, *response,
-                    [=, &engine] { return Map(engine, **storm, *request, *response); });
+  if (!storm.ok()) return rpc_port::Refused(context, *caller, storm.status());
+  return rpc_port::FinishedBy(engine.executor, engine.limits, context, caller, *response,
+                              [=, &engine] { return Map(engine, **storm, *request, *response); });
 }
 
 }  // namespace thunderhead::service

@@ -5,15 +5,10 @@
 
 #include <grpcpp/support/server_callback.h>
 
-#include <memory>
-
-#include "access/door.h"
-#include "service/engine.h"
+#include "service/engine/engine.h"
 #include "thunderhead/v1/thunderhead.pb.h"
 
 namespace thunderhead::service {
-
-using CallerRef = std::shared_ptr<const access::Caller>;
 
 grpc::ServerUnaryReactor* GetServerInfo(Engine& engine, grpc::CallbackServerContext* context,
                                         const CallerRef& caller,

@@ -1,4 +1,4 @@
-#include "service/finished.h"
+#include "rpc_port/finished.h"
 #include "service/handlers.h"
 #include "service/messages/scene_messages.h"
 
@@ -13,7 +13,7 @@ grpc::ServerUnaryReactor* ListStorms(Engine& engine, grpc::CallbackServerContext
     ToMessage(*storm, summary);
     summary.set_deletable(engine.clouds.Holds(storm->id));
   }
-  return Finished(engine.limits, context, caller, absl::OkStatus(), *response);
+  return rpc_port::Finished(engine.limits, context, caller, absl::OkStatus(), *response);
 }
 
 }  // namespace thunderhead::service

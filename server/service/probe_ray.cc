@@ -2,15 +2,15 @@
 #include <utility>
 
 #include "base/status.h"
-#include "service/finished.h"
+#include "rpc_port/finished.h"
+#include "service/engine/scene_update.h"
 #include "service/handlers.h"
-#include "service/interact_requests.h"
+#include "service/interact/interact_requests.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/limits_check.h"
 #include "service/messages/prepare_scene.h"
 #include "service/messages/probe_messages.h"
 #include "service/messages/scene_messages.h"
-#include "service/scene_update.h"
 
 namespace thunderhead::service {
 namespace {
@@ -83,9 +83,9 @@ grpc::ServerUnaryReactor* ProbeRay(Engine& engine, grpc::CallbackServerContext* 
                                    const CallerRef& caller, const v1::ProbeRayRequest* request,
                                    v1::ProbeRayResponse* response) {
   const auto asked = Check(engine, *request);
-  if (!asked.ok()) return Refused(context, *caller, asked.status());
-  return FinishedBy(engine, context, caller, *response,
-                    [=, &engine] { return Probe(engine, **asked, *response); });
+  if (!asked.ok()) return rpc_port::Refused(context, *caller, asked.status());
+  return rpc_port::FinishedBy(engine.executor, engine.limits, context, caller, *response,
+                              [=, &engine] { return Probe(engine, **asked, *response); });
 }
 
 }  // namespace thunderhead::service

@@ -4,11 +4,11 @@
 #include <utility>
 
 #include "base/time_source.h"
-#include "service/delivery_deadline.h"
+#include "rpc_port/delivery_deadline.h"
+#include "rpc_port/status_table.h"
+#include "service/engine/limits.h"
+#include "service/engine/picture_job.h"
 #include "service/handlers.h"
-#include "service/limits.h"
-#include "service/picture_job.h"
-#include "service/status_table.h"
 
 namespace thunderhead::service {
 namespace {
@@ -31,12 +31,12 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private PictureLis
   void Ended(const absl::Status& status) override {
     caller_->Report("RenderImage", status);
     delivery_.Begin(response_.image().size());
-    Finish(ToGrpcStatus(status));
+    Finish(rpc_port::ToGrpcStatus(status));
   }
 
   const CallerRef caller_;
   const v1::RenderImageResponse& response_;
-  DeliveryDeadline delivery_;
+  rpc_port::DeliveryDeadline delivery_;
   PictureJob job_;
 };
 
@@ -99,7 +99,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     caller_->Report("RenderImageWithProgress", status);
     {
       const std::lock_guard lock(mutex_);
-      end_ = ToGrpcStatus(status);
+      end_ = rpc_port::ToGrpcStatus(status);
       if (writing_) return;  // OnWriteDone then writes the end
     }
     WriteEnd();
@@ -135,7 +135,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
   bool writing_ = false;
   std::optional<base::TimeSource::Clock::time_point> told_at_;  // time of the last progress message
   std::optional<grpc::Status> end_;
-  DeliveryDeadline delivery_;
+  rpc_port::DeliveryDeadline delivery_;
   PictureJob job_;
 };
 

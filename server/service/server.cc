@@ -2,9 +2,6 @@
 
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/grpcpp.h>
-#include <grpcpp/resource_quota.h>
-#include <grpcpp/security/tls_certificate_provider.h>
-#include <grpcpp/security/tls_credentials_options.h>
 
 #include <chrono>
 #include <mutex>
@@ -15,17 +12,18 @@
 #include "base/executor.h"
 #include "base/status.h"
 #include "base/wake_signal.h"
-#include "service/catalogue_follower.h"
-#include "service/connection_calls.h"
-#include "service/engine.h"
-#include "service/health_service.h"
-#include "service/interact_messages.h"
-#include "service/job_messages.h"
-#include "service/job_pictures.h"
-#include "service/local_listener.h"
-#include "service/open_sockets.h"
-#include "service/port_listener.h"
-#include "service/render_job_service.h"
+#include "rpc_port/connection_calls.h"
+#include "rpc_port/health_service.h"
+#include "rpc_port/local_listener.h"
+#include "rpc_port/open_sockets.h"
+#include "rpc_port/port_listener.h"
+#include "rpc_port/server_settings.h"
+#include "service/engine/catalogue_follower.h"
+#include "service/engine/engine.h"
+#include "service/interact/interact_messages.h"
+#include "service/jobs/job_messages.h"
+#include "service/jobs/job_pictures.h"
+#include "service/jobs/render_job_service.h"
 #include "service/stored_scene.h"
 #include "service/thunderhead_service.h"
 #include "session/session_keeper.h"
@@ -38,26 +36,6 @@ namespace {
 
 // Size of the largest uncompressed picture that CheckScene allows, with a margin.
 constexpr int kMaxResponseBytes = 128 << 20;
-// Time and timeout of gRPC's keepalive pings. A viewer that disappeared without closing its
-// connection is detected after their sum.
-constexpr int kKeepaliveTimeMs = 20'000;
-constexpr int kKeepaliveTimeoutMs = 10'000;
-// Timeouts for a client that connects and sends nothing, and for one that starts no call.
-constexpr int kHandshakeTimeoutMs = 10'000;
-constexpr int kIdleConnectionMs = 60'000;
-// Maximum number of threads for calls that occupy a thread each. Only gRPC's reflection service has
-// such calls. Further calls are refused.
-constexpr int kMaxCallThreads = 16;
-
-std::shared_ptr<grpc::ServerCredentials> CredentialsOf(const TlsFiles& files) {
-  if (files.certificate.empty()) return grpc::InsecureServerCredentials();
-  grpc::experimental::TlsServerCredentialsOptions options(
-      std::make_shared<grpc::experimental::FileWatcherCertificateProvider>(
-          files.key, files.certificate, files.look_every_s));
-  options.watch_identity_key_cert_pairs();
-  options.set_cert_request_type(GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE);
-  return grpc::experimental::TlsServerCredentials(options);
-}
 
 std::shared_ptr<access::Door> OpenDoor() {
   return std::make_shared<access::Door>(access::TrustEverybody(),
@@ -78,15 +56,6 @@ Limits LimitsOf(const ServerOptions& options) {
   return limits;
 }
 
-// Makes gRPC refuse compressed requests with UNIMPLEMENTED. A megabyte of gzip may contain a
-// gigabyte, and gRPC would decompress a message before it checks the size.
-void RefuseCompression(grpc::ServerBuilder& builder) {
-  for (const auto algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
-    builder.SetCompressionAlgorithmSupportStatus(algorithm, false);
-  }
-  builder.AddChannelArgument(GRPC_ARG_ENABLE_PER_MESSAGE_DECOMPRESSION, 0);
-}
-
 class RunningServer final : public Server {
  public:
   RunningServer(const ServerOptions& options, std::shared_ptr<storm_store::StormStore> store)
@@ -96,7 +65,7 @@ class RunningServer final : public Server {
         limits_(LimitsOf(options)),
         job_files_(options.job_files),
         shutdown_grace_(options.shutdown_grace),
-        connection_calls_(std::make_shared<ConnectionCalls>(*options.time)),
+        connection_calls_(std::make_shared<rpc_port::ConnectionCalls>(*options.time)),
         sessions_(SessionsOf(options), {[this] { wake_.Notify(); }, [this] { due_.Notify(); }}),
         executor_(options.executor),
         clouds_(options.clouds_folder, *store_, options.render_loop.memory) {}
@@ -129,7 +98,7 @@ class RunningServer final : public Server {
     return absl::OkStatus();
   }
 
-  absl::Status Listen(const std::string& address, const TlsFiles& tls) {
+  absl::Status Listen(const std::string& address, const rpc_port::TlsFiles& tls) {
     catalogue_ = std::make_unique<CatalogueFollower>(*store_, sessions_, *loop_);
     engine_ = std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_,
                                               keeper_.get(), *catalogue_, drain_, limits_});
@@ -143,43 +112,32 @@ class RunningServer final : public Server {
     builder.RegisterService(service_.get());
     builder.RegisterService(job_service_.get());
     builder.RegisterService(&health_);
-    grpc::ResourceQuota quota("thunderhead");
-    quota.Resize(limits_.grpc_memory_bytes).SetMaxThreads(kMaxCallThreads);
-    builder.SetResourceQuota(quota);
-    builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);
-    builder.SetMaxReceiveMessageSize(static_cast<int>(limits_.max_request_bytes));
-    builder.SetMaxSendMessageSize(kMaxResponseBytes);
-    RefuseCompression(builder);
-    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTimeMs);
-    builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
-    builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, limits_.max_streams_per_connection);
-    builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeTimeoutMs);
-    builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kIdleConnectionMs);
-    PortListener::Acceptor acceptor;
+    rpc_port::SetLimits(builder, limits_, kMaxResponseBytes);
+    rpc_port::PortListener::Acceptor acceptor;
     if (!address.empty()) {
       THUNDERHEAD_ASSIGN_OR_RETURN(
-          port_, PortListener::Open(address, std::chrono::milliseconds(kKeepaliveTimeoutMs)));
+          port_, rpc_port::PortListener::Open(address, rpc_port::kKeepaliveTimeout));
       using Builder = grpc::ServerBuilder::experimental_type;
       acceptor = builder.experimental().AddExternalConnectionAcceptor(
-          Builder::ExternalConnectionType::FROM_FD, CredentialsOf(tls));
+          Builder::ExternalConnectionType::FROM_FD, rpc_port::CredentialsOf(tls));
     }
     server_ = builder.BuildAndStart();
     if (server_ == nullptr) return absl::InternalError("gRPC's server does not start");
-    THUNDERHEAD_ASSIGN_OR_RETURN(local_, LocalListener::Start(*server_));
+    THUNDERHEAD_ASSIGN_OR_RETURN(local_, rpc_port::LocalListener::Start(*server_));
     if (port_ != nullptr) {
-      THUNDERHEAD_RETURN_IF_ERROR(
-          port_->Start(std::move(acceptor),
-                       OpenSockets(limits_.max_connections, limits_.max_connections_per_address,
-                                   door_->Proxies(), connection_calls_),
-                       {.unused = limits_.unused_connection,
-                        .handshakes_per_address =
-                            tls.certificate.empty() ? 0.0 : limits_.max_handshakes_per_address,
-                        .proxies = door_->Proxies(),
-                        .time = limits_.time},
-                       [this](const std::string& peer, const absl::Status& why) {
-                         telemetry::Counted().refusals.Of(base::DetailsOf(why).reason).Add();
-                         door_->ReportBeforeCall(peer, "Connect", why);
-                       }));
+      THUNDERHEAD_RETURN_IF_ERROR(port_->Start(
+          std::move(acceptor),
+          rpc_port::OpenSockets(limits_.max_connections, limits_.max_connections_per_address,
+                                door_->Proxies(), connection_calls_),
+          {.unused = limits_.unused_connection,
+           .handshakes_per_address =
+               tls.certificate.empty() ? 0.0 : limits_.max_handshakes_per_address,
+           .proxies = door_->Proxies(),
+           .time = limits_.time},
+          [this](const std::string& peer, const absl::Status& why) {
+            telemetry::Counted().refusals.Of(base::DetailsOf(why).reason).Add();
+            door_->ReportBeforeCall(peer, "Connect", why);
+          }));
     }
     SetServing(true);
     if (jobs_ != nullptr) jobs_->Start(JobPictures(*engine_, job_files_));
@@ -272,9 +230,9 @@ class RunningServer final : public Server {
   const Limits limits_;
   const JobFiles job_files_;
   const std::chrono::seconds shutdown_grace_;
-  const std::shared_ptr<ConnectionCalls> connection_calls_;
+  const std::shared_ptr<rpc_port::ConnectionCalls> connection_calls_;
   mutable session::Sessions sessions_;
-  Drain drain_;
+  rpc_port::Drain drain_;
   session::Upkeep upkeep_{sessions_, *store_, due_};
   base::Executor executor_;
   CloudStore clouds_;
@@ -285,10 +243,10 @@ class RunningServer final : public Server {
   std::unique_ptr<jobs::Jobs> jobs_;  // null if the server keeps no render jobs
   std::unique_ptr<grpc::Service> service_;
   std::unique_ptr<RenderJobService> job_service_;
-  HealthService health_{v1::ThunderheadService::service_full_name()};
+  rpc_port::HealthService health_{v1::ThunderheadService::service_full_name()};
   std::unique_ptr<grpc::Server> server_;
-  std::unique_ptr<LocalListener> local_;
-  std::unique_ptr<PortListener> port_;  // null without a port
+  std::unique_ptr<rpc_port::LocalListener> local_;
+  std::unique_ptr<rpc_port::PortListener> port_;  // null without a port
 };
 
 }  // namespace

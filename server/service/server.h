@@ -18,24 +18,18 @@
 #include "drawing/frame_source.h"
 #include "drawing/render_loop.h"
 #include "jobs/jobs.h"
-#include "service/job_files.h"
-#include "service/limits.h"
+#include "rpc_port/server_settings.h"
+#include "service/engine/limits.h"
+#include "service/jobs/job_files.h"
 #include "session/session_store.h"
 #include "session/sessions.h"
 #include "storm_store/storm_store.h"
 
 namespace thunderhead::service {
 
-// PEM files, which are read again when they change. If both names are empty, TLS is off.
-struct TlsFiles {
-  std::string certificate;  // certificate chain, the server's own certificate first
-  std::string key;
-  unsigned look_every_s = 5;
-};
-
 struct ServerOptions {
-  std::string address;  // HOST:PORT, with port 0 for a free port; empty means no port
-  TlsFiles tls;         // TLS of that port
+  std::string address;     // HOST:PORT, with port 0 for a free port; empty means no port
+  rpc_port::TlsFiles tls;  // TLS of that port
   // The time source of sessions, their people and the limits. It must outlive the server. `door`
   // has its own time source.
   const base::TimeSource* time = &base::SteadyTime();

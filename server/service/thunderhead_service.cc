@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "service/admission.h"
+#include "rpc_port/admission.h"
 #include "service/handlers.h"
-#include "service/interact.h"
+#include "service/interact/interact.h"
 #include "thunderhead/v1/thunderhead.grpc.pb.h"
 
 namespace thunderhead::service {
@@ -28,7 +28,7 @@ using Calls = Generated::WithCallbackMethod_GetServerInfo<Generated::WithCallbac
 
 class ThunderheadService final : public Calls {
  public:
-  ThunderheadService(Engine& engine, access::Door& door, ConnectionCalls& calls)
+  ThunderheadService(Engine& engine, access::Door& door, rpc_port::ConnectionCalls& calls)
       : engine_(engine), door_(door), entrance_(door, calls) {}
 
   grpc::ServerUnaryReactor* GetServerInfo(grpc::CallbackServerContext* context,
@@ -153,13 +153,13 @@ class ThunderheadService final : public Calls {
  private:
   Engine& engine_;
   access::Door& door_;
-  const Entrance entrance_;
+  const rpc_port::Entrance entrance_;
 };
 
 }  // namespace
 
 std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine, access::Door& door,
-                                                      ConnectionCalls& calls) {
+                                                      rpc_port::ConnectionCalls& calls) {
   return std::make_unique<ThunderheadService>(engine, door, calls);
 }
 

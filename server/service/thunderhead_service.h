@@ -7,13 +7,13 @@
 #include <memory>
 
 #include "access/door.h"
-#include "service/connection_calls.h"
-#include "service/engine.h"
+#include "rpc_port/connection_calls.h"
+#include "service/engine/engine.h"
 
 namespace thunderhead::service {
 
 // Returns the service. All arguments must outlive it.
 std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine, access::Door& door,
-                                                      ConnectionCalls& calls);
+                                                      rpc_port::ConnectionCalls& calls);
 
 }  // namespace thunderhead::service

@@ -1,9 +1,9 @@
 #include "base/error_details.h"
 #include "base/status.h"
-#include "service/finished.h"
+#include "rpc_port/finished.h"
+#include "service/engine/scene_update.h"
 #include "service/handlers.h"
 #include "service/messages/limits_check.h"
-#include "service/scene_update.h"
 
 namespace thunderhead::service {
 namespace {
@@ -29,8 +29,8 @@ grpc::ServerUnaryReactor* UpdateScene(Engine& engine, grpc::CallbackServerContex
                                       const v1::UpdateSceneRequest* request,
                                       v1::UpdateSceneResponse* response) {
   const auto session = FindToSteer(engine, *request);
-  if (!session.ok()) return Refused(context, *caller, session.status());
-  auto* const answer = new Answer(context, engine.limits, caller, *response);
+  if (!session.ok()) return rpc_port::Refused(context, *caller, session.status());
+  auto* const answer = new rpc_port::Answer(context, engine.limits, caller, *response);
   ChangeScene(
       engine, caller->identity().name, *session, SceneChangeOf(*request),
       [session = *session] { return session->audience().PresenterMaySteer(); },

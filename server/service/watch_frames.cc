@@ -6,13 +6,13 @@
 
 #include "base/error_details.h"
 #include "base/status.h"
-#include "service/delivery_deadline.h"
-#include "service/finished.h"
-#include "service/frame_messages.h"
+#include "rpc_port/delivery_deadline.h"
+#include "rpc_port/finished.h"
+#include "rpc_port/status_table.h"
+#include "service/engine/frame_messages.h"
 #include "service/handlers.h"
 #include "service/messages/limits_check.h"
 #include "service/messages/scene_messages.h"
-#include "service/status_table.h"
 
 namespace thunderhead::service {
 namespace {
@@ -34,7 +34,7 @@ class FrameStream : public FramesReactor,
     const auto viewer_id = stream->session_->hub().Join(stream);
     if (!viewer_id.ok()) {
       stream->caller_->ReportRefusal(viewer_id.status());
-      stream->Finish(ToGrpcStatus(viewer_id.status()));
+      stream->Finish(rpc_port::ToGrpcStatus(viewer_id.status()));
       return stream.get();
     }
     {
@@ -103,10 +103,10 @@ class FrameStream : public FramesReactor,
   // Returns the status to end the stream with if it must end now. The caller must hold mutex_.
   std::optional<grpc::Status> End() {
     if (disconnected_) return grpc::Status(grpc::StatusCode::CANCELLED, "the viewer disconnected");
-    if (!known_.ok()) return ToGrpcStatus(known_);
+    if (!known_.ok()) return rpc_port::ToGrpcStatus(known_);
     const absl::Status closed = session_->hub().ClosedBecause();
     if (closed.ok()) return std::nullopt;
-    return ToGrpcStatus(closed);
+    return rpc_port::ToGrpcStatus(closed);
   }
 
   // Sets the response. Must be called while `writing_` is set, so that no other thread uses the
@@ -145,7 +145,7 @@ class FrameStream : public FramesReactor,
   bool disconnected_ = false;
   absl::Status known_;  // reason why the caller may no longer watch; OK while it may
   bool finished_ = false;
-  std::optional<DeliveryDeadline> delivery_;
+  std::optional<rpc_port::DeliveryDeadline> delivery_;
 };
 
 // Returns the session, after adding an onlooker to it.
@@ -165,7 +165,7 @@ absl::StatusOr<std::shared_ptr<session::Session>> FindToWatch(
 FramesReactor* WatchFrames(Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
                            const v1::WatchFramesRequest* request) {
   auto session = FindToWatch(engine, *request);
-  if (!session.ok()) return new RefusedStream<FramesReactor>(*caller, session.status());
+  if (!session.ok()) return new rpc_port::RefusedStream<FramesReactor>(*caller, session.status());
   return FrameStream::Start(engine.limits, context, *std::move(session), std::move(caller));
 }
 

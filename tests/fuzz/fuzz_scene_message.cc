@@ -6,7 +6,7 @@
 #include "absl/strings/string_view.h"
 #include "google/protobuf/stubs/logging.h"
 #include "google/protobuf/util/field_mask_util.h"
-#include "service/interact_requests.h"
+#include "service/interact/interact_requests.h"
 #include "tests/fuzz/scene_path.h"
 
 namespace thunderhead::fuzz {

@@ -2,7 +2,7 @@
 // change to a newer time, other sessions keep their time, and all viewers are notified.
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "service/catalogue_follower.h"
+#include "service/engine/catalogue_follower.h"
 #include "tests/service/fake_service.h"
 #include "tests/service/interacting.h"
 

@@ -1,22 +1,17 @@
 // Tests of machine-readable errors: google.rpc's details in grpc-status-details-bin, for each class
 // of error.
-#include <grpcpp/support/error_details.h>
-
 #include <map>
 #include <ostream>
 #include <thread>
 
-#include "base/error_details.h"
-#include "base/memory_budget.h"
 #include "clouds/presets.h"
 #include "gmock/gmock.h"
 #include "google/protobuf/util/json_util.h"
-#include "google/rpc/error_details.pb.h"
-#include "google/rpc/status.pb.h"
 #include "gtest/gtest.h"
-#include "service/cloud_store.h"
-#include "service/status_table.h"
+#include "rpc_port/status_table.h"
+#include "service/engine/cloud_store.h"
 #include "tests/service/fake_service.h"
+#include "tests/support/decoded_details.h"
 #include "tests/support/temporary_folder.h"
 
 namespace thunderhead::testing {
@@ -26,46 +21,6 @@ using ::testing::ElementsAre;
 using ::testing::Pair;
 using ::testing::StartsWith;
 using Stub = v1::ThunderheadService::Stub;
-
-// The decoded details of an error.
-struct Decoded {
-  std::string reason;
-  std::map<std::string, std::string> metadata;
-  std::string field;
-  std::string description;
-  bool bad_request = false;
-  // Delay before a retry, in seconds; negative if the error contains no delay.
-  double retry_s = -1.0;
-};
-
-Decoded Decode(const grpc::Status& refusal) {
-  Decoded decoded;
-  google::rpc::Status status;
-  EXPECT_TRUE(grpc::ExtractErrorDetails(refusal, &status).ok());
-  EXPECT_EQ(status.code(), refusal.error_code());
-  EXPECT_EQ(status.message(), refusal.error_message());
-  google::rpc::ErrorInfo info;
-  google::rpc::RetryInfo retry;
-  google::rpc::BadRequest request;
-  for (const auto& detail : status.details()) {
-    if (detail.UnpackTo(&info)) {
-      EXPECT_EQ(info.domain(), "thunderhead");
-      decoded.reason = info.reason();
-      decoded.metadata = {info.metadata().begin(), info.metadata().end()};
-    } else if (detail.UnpackTo(&retry)) {
-      decoded.retry_s =
-          static_cast<double>(retry.retry_delay().seconds()) + 1e-9 * retry.retry_delay().nanos();
-    } else if (detail.UnpackTo(&request)) {
-      decoded.bad_request = true;
-      EXPECT_EQ(request.field_violations_size(), 1);
-      decoded.field = request.field_violations(0).field();
-      decoded.description = request.field_violations(0).description();
-    } else {
-      ADD_FAILURE() << "unknown detail " << detail.type_url();
-    }
-  }
-  return decoded;
-}
 
 // Expects an error that names no field.
 void ExpectRefusal(const grpc::Status& refusal, grpc::StatusCode code, const std::string& reason) {
@@ -292,7 +247,7 @@ TEST(ErrorDetailsTest, OneCloudIsMadeAtATime) {
     std::thread([&] { second = clouds.Make(*shape, {"a", 2}, {}, {}).status(); }).join();
   };
   ASSERT_TRUE(clouds.Make(*shape, {"a", 1}, meanwhile, {}).ok());
-  const grpc::Status busy = service::ToGrpcStatus(second);
+  const grpc::Status busy = rpc_port::ToGrpcStatus(second);
   ExpectRefusal(busy, grpc::StatusCode::UNAVAILABLE, "CLOUD_BEING_MADE");
   EXPECT_EQ(Decode(busy).retry_s, 3.0);
 }
@@ -319,7 +274,7 @@ TEST(ErrorDetailsTest, NobodyMakesMoreCloudsThanTheirShare) {
   const auto first = make("anna");
   ASSERT_TRUE(first.ok()) << first.status();
   for (int i = 1; i < 32; ++i) ASSERT_TRUE(make("anna").ok());
-  const grpc::Status full = service::ToGrpcStatus(make("anna").status());
+  const grpc::Status full = rpc_port::ToGrpcStatus(make("anna").status());
   ExpectRefusal(full, grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CLOUDS");
   EXPECT_EQ(Decode(full).metadata.at("maximum"), "32");
   EXPECT_TRUE(make("ben").ok());
@@ -336,48 +291,13 @@ TEST(ErrorDetailsTest, NoMoreCloudsThanTheMaximum) {
     const auto made = clouds.Make(shape, {"a", static_cast<std::uint64_t>(i)}, {}, {});
     ASSERT_TRUE(made.ok()) << made.status();
   }
-  const grpc::Status full = service::ToGrpcStatus(clouds.Make(shape, {"a", 64}, {}, {}).status());
+  const grpc::Status full = rpc_port::ToGrpcStatus(clouds.Make(shape, {"a", 64}, {}, {}).status());
   ExpectRefusal(full, grpc::StatusCode::RESOURCE_EXHAUSTED, "TOO_MANY_CLOUDS");
   EXPECT_EQ(Decode(full).metadata.at("maximum"), "64");
   EXPECT_EQ(Decode(full).retry_s, 60.0);
 }
 
-TEST(StatusTableTest, WhatWouldBeRefusedAgainHasNoTimeToTryAgain) {
-  const absl::Status refused = absl::ResourceExhaustedError("why");
-  EXPECT_EQ(Decode(service::ToGrpcStatus(base::WithDetails(refused, {.reason = "A"}))).retry_s,
-            30.0);
-  const auto permanent = Decode(service::ToGrpcStatus(
-      base::WithDetails(refused, {.reason = "STORM_UNREADABLE", .permanent = true})));
-  EXPECT_LT(permanent.retry_s, 0.0);
-  EXPECT_EQ(permanent.reason, "STORM_UNREADABLE");
-  // This picture needs more memory than the whole budget.
-  const auto budget = base::MemoryBudget::Make({.bytes = 1000});
-  const absl::Status too_large =
-      budget->Reserve(base::MemoryUse::kDrawing, 2000, "a picture").status();
-  EXPECT_LT(Decode(service::ToGrpcStatus(too_large)).retry_s, 0.0);
-}
-
-TEST(StatusTableTest, EveryRefusalHasDetails) {
-  for (int code = 1; code <= 16; ++code) {
-    const absl::Status status(static_cast<absl::StatusCode>(code), "why");
-    const grpc::Status sent = service::ToGrpcStatus(status);
-    EXPECT_EQ(sent.error_message(), "why");
-    if (absl::IsCancelled(status)) continue;
-    const Decoded decoded = Decode(sent);
-    EXPECT_THAT(decoded.reason, ::testing::MatchesRegex("[A-Z][A-Z_]+[A-Z]")) << code;
-    EXPECT_EQ(decoded.bad_request, sent.error_code() == grpc::StatusCode::INVALID_ARGUMENT);
-    EXPECT_EQ(decoded.retry_s > 0.0,
-              absl::IsResourceExhausted(status) || absl::IsUnavailable(status));
-  }
-}
-
-TEST(StatusTableTest, ADelayKeepsItsFraction) {
-  const absl::Status status = base::WithDetails(absl::UnavailableError("busy"),
-                                                {.retry_after = std::chrono::milliseconds(1250)});
-  EXPECT_EQ(Decode(service::ToGrpcStatus(status)).retry_s, 1.25);
-}
-
-TEST(StatusTableTest, ALongMessageIsCutShortInsteadOfLosingTheStatus) {
+TEST(ErrorDetailsTest, ALongMessageIsCutShortInsteadOfLosingTheStatus) {
   FakeService service;
   // "ü" takes two bytes, but six bytes in grpc-message.
   std::string umlauts;
@@ -393,22 +313,6 @@ TEST(StatusTableTest, ALongMessageIsCutShortInsteadOfLosingTheStatus) {
     EXPECT_THAT(refusal.error_message(), ::testing::EndsWith("..."));
     EXPECT_EQ(Decode(refusal).reason, "STORM_UNREADABLE");
   }
-}
-
-TEST(StatusTableTest, BytesThatAreNoUtf8AreReplaced) {
-  const auto sent = [](const std::string& text) {
-    const grpc::Status status = service::ToGrpcStatus(absl::InternalError(text));
-    EXPECT_EQ(Decode(status).reason, "INTERNAL");
-    return status.error_message();
-  };
-  EXPECT_EQ(sent("plain, ä ☀ 🌩"), "plain, ä ☀ 🌩");
-  EXPECT_EQ(sent("plain\n"), "plain?") << "a control character";
-  EXPECT_EQ(sent("Gew\xf6lk"), "Gew?lk") << "Latin-1";
-  EXPECT_EQ(sent("\xc3"), "?") << "cut off";
-  EXPECT_EQ(sent("\xc0\xaf"), "??") << "longer than needed";
-  EXPECT_EQ(sent("\xe0\x80\xaf"), "???") << "longer than needed";
-  EXPECT_EQ(sent("\xed\xa0\x80"), "???") << "half of a pair";
-  EXPECT_EQ(sent("\xf4\x90\x80\x80"), "????") << "beyond Unicode";
 }
 
 }  // namespace

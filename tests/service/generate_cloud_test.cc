@@ -7,7 +7,7 @@
 #include "clouds/presets.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "service/cloud_store.h"
+#include "service/engine/cloud_store.h"
 #include "tests/service/fake_service.h"
 #include "tests/service/interacting.h"
 #include "tests/support/synthetic_cf.h"

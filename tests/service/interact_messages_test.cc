@@ -1,6 +1,6 @@
 // Tests that messages share their largest part: all viewers get the same bytes instead of a copy
 // each.
-#include "service/interact_messages.h"
+#include "service/interact/interact_messages.h"
 
 #include <grpcpp/support/proto_buffer_reader.h>
 

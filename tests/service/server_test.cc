@@ -5,7 +5,6 @@
 
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
-#include "service/status_table.h"
 #include "tests/service/fake_service.h"
 #include "tests/support/wait_for.h"
 
@@ -188,20 +187,6 @@ TEST(ServerTest, UnreadStormHoldsUpNoShutdownForever) {
   service->store->reading.Open();
   shutdown.join();
   reader.join();
-}
-
-TEST(StatusTableTest, EveryEngineStatusHasItsCode) {
-  const auto code = [](const absl::Status& status) {
-    return service::ToGrpcStatus(status).error_code();
-  };
-  EXPECT_TRUE(service::ToGrpcStatus(absl::OkStatus()).ok());
-  EXPECT_EQ(code(absl::InvalidArgumentError("x")), grpc::StatusCode::INVALID_ARGUMENT);
-  EXPECT_EQ(code(absl::OutOfRangeError("x")), grpc::StatusCode::INVALID_ARGUMENT);
-  EXPECT_EQ(code(absl::NotFoundError("x")), grpc::StatusCode::NOT_FOUND);
-  EXPECT_EQ(code(absl::DataLossError("x")), grpc::StatusCode::DATA_LOSS);
-  EXPECT_EQ(code(absl::UnauthenticatedError("x")), grpc::StatusCode::UNAUTHENTICATED);
-  EXPECT_EQ(code(absl::UnknownError("x")), grpc::StatusCode::UNKNOWN);
-  EXPECT_EQ(service::ToGrpcStatus(absl::InternalError("why")).error_message(), "why");
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include "frame/image_codec.h"
 #include "gtest/gtest.h"
 #include "renderers/technique_registry.h"
-#include "service/engine.h"
+#include "service/engine/engine.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/prepare_scene.h"
 #include "service/messages/scene_messages.h"

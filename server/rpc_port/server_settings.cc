@@ -1,0 +1,57 @@
+#include "rpc_port/server_settings.h"
+
+#include <grpcpp/resource_quota.h>
+#include <grpcpp/security/tls_certificate_provider.h>
+#include <grpcpp/security/tls_credentials_options.h>
+
+namespace thunderhead::rpc_port {
+namespace {
+
+// Interval of gRPC's keepalive pings. A viewer that disappeared without closing its connection is
+// detected after this interval and kKeepaliveTimeout.
+constexpr int kKeepaliveTimeMs = 20'000;
+// Timeouts for a client that connects and sends nothing, and for one that starts no call.
+constexpr int kHandshakeTimeoutMs = 10'000;
+constexpr int kIdleConnectionMs = 60'000;
+// Maximum number of threads for calls that occupy a thread each. Only gRPC's reflection service has
+// such calls. Further calls are refused.
+constexpr int kMaxCallThreads = 16;
+
+// Makes gRPC refuse compressed requests with UNIMPLEMENTED. A megabyte of gzip may contain a
+// gigabyte, and gRPC would decompress a message before it checks the size.
+void RefuseCompression(grpc::ServerBuilder& builder) {
+  for (const auto algorithm : {GRPC_COMPRESS_DEFLATE, GRPC_COMPRESS_GZIP}) {
+    builder.SetCompressionAlgorithmSupportStatus(algorithm, false);
+  }
+  builder.AddChannelArgument(GRPC_ARG_ENABLE_PER_MESSAGE_DECOMPRESSION, 0);
+}
+
+}  // namespace
+
+std::shared_ptr<grpc::ServerCredentials> CredentialsOf(const TlsFiles& files) {
+  if (files.certificate.empty()) return grpc::InsecureServerCredentials();
+  grpc::experimental::TlsServerCredentialsOptions options(
+      std::make_shared<grpc::experimental::FileWatcherCertificateProvider>(
+          files.key, files.certificate, files.look_every_s));
+  options.watch_identity_key_cert_pairs();
+  options.set_cert_request_type(GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE);
+  return grpc::experimental::TlsServerCredentials(options);
+}
+
+void SetLimits(grpc::ServerBuilder& builder, const PortLimits& limits, int max_response_bytes) {
+  grpc::ResourceQuota quota("thunderhead");
+  quota.Resize(limits.grpc_memory_bytes).SetMaxThreads(kMaxCallThreads);
+  builder.SetResourceQuota(quota);
+  builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);
+  builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_request_bytes));
+  builder.SetMaxSendMessageSize(max_response_bytes);
+  RefuseCompression(builder);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveTimeMs);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS,
+                             static_cast<int>(kKeepaliveTimeout.count()));
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, limits.max_streams_per_connection);
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeTimeoutMs);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, kIdleConnectionMs);
+}
+
+}  // namespace thunderhead::rpc_port
