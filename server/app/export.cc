@@ -8,11 +8,11 @@
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/local_scene.h"
-#include "app/progress_bar.h"
 #include "app/scene_file.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "interchange/storm_export.h"
+#include "runs/progress_bar.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -50,7 +50,7 @@ absl::Status Export(const ExportFlags& flags) {
       interchange::ExportOf(local.scene, local.fields, local.storm, flags.options));
   {
     const Interruption interruption;
-    ProgressBar bar("exporting");
+    runs::ProgressBar bar("exporting");
     THUNDERHEAD_RETURN_IF_ERROR(interchange::WriteVdb(
         file, flags.output, [&bar](double share) { bar.Set(share); }, interruption.Token()));
   }

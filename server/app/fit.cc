@@ -9,13 +9,13 @@
 #include "absl/strings/str_join.h"
 #include "app/commands.h"
 #include "app/interruption.h"
-#include "app/local_service.h"
-#include "app/progress_bar.h"
 #include "app/seed_flag.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/version.h"
 #include "clouds/rbf_fit.h"
+#include "runs/local_service.h"
+#include "runs/progress_bar.h"
 #include "spdlog/spdlog.h"
 #include "storm_files/cf_writer.h"
 
@@ -125,7 +125,7 @@ absl::StatusOr<clouds::FitResult> FitWithProgress(const volume::RegularGrid& gri
                                                   const std::vector<float>& values,
                                                   const clouds::FitOptions& options) {
   const Interruption interruption;
-  ProgressBar bar("fitting");
+  runs::ProgressBar bar("fitting");
   return clouds::Fit(
       grid, values, options,
       [&bar](const clouds::FitProgress& progress) {
@@ -158,7 +158,7 @@ absl::Status Fit(const FitFlags& flags) {
     return absl::InvalidArgumentError(
         absl::StrCat("--volume can write extinction or cloud, not ", flags.field));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, ReadStorm(flags.storm, flags.time_index));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, runs::ReadStorm(flags.storm, flags.time_index));
   THUNDERHEAD_ASSIGN_OR_RETURN(FitTarget target, TargetOf(*fields, flags.field));
   const base::Stopwatch stopwatch;
   THUNDERHEAD_ASSIGN_OR_RETURN(clouds::FitResult fit,

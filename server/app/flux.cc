@@ -12,12 +12,12 @@
 #include "absl/strings/str_format.h"
 #include "app/commands.h"
 #include "app/interruption.h"
-#include "app/local_service.h"
 #include "app/phase_flag.h"
-#include "app/progress_bar.h"
 #include "app/seed_flag.h"
 #include "base/status.h"
 #include "reference/scene_problem.h"
+#include "runs/local_service.h"
+#include "runs/progress_bar.h"
 #include "scene/view.h"
 #include "spdlog/spdlog.h"
 
@@ -93,7 +93,7 @@ absl::StatusOr<reference::FluxProblem> StormProblem(const FluxFlags& flags,
   if (!flags.phase.empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(options.phase, ParsePhase(flags.phase));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, ReadStorm(flags.storm, flags.time_index));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, runs::ReadStorm(flags.storm, flags.time_index));
   scene::Scene scene;
   for (scene::FieldParameters& field : scene.fields) {
     if (flags.albedo.has_value()) field.optics.albedo = static_cast<float>(*flags.albedo);
@@ -153,7 +153,7 @@ absl::Status Flux(const FluxFlags& flags) {
   const Interruption interruption;
   absl::StatusOr<reference::FluxResult> result;
   {
-    ProgressBar bar("tracing photons");
+    runs::ProgressBar bar("tracing photons");
     result = reference::ComputeFlux(
         problem, options, [&bar](double share) { bar.Set(share); }, interruption.Token());
   }

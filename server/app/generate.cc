@@ -11,11 +11,11 @@
 #include "absl/strings/str_split.h"
 #include "app/commands.h"
 #include "app/interruption.h"
-#include "app/progress_bar.h"
 #include "app/seed_flag.h"
 #include "base/status.h"
 #include "clouds/cloud_file.h"
 #include "clouds/presets.h"
+#include "runs/progress_bar.h"
 
 namespace thunderhead::app {
 namespace {
@@ -127,7 +127,7 @@ absl::Status Generate(const GenerateFlags& flags) {
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudShape shape, ShapeOf(flags));
   const Interruption interruption;
-  ProgressBar bar("generating");
+  runs::ProgressBar bar("generating");
   return clouds::WriteGenerated(
       shape, {flags.preset, flags.seed}, flags.output, [&bar](double share) { bar.Set(share); },
       interruption.Token());

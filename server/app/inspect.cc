@@ -10,8 +10,8 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/strip.h"
 #include "app/commands.h"
-#include "app/local_service.h"
 #include "base/status.h"
+#include "runs/local_service.h"
 #include "service/messages/scene_messages.h"
 #include "spdlog/spdlog.h"
 
@@ -128,10 +128,11 @@ std::string Json(const v1::StormDescription& storm) {
 absl::Status Inspect(const InspectFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
-                               OpenStorm(flags.storm));
+                               runs::OpenStorm(flags.storm));
   const storm_store::StormInfo& storm = *store->Storms().front();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const int time_index, TimeOf(*store, flags.storm, flags.time_index));
-  THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, time_index));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const int time_index,
+                               runs::TimeOf(*store, flags.storm, flags.time_index));
+  THUNDERHEAD_RETURN_IF_ERROR(runs::ReadWithProgress(*store, time_index));
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto fields, store->Get(storm.id, time_index, {}));
   v1::StormDescription description;
   service::ToMessage(storm, *fields, time_index, description);

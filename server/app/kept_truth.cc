@@ -3,10 +3,10 @@
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
-#include "app/progress_bar.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "picture/exr_file.h"
+#include "runs/progress_bar.h"
 
 namespace thunderhead::app {
 
@@ -22,7 +22,7 @@ absl::StatusOr<picture::LinearPicture> KeptTruth(const Truth& truth,
   }
   reference::RefineLimits limits;
   limits.samples_per_pixel = truth.samples_per_pixel;
-  ProgressBar bar(absl::StrCat("tracing ", truth.name));
+  runs::ProgressBar bar(absl::StrCat("tracing ", truth.name));
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const reference::TracedScene traced,
       reference::TraceScene(

@@ -14,10 +14,10 @@
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/picture_size.h"
-#include "app/progress_bar.h"
 #include "base/status.h"
 #include "load/bounds.h"
 #include "load/load.h"
+#include "runs/progress_bar.h"
 
 namespace thunderhead::app {
 namespace {
@@ -103,7 +103,7 @@ absl::Status Load(const LoadFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<load::Transport> transport,
                                TransportTo(target, access));
   const auto process = load::ServerProcess::Find(target.address.host, target.address.port);
-  std::optional<ProgressBar> bar(std::in_place, "load");
+  std::optional<runs::ProgressBar> bar(std::in_place, "load");
   const absl::StatusOr<load::Report> report =
       load::Run(options, *transport, process, interruption.Token(), [&bar](const auto& progress) {
         bar->Set(progress.share);

@@ -1,8 +1,8 @@
 #include "app/local_scene.h"
 
-#include "app/local_service.h"
 #include "base/status.h"
 #include "renderers/technique_registry.h"
+#include "runs/local_service.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/limits_check.h"
 #include "service/messages/prepare_scene.h"
@@ -15,11 +15,11 @@ absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& 
   THUNDERHEAD_ASSIGN_OR_RETURN(local.message, ReadScene(flags));
   THUNDERHEAD_RETURN_IF_ERROR(service::CheckLimits(local.message));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
-                               OpenStorm(path));
+                               runs::OpenStorm(path));
   THUNDERHEAD_RETURN_IF_ERROR(service::PrepareScene(
       *store, renderers::TechniqueRegistry::BuiltIn().Infos(), local.message));
   const auto time_index = static_cast<int>(local.message.time_index());
-  THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, time_index));
+  THUNDERHEAD_RETURN_IF_ERROR(runs::ReadWithProgress(*store, time_index));
   local.storm_id = local.message.storm_id();
   local.storm = *store->Find(local.storm_id);
   THUNDERHEAD_ASSIGN_OR_RETURN(local.fields, store->Get(local.storm_id, time_index, {}));

@@ -12,12 +12,12 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "app/commands.h"
-#include "app/exit_codes.h"
 #include "app/library_log.h"
 #include "app/log_format.h"
-#include "app/tell_user.h"
 #include "base/loose_thread.h"
 #include "base/version.h"
+#include "runs/exit_codes.h"
+#include "runs/tell_user.h"
 #include "spdlog/sinks/stdout_color_sinks.h"
 #include "spdlog/spdlog.h"
 
@@ -25,8 +25,8 @@ namespace thunderhead::app {
 namespace {
 
 int Report(const absl::Status& status) {
-  if (!status.ok()) TellUser({status.message().data(), status.message().size()});
-  return static_cast<int>(ExitCodeOf(status));
+  if (!status.ok()) runs::TellUser({status.message().data(), status.message().size()});
+  return static_cast<int>(runs::ExitCodeOf(status));
 }
 
 // Returns an error that names an unknown subcommand. The parser would only report that a subcommand
@@ -54,8 +54,8 @@ int Main(int argc, char** argv) {
   const std::array commands = {AddServe(app),   AddRender(app), AddSequence(app), AddWatch(app),
                                AddInspect(app), AddFlux(app),   AddMeasure(app),  AddGenerate(app),
                                AddFit(app),     AddExport(app), AddLoad(app)};
-  app.footer(ExitCodesHelp());
-  for (const Command& command : commands) command.app->footer(ExitCodesHelp());
+  app.footer(runs::ExitCodesHelp());
+  for (const Command& command : commands) command.app->footer(runs::ExitCodesHelp());
   if (const absl::Status status = CheckSubcommand(app, argc, argv); !status.ok()) {
     return Report(status);
   }
@@ -64,12 +64,12 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     std::cerr << "thunderhead: " << error.what() << "; see thunderhead --help\n";
-    return static_cast<int>(ExitCode::kBadRequest);
+    return static_cast<int>(runs::ExitCode::kBadRequest);
   }
   for (const Command& command : commands) {
     if (command.app->parsed()) return Report(command.run());
   }
-  return static_cast<int>(ExitCode::kBadRequest);
+  return static_cast<int>(runs::ExitCode::kBadRequest);
 }
 
 }  // namespace
@@ -86,6 +86,6 @@ int main(int argc, char** argv) {
     return code;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "thunderhead: %s\n", error.what());
-    return static_cast<int>(thunderhead::app::ExitCode::kProgramError);
+    return static_cast<int>(thunderhead::runs::ExitCode::kProgramError);
   }
 }

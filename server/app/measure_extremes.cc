@@ -5,11 +5,11 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "app/commands.h"
-#include "app/progress_bar.h"
 #include "base/status.h"
 #include "gl/context.h"
 #include "measure/extremes.h"
 #include "measure/machine.h"
+#include "runs/progress_bar.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -26,7 +26,7 @@ struct Row {
 };
 
 absl::StatusOr<std::vector<Row>> RunAll() {
-  ProgressBar bar("trying extremes");
+  runs::ProgressBar bar("trying extremes");
   measure::Probe probe;
   std::vector<Row> rows;
   const std::vector<measure::Extreme> extremes = measure::Extremes();

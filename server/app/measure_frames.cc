@@ -5,12 +5,12 @@
 #include "absl/strings/str_cat.h"
 #include "accuracy/named_settings.h"
 #include "app/commands.h"
-#include "app/local_service.h"
 #include "app/picture_size.h"
-#include "app/progress_bar.h"
 #include "base/status.h"
 #include "gl/context.h"
 #include "measure/frame_rates.h"
+#include "runs/local_service.h"
+#include "runs/progress_bar.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -29,17 +29,17 @@ struct FramesFlags {
 };
 
 absl::StatusOr<FieldsPtr> Read(storm_store::StormStore& store, int time_index) {
-  THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(store, time_index));
+  THUNDERHEAD_RETURN_IF_ERROR(runs::ReadWithProgress(store, time_index));
   return store.Get(store.Storms().front()->id, time_index, {});
 }
 
 // Returns the fields of the requested time, or of the time with the most condensate.
 absl::StatusOr<FieldsPtr> Choose(const FramesFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
-                               OpenStorm(flags.storm));
+                               runs::OpenStorm(flags.storm));
   if (flags.time_index.has_value()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const int time_index,
-                                 TimeOf(*store, flags.storm, flags.time_index));
+                                 runs::TimeOf(*store, flags.storm, flags.time_index));
     return Read(*store, time_index);
   }
   FieldsPtr best;
@@ -74,7 +74,7 @@ absl::Status MeasureFrames(const FramesFlags& flags) {
                                gl::Context::Create(flags.device));
   absl::StatusOr<std::vector<measure::FrameRateRow>> rows;
   {
-    ProgressBar bar("drawing");
+    runs::ProgressBar bar("drawing");
     rows = measure::MeasureFrameRates(fields, options, [&bar](double share) { bar.Set(share); });
   }
   THUNDERHEAD_RETURN_IF_ERROR(rows.status());

@@ -14,7 +14,6 @@
 #include "app/interruption.h"
 #include "app/kept_truth.h"
 #include "app/local_scene.h"
-#include "app/progress_bar.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/whole_file.h"
@@ -25,6 +24,7 @@
 #include "measure/light_parts.h"
 #include "measure/trade.h"
 #include "picture/exr_file.h"
+#include "runs/progress_bar.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -142,7 +142,7 @@ absl::Status MeasureTracedLight(const Compared& compared, const scene::Scene& sc
   for (const double million_paths : compared.flags.million_paths) {
     stopwatch.Restart();
     {
-      ProgressBar bar("tracing light");
+      runs::ProgressBar bar("tracing light");
       THUNDERHEAD_RETURN_IF_ERROR(corrector->TraceUntil(std::llround(1e6 * million_paths),
                                                         interruption.Token(),
                                                         [&](double share) { bar.Set(share); }));

@@ -8,7 +8,6 @@
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/local_scene.h"
-#include "app/progress_bar.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "frame/image_codec.h"
@@ -18,6 +17,7 @@
 #include "measure/soundness.h"
 #include "reference/trace_scene.h"
 #include "renderers/scene_renderer.h"
+#include "runs/progress_bar.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -34,7 +34,7 @@ struct LookFlags {
 
 absl::StatusOr<picture::LinearPicture> Traced(const LookFlags& flags, const LocalScene& local) {
   const Interruption interruption;
-  ProgressBar bar("tracing");
+  runs::ProgressBar bar("tracing");
   THUNDERHEAD_ASSIGN_OR_RETURN(
       reference::TracedScene traced,
       reference::TraceScene(

@@ -11,12 +11,12 @@
 #include "accuracy/named_settings.h"
 #include "app/commands.h"
 #include "app/local_scene.h"
-#include "app/progress_bar.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "gl/context.h"
 #include "measure/probe.h"
 #include "measure/slice_convergence.h"
+#include "runs/progress_bar.h"
 #include "scene/view.h"
 #include "spdlog/spdlog.h"
 
@@ -96,7 +96,7 @@ absl::Status MeasureSlices(const SlicesFlags& flags) {
                                gl::Context::Create(flags.device));
   absl::StatusOr<std::vector<measure::SliceCurve>> curves;
   {
-    ProgressBar bar("slicing");
+    runs::ProgressBar bar("slicing");
     curves = measure::MeasureSliceConvergence(subject.scene, subject.fields,
                                               [&bar](double share) { bar.Set(share); });
   }

@@ -14,13 +14,13 @@
 #include "app/interruption.h"
 #include "app/kept_truth.h"
 #include "app/local_scene.h"
-#include "app/progress_bar.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "gl/context.h"
 #include "measure/against_truth.h"
 #include "measure/trade_table.h"
 #include "reference/trace_scene.h"
+#include "runs/progress_bar.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -80,7 +80,7 @@ absl::Status MeasureRest(measure::Trade& trade, const std::string& path,
                          const std::vector<measure::Setting>& sweep,
                          std::vector<measure::TradeRow>* rows) {
   std::ofstream file(path, std::ios::binary | std::ios::app);
-  ProgressBar bar("measuring settings");
+  runs::ProgressBar bar("measuring settings");
   double done = 0.0;
   for (const measure::Setting& setting : sweep) {
     bar.Set(done++ / static_cast<double>(sweep.size()));

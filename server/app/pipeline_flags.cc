@@ -1,19 +1,14 @@
 #include "app/pipeline_flags.h"
 
-#include <google/protobuf/util/json_util.h>
-
 #include <filesystem>
 #include <map>
 #include <set>
 #include <utility>
 
-#include "absl/strings/ascii.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
-#include "pipeline/sha256.h"
-#include "service/messages/limits_check.h"
-#include "service/messages/scene_messages.h"
+#include "pipeline/movie.h"
+#include "pipeline/product_name.h"
 
 namespace thunderhead::app {
 namespace {
@@ -22,67 +17,28 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxJobs = 8;
 
-// Returns the file's name in a form that can be part of a product's name.
-std::string ViewNameOf(const std::string& file) {
-  std::string name = fs::path(file).stem().string();
-  for (char& c : name) {
-    if (!absl::ascii_isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_' && c != '-') {
-      c = '-';
-    }
-  }
-  return name.empty() ? "view" : name;
+absl::StatusOr<runs::View> ReadView(const SceneFlags& flags, const std::string& name) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(v1::Scene scene, ReadScene(flags));
+  return runs::MakeView(name, std::move(scene));
 }
 
-absl::StatusOr<View> ReadView(const SceneFlags& flags, const std::string& name) {
-  View view;
-  view.name = name;
-  THUNDERHEAD_ASSIGN_OR_RETURN(view.scene, ReadScene(flags));
-  THUNDERHEAD_RETURN_IF_ERROR(service::CheckLimits(view.scene));
-  if (view.scene.rendering().has_reference()) {
-    return absl::InvalidArgumentError(
-        "the reference draws single pictures alone: use thunderhead render, or another renderer");
-  }
-  std::string json;
-  (void)google::protobuf::util::MessageToJsonString(view.scene, &json);
-  view.sha256 = pipeline::Sha256(json);
-  return view;
-}
-
-absl::StatusOr<std::vector<View>> ReadViews(const PipelineFlags& flags) {
-  std::vector<View> views;
+absl::StatusOr<std::vector<runs::View>> ReadViews(const PipelineFlags& flags) {
+  std::vector<runs::View> views;
   if (flags.views.empty()) {
-    const std::string name = flags.scene.file.empty() ? "view" : ViewNameOf(flags.scene.file);
+    const std::string name = flags.scene.file.empty() ? "view" : runs::ViewNameOf(flags.scene.file);
     THUNDERHEAD_ASSIGN_OR_RETURN(views.emplace_back(), ReadView(flags.scene, name));
   }
   std::set<std::string> names;
   for (const std::string& file : flags.views) {
     SceneFlags scene = flags.scene;
     scene.view = file;
-    THUNDERHEAD_ASSIGN_OR_RETURN(views.emplace_back(), ReadView(scene, ViewNameOf(file)));
+    THUNDERHEAD_ASSIGN_OR_RETURN(views.emplace_back(), ReadView(scene, runs::ViewNameOf(file)));
     if (names.insert(views.back().name).second) continue;
     return absl::InvalidArgumentError(
         absl::StrCat("two files of --views are named '", views.back().name,
                      "', which is what products are named by; rename one"));
   }
   return views;
-}
-
-// Returns the other manifests in the manifest's folder. Products that they record need not be drawn
-// again. If `takes_over` is true (a run of all pictures), the manifests of shares are merged into
-// this one.
-pipeline::OtherManifests OthersOf(const std::string& manifest, bool takes_over) {
-  pipeline::OtherManifests others;
-  std::error_code error;
-  const fs::path folder = fs::path(manifest).parent_path();
-  for (const auto& entry : fs::directory_iterator(folder.empty() ? "." : folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (absl::StartsWith(name, "manifest.") && absl::EndsWith(name, ".jsonl") &&
-        name != fs::path(manifest).filename()) {
-      const bool taken = takes_over && pipeline::IsManifestOfShare(name);
-      (taken ? others.take_over : others.count).push_back(entry.path().string());
-    }
-  }
-  return others;
 }
 
 }  // namespace
@@ -122,11 +78,12 @@ void AddPipelineOptions(CLI::App& command, PipelineFlags& flags) {
   AddServerFlags(command, flags.server);
   command.add_option("--device", flags.device, "auto, software or a GPU's number")
       ->capture_default_str();
-  static const std::map<std::string, ProgressStyle> kStyles = {{"auto", ProgressStyle::kAuto},
-                                                               {"lines", ProgressStyle::kLines},
-                                                               {"json", ProgressStyle::kJson},
-                                                               {"ecflow", ProgressStyle::kEcflow},
-                                                               {"none", ProgressStyle::kNone}};
+  static const std::map<std::string, runs::ProgressStyle> kStyles = {
+      {"auto", runs::ProgressStyle::kAuto},
+      {"lines", runs::ProgressStyle::kLines},
+      {"json", runs::ProgressStyle::kJson},
+      {"ecflow", runs::ProgressStyle::kEcflow},
+      {"none", runs::ProgressStyle::kNone}};
   command
       .add_option(
           "--progress", flags.progress,
@@ -136,22 +93,20 @@ void AddPipelineOptions(CLI::App& command, PipelineFlags& flags) {
       ->transform(CLI::CheckedTransformer(kStyles).description(""));
 }
 
-absl::StatusOr<PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
-                                               const pipeline::Shard& shard) {
+absl::StatusOr<runs::PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
+                                                     const pipeline::Shard& shard) {
   THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::ProductName product,
                                pipeline::ProductName::Parse("--product", flags.product));
   if (flags.error_seconds > 0.0 && !flags.server.address.empty()) {
     return absl::InvalidArgumentError(
         "--error-seconds works only in this process: omit it or --server");
   }
-  PictureRunOptions options{.product = std::move(product)};
+  runs::PictureRunOptions options{.product = std::move(product)};
   THUNDERHEAD_ASSIGN_OR_RETURN(options.format,
                                ProductFormatOf("--product", flags.product, flags.files));
   THUNDERHEAD_ASSIGN_OR_RETURN(options.views, ReadViews(flags));
-  for (View& view : options.views) {
-    THUNDERHEAD_RETURN_IF_ERROR(CheckScene(options.format, view.scene));
-    if (options.format.fingerprint.empty()) continue;
-    view.sha256 = pipeline::Sha256(absl::StrCat(view.sha256, "\n", options.format.fingerprint));
+  for (runs::View& view : options.views) {
+    THUNDERHEAD_RETURN_IF_ERROR(runs::AddFormat(options.format, view));
   }
   if (options.views.size() > 1 && !options.product.Has("view")) {
     return absl::InvalidArgumentError(absl::StrCat("--product is '", flags.product,
@@ -162,12 +117,31 @@ absl::StatusOr<PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
   if (options.manifest.empty()) {
     options.manifest = (fs::path(options.product.Folder()) / ManifestName(shard)).string();
   }
-  options.other_manifests = OthersOf(options.manifest, flags.manifest.empty() && shard.count == 1);
+  options.other_manifests =
+      runs::OtherManifestsOf(options.manifest, flags.manifest.empty() && shard.count == 1);
   options.device = flags.device;
   options.jobs = flags.jobs;
   options.error_seconds = flags.error_seconds;
   options.done_markers = flags.done_markers;
   return options;
+}
+
+absl::StatusOr<runs::MovieOptions> MovieOptionsOf(const PipelineFlags& flags,
+                                                  const runs::ProductFormat& format) {
+  runs::MovieOptions options;
+  if (flags.movie.empty()) return options;
+  if (!format.IsPicture()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--movie needs pictures of .png or .jpg, but --product is '", flags.product,
+                     "': omit --movie, or make it of a run of its own"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(options.name, pipeline::ProductName::Parse("--movie", flags.movie));
+  const bool of_times = options.name->Has("valid") || options.name->Has("lead") ||
+                        options.name->Has("lead_min") || options.name->Has("time");
+  if (pipeline::IsMovieName(flags.movie) && !of_times) return options;
+  return absl::InvalidArgumentError(absl::StrCat(
+      "--movie is '", flags.movie,
+      "'; it must end in .webm or .mp4, and have no field but {storm}, {run:...} and {view}"));
 }
 
 }  // namespace thunderhead::app

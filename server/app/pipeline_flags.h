@@ -6,14 +6,13 @@
 
 #include "CLI/CLI.hpp"
 #include "absl/status/statusor.h"
-#include "app/product_files.h"
-#include "app/run_progress.h"
+#include "app/product_flags.h"
 #include "app/scene_file.h"
-#include "app/server_link.h"
-#include "pipeline/manifest.h"
+#include "app/server_flags.h"
 #include "pipeline/plan.h"
-#include "pipeline/product_name.h"
-#include "thunderhead/v1/thunderhead.pb.h"
+#include "runs/run_movie.h"
+#include "runs/run_options.h"
+#include "runs/run_progress.h"
 
 namespace thunderhead::app {
 
@@ -30,34 +29,18 @@ struct PipelineFlags {
   double error_seconds = 0.0;
   bool done_markers = false;
   ProductFlags files;
-  ProgressStyle progress = ProgressStyle::kAuto;
+  runs::ProgressStyle progress = runs::ProgressStyle::kAuto;
 };
 
 void AddPipelineOptions(CLI::App& command, PipelineFlags& flags);
 
-// A scene, and the name that the products' names use for it.
-struct View {
-  std::string name;
-  v1::Scene scene;
-  // The hash of the scene as canonical JSON and of everything else that affects the pictures.
-  std::string sha256;
-};
-
-// The options that result from the flags, checked as far as is possible without a storm.
-struct PictureRunOptions {
-  pipeline::ProductName product;
-  ProductFormat format;
-  std::vector<View> views;
-  std::string manifest;
-  pipeline::OtherManifests other_manifests;
-  std::string device;
-  int jobs = 1;
-  double error_seconds = 0.0;
-  bool done_markers = false;
-};
-
 // Returns the options, checked. INVALID_ARGUMENT names the flag and what is wrong.
-absl::StatusOr<PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
-                                               const pipeline::Shard& shard);
+absl::StatusOr<runs::PictureRunOptions> RunOptionsOf(const PipelineFlags& flags,
+                                                     const pipeline::Shard& shard);
+
+// Returns the movie options. INVALID_ARGUMENT if --movie is not a valid name of a movie, or if
+// movies cannot be made from products of `format`.
+absl::StatusOr<runs::MovieOptions> MovieOptionsOf(const PipelineFlags& flags,
+                                                  const runs::ProductFormat& format);
 
 }  // namespace thunderhead::app

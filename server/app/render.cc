@@ -9,15 +9,16 @@
 #include "accuracy/named_settings.h"
 #include "app/commands.h"
 #include "app/interruption.h"
-#include "app/local_service.h"
-#include "app/picture_call.h"
-#include "app/product_files.h"
-#include "app/progress_bar.h"
+#include "app/product_flags.h"
 #include "app/render_reference.h"
 #include "app/scene_file.h"
-#include "app/server_link.h"
+#include "app/server_flags.h"
 #include "base/status.h"
 #include "base/whole_file.h"
+#include "runs/local_service.h"
+#include "runs/picture_call.h"
+#include "runs/product_files.h"
+#include "runs/progress_bar.h"
 #include "service/messages/technique_messages.h"
 #include "spdlog/spdlog.h"
 
@@ -38,7 +39,7 @@ struct RenderFlags {
 
 absl::Status Interrupted() { return absl::CancelledError("interrupted: no picture was written"); }
 
-void Show(const v1::RenderImageProgress& progress, ProgressBar& bar) {
+void Show(const v1::RenderImageProgress& progress, runs::ProgressBar& bar) {
   bar.Set(progress.share());
   std::string note =
       absl::StrFormat("%.2f million paths", 1e-6 * static_cast<double>(progress.traced_paths()));
@@ -52,16 +53,17 @@ absl::StatusOr<v1::RenderImageResponse> Call(const std::shared_ptr<grpc::Channel
                                              const v1::RenderImageRequest& request,
                                              const Interruption& interruption,
                                              const std::string& token = "") {
-  ProgressBar bar("rendering");
-  return CallForPicture(channel, request, token, interruption.Token(),
-                        [&bar](const v1::RenderImageProgress& progress) { Show(progress, bar); });
+  runs::ProgressBar bar("rendering");
+  return runs::CallForPicture(
+      channel, request, token, interruption.Token(),
+      [&bar](const v1::RenderImageProgress& progress) { Show(progress, bar); });
 }
 
 absl::StatusOr<v1::RenderImageResponse> CallServer(const RenderFlags& flags,
                                                    v1::RenderImageRequest request,
                                                    const Interruption& interruption) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<ServerLink> server,
-                               ServerLink::Open(flags.server));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<runs::ServerLink> server,
+                               OpenServer(flags.server));
   request.mutable_scene()->set_storm_id(flags.storm);
   return Call(server->Channel(), request, interruption, server->Token());
 }
@@ -70,14 +72,14 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const RenderFlags& flags,
                                                  const v1::RenderImageRequest& request,
                                                  const Interruption& interruption) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
-                               OpenStorm(flags.storm));
+                               runs::OpenStorm(flags.storm));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
-                               StartLocalService(store, flags.device));
+                               runs::StartLocalService(store, flags.device));
   const std::size_t times = store->Storms().front()->times.size();
   const std::size_t time_index =
       request.scene().has_time_index() ? request.scene().time_index() : times - 1;
   if (time_index < times) {
-    THUNDERHEAD_RETURN_IF_ERROR(ReadWithProgress(*store, static_cast<int>(time_index)));
+    THUNDERHEAD_RETURN_IF_ERROR(runs::ReadWithProgress(*store, static_cast<int>(time_index)));
   }
   if (interruption.Token().stop_requested()) return Interrupted();
   return Call(server->LocalChannel(), request, interruption);
@@ -123,12 +125,13 @@ void TellOfNight(const v1::Scene& scene) {
       -scene.sun().elevation_deg());
 }
 
-absl::Status ByReference(const RenderFlags& flags, const ProductFormat& format) {
+absl::Status ByReference(const RenderFlags& flags, const runs::ProductFormat& format) {
   if (!flags.server.address.empty() || flags.json) {
     return absl::InvalidArgumentError(
         "--renderer reference works only in this process: omit --server and --json");
   }
-  if (!format.fingerprint.empty() || (!format.IsPicture() && format.kind != ProductKind::kExr)) {
+  if (!format.fingerprint.empty() ||
+      (!format.IsPicture() && format.kind != runs::ProductKind::kExr)) {
     return absl::InvalidArgumentError(
         "--renderer reference writes .png, .jpg and .exr alone, without --annotate and "
         "--world-file: omit them");
@@ -136,11 +139,13 @@ absl::Status ByReference(const RenderFlags& flags, const ProductFormat& format) 
   return RenderReference(flags.storm, flags.scene, flags.reference, flags.output, flags.device);
 }
 
-absl::Status Write(const std::string& output, const ProductFormat& format,
+absl::Status Write(const std::string& output, const runs::ProductFormat& format,
                    const v1::RenderImageResponse& picture) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const ProductFile file, MakeProduct(format, "", picture));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const runs::ProductFile file,
+                               runs::MakeProduct(format, "", picture));
   if (file.world_file.has_value()) {
-    THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(WorldFilePath(output), *file.world_file));
+    THUNDERHEAD_RETURN_IF_ERROR(
+        base::WriteWholeFile(runs::WorldFilePath(output), *file.world_file));
   }
   return base::WriteWholeFile(output, file.bytes);
 }
@@ -149,9 +154,9 @@ absl::Status Render(const RenderFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   v1::RenderImageRequest request;
   THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const ProductFormat format,
+  THUNDERHEAD_ASSIGN_OR_RETURN(const runs::ProductFormat format,
                                ProductFormatOf("-o", flags.output, flags.files));
-  THUNDERHEAD_RETURN_IF_ERROR(CheckScene(format, request.scene()));
+  THUNDERHEAD_RETURN_IF_ERROR(runs::CheckScene(format, request.scene()));
   if (request.scene().rendering().has_reference()) return ByReference(flags, format);
   if (flags.reference.AnyLimit() || !flags.reference.light.air ||
       flags.reference.light.max_scatterings != 0 ||

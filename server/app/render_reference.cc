@@ -11,7 +11,6 @@
 #include "absl/strings/str_format.h"
 #include "app/interruption.h"
 #include "app/local_scene.h"
-#include "app/progress_bar.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "frame/image_codec.h"
@@ -19,6 +18,7 @@
 #include "gl/context.h"
 #include "picture/exr_file.h"
 #include "reference/trace_scene.h"
+#include "runs/progress_bar.h"
 #include "scene/optical_depths.h"
 
 namespace thunderhead::app {
@@ -94,7 +94,7 @@ absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
   const Interruption interruption;
   absl::StatusOr<reference::TracedScene> traced;
   {
-    ProgressBar bar("tracing");
+    runs::ProgressBar bar("tracing");
     traced = reference::TraceScene(
         local.scene, *local.fields, limits.light, refine,
         [&](const reference::ImageProgress& progress) { bar.Set(ShareDone(refine, progress)); },

@@ -20,7 +20,6 @@
 #include "app/clouds_folder.h"
 #include "app/commands.h"
 #include "app/config_file.h"
-#include "app/exit_codes.h"
 #include "app/operation.h"
 #include "app/roster_timeouts_file.h"
 #include "app/serve_flags.h"
@@ -31,6 +30,8 @@
 #include "drawing/gl_frame_source.h"
 #include "gateway/gateway.h"
 #include "gateway/tls_contexts.h"
+#include "runs/exit_codes.h"
+#include "sandbox/confined_files.h"
 #include "spdlog/spdlog.h"
 #include "storm_store/border_data.h"
 #include "storm_store/storm_catalogue.h"
@@ -185,12 +186,12 @@ absl::Status Serve(ServeFlags flags) {
   store_options.links = LinksOf(flags.catalogue);
   std::vector<std::string> folders = flags.data;
   folders.push_back(clouds.Path());
-  store_options.formats =
-      ConfinedFormats({.limits = reader_limits,
-                       .check_opened = [folders, links = store_options.links](
-                                           const std::string& path, const std::string& place) {
-                         return storm_store::CheckPlace(folders, links, path, place);
-                       }});
+  store_options.formats = sandbox::ConfinedFormats(
+      {.limits = reader_limits,
+       .check_opened = [folders, links = store_options.links](const std::string& path,
+                                                              const std::string& place) {
+         return storm_store::CheckPlace(folders, links, path, place);
+       }});
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<storm_store::StormStore> store,
                                storm_store::StormStore::Open(flags.data, store_options));
   for (const std::string& file : clouds.Files()) {
@@ -266,7 +267,7 @@ absl::Status Serve(ServeFlags flags) {
   const auto last = [door] { door->FlushAudit(kLastLines); };
   operation->WaitAndDrain(signals, *server, last);
   const std::jthread ends_anyway = EndAnywayAfter(
-      kEndPatience, [given_up] { return static_cast<int>(ExitCodeOf(*given_up)); }, last);
+      kEndPatience, [given_up] { return static_cast<int>(runs::ExitCodeOf(*given_up)); }, last);
   becoming_ready = {};
   operation->SetServer(nullptr);
   roster_timeouts = {};

@@ -1,38 +1,24 @@
-#include <algorithm>
-#include <chrono>
-#include <filesystem>
-#include <map>
+#include "runs/watch.h"
+
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "app/commands.h"
 #include "app/interruption.h"
-#include "app/picture_run.h"
 #include "app/pipeline_flags.h"
-#include "app/run_movie.h"
-#include "app/watch_server.h"
-#include "app/watched_folder.h"
-#include "base/folder_events.h"
 #include "base/status.h"
 #include "base/utc_time.h"
-#include "base/version.h"
-#include "pipeline/manifest.h"
 #include "pipeline/readiness.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
 namespace {
-
-// Interval at which the folder is scanned, for file systems without change events.
-constexpr absl::Duration kRescan = absl::Seconds(30);
 
 struct WatchFlags {
   std::string folder;
@@ -42,15 +28,8 @@ struct WatchFlags {
   PipelineFlags pipeline;
 };
 
-// The conditions for ending the watch: after a number of files, or at a time. Whichever comes first
-// applies. Without both, the watch never ends.
-struct End {
-  std::optional<int> files;
-  absl::Time at = absl::InfiniteFuture();
-};
-
-absl::StatusOr<End> ParseUntil(const std::vector<std::string>& until) {
-  End end;
+absl::StatusOr<runs::WatchEnd> ParseUntil(const std::vector<std::string>& until) {
+  runs::WatchEnd end;
   bool good = true;
   bool unit_may_follow = false;
   for (const std::string& word : until) {
@@ -74,213 +53,32 @@ absl::StatusOr<End> ParseUntil(const std::vector<std::string>& until) {
                    "2030-05-20T06:00:00Z, or both"));
 }
 
-// Returns a plan of the pictures of all ready files. Pictures of files that are done count as made.
-absl::StatusOr<std::vector<PlannedPicture>> PlanWatched(
-    const PictureRunOptions& options, const std::vector<FolderStorm>& storms,
-    const std::vector<storm_store::CataloguedStorm>& catalogue, const WatchedFolder& folder) {
-  std::vector<PlannedPicture> all;
-  for (std::size_t storm = 0; storm < storms.size(); ++storm) {
-    std::vector<int> times(catalogue[storm].info.times.size());
-    for (std::size_t i = 0; i < times.size(); ++i) times[i] = static_cast<int>(i);
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        const std::vector<PlannedPicture> pictures,
-        PlanOf(options, catalogue, storm, storms[storm].name, times, false));
-    all.insert(all.end(), pictures.begin(), pictures.end());
+absl::StatusOr<runs::WatchOptions> WatchOptionsOf(const WatchFlags& flags) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const runs::WatchEnd end, ParseUntil(flags.until));
+  THUNDERHEAD_ASSIGN_OR_RETURN(pipeline::ReadinessPolicy ready,
+                               pipeline::ReadinessPolicy::Parse(flags.ready));
+  THUNDERHEAD_ASSIGN_OR_RETURN(runs::PictureRunOptions pictures, RunOptionsOf(flags.pipeline, {}));
+  THUNDERHEAD_ASSIGN_OR_RETURN(runs::MovieOptions movie,
+                               MovieOptionsOf(flags.pipeline, pictures.format));
+  if (pictures.product.Has("time")) {
+    return absl::InvalidArgumentError(
+        "--product has {time}, which counts the times of a whole run; files that still come have "
+        "no such number: use {valid:%Y%m%d_%H%M} or {lead_min:04d}");
   }
-  THUNDERHEAD_RETURN_IF_ERROR(CheckNames(options, all));
-  for (PlannedPicture& picture : all) {
-    if (folder.IsDone(picture.input)) picture.outcome = absl::OkStatus();
-  }
-  return all;
-}
-
-// Settles files. A file is done if all its pictures are made, and bad if it cannot be drawn. If the
-// error of a picture names another file, the picture is retried without that file.
-void Settle(const std::vector<PlannedPicture>& pictures, WatchedFolder& folder) {
-  for (const std::string& path : folder.Unsettled()) {
-    bool made = true;
-    bool bad = false;
-    for (const PlannedPicture& picture : pictures) {
-      if (picture.input != path || picture.outcome.ok()) continue;
-      made = false;
-      bad = bad || (absl::IsDataLoss(picture.outcome) &&
-                    absl::StrContains(picture.outcome.message(), path));
-    }
-    if (made || bad) folder.Settle(path, bad);
-  }
-}
-
-// Returns true for the name of a picture, as opposed to a movie or another file.
-bool IsPicture(const PictureRunOptions& options, const std::string& file) {
-  return std::filesystem::path(file).extension() ==
-         std::filesystem::path(options.product.Text()).extension();
-}
-
-// Returns the view of a picture that an earlier run made in the same way as this run would. Returns
-// null for other products.
-const View* ViewOf(const PictureRun& run, const pipeline::ManifestEntry& entry) {
-  const std::vector<View>& views = run.Options().views;
-  const auto view = std::ranges::find(views, entry.view, &View::name);
-  if (view == views.end() || view->sha256 != entry.scene_sha256 ||
-      entry.version != base::Version() || !IsPicture(run.Options(), entry.file) ||
-      !std::filesystem::exists(run.Records().PathOf(entry))) {
-    return nullptr;
-  }
-  return &*view;
-}
-
-// Marks files of which earlier runs have drawn every view as done, so that they count towards
-// --until. They may have been moved away since.
-void RememberDone(const PictureRun& run, WatchedFolder& folder) {
-  std::map<std::string, std::map<std::string, std::size_t>> views;  // by input and valid time
-  std::map<std::string, pipeline::InputFile> inputs;
-  for (const pipeline::ManifestEntry& entry : run.Records().Entries()) {
-    if (ViewOf(run, entry) == nullptr) continue;
-    ++views[entry.input.path][entry.valid];
-    inputs[entry.input.path] = entry.input;
-  }
-  for (const auto& [path, times] : views) {
-    if (std::ranges::all_of(times, [&run](const auto& time) {
-          return time.second >= run.Options().views.size();
-        })) {
-      folder.RememberDone(inputs[path]);
-    }
-  }
-}
-
-// Returns pictures that are not in `planned`, and that earlier runs made in the same way as this
-// run would. Their files are gone or are not ready again. Movies include these pictures too, so
-// that a movie does not become shorter when `watch` is restarted.
-std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
-                                       const std::vector<PlannedPicture>& planned) {
-  const pipeline::Manifest& records = run.Records();
-  std::set<std::string> known;
-  for (const PlannedPicture& picture : planned) known.insert(records.NameOf(picture.path));
-  std::vector<PlannedPicture> pictures;
-  for (const pipeline::ManifestEntry& entry : records.Entries()) {
-    const View* view = ViewOf(run, entry);
-    if (view == nullptr || known.contains(entry.file)) continue;
-    PlannedPicture picture;
-    picture.view = static_cast<std::size_t>(view - run.Options().views.data());
-    picture.key.storm = entry.storm;
-    picture.key.view = entry.view;
-    picture.path = records.PathOf(entry);
-    if (entry.run.has_value()) picture.key.run = base::ParseUtcTime(*entry.run);
-    if (const auto valid = base::ParseUtcTime(entry.valid); valid.has_value()) {
-      picture.key.valid = *valid;
-      pictures.push_back(std::move(picture));
-    }
-  }
-  return pictures;
-}
-
-// Draws the files that have become ready.
-absl::Status DrawReady(const MovieOptions& movie, WatchedFolder& folder, PictureRun& run,
-                       RunProgress& progress, std::set<std::string>& told,
-                       const std::stop_token& stop) {
-  if (folder.Unsettled().empty()) return absl::OkStatus();
-  const std::vector<FolderStorm> storms = folder.Storms();
-  std::vector<storm_store::CataloguedStorm> catalogue;
-  catalogue.reserve(storms.size());
-  for (const FolderStorm& storm : storms) catalogue.push_back(storm.storm);
-  storm_store::LogNotes(catalogue, &told);
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<PlannedPicture> all,
-                               PlanWatched(run.Options(), storms, catalogue, folder));
-  std::vector<PlannedPicture> made;
-  std::vector<PlannedPicture> missing;
-  for (PlannedPicture& picture : all) {
-    (picture.outcome.ok() ? made : missing).push_back(std::move(picture));
-  }
-  THUNDERHEAD_RETURN_IF_ERROR(run.Make(catalogue, missing, progress, stop));
-  Settle(missing, folder);
-  made.insert(made.end(), missing.begin(), missing.end());
-  if (movie.name.has_value()) {
-    const std::vector<PlannedPicture> before = MadeBefore(run, made);
-    made.insert(made.end(), before.begin(), before.end());
-  }
-  return MakeMovies(movie, made, run, progress, stop);
-}
-
-absl::Status Ended(const WatchedFolder& folder, bool in_time) {
-  if (!in_time && folder.WaitingCount() > 0) {
-    return absl::UnavailableError(absl::StrCat("the time has come, but ", folder.WaitingCount(),
-                                               " files are not complete or not drawn"));
-  }
-  if (folder.BadCount() > 0) {
-    return absl::DataLossError(
-        absl::StrCat(folder.BadCount(), " files could not be drawn; the reasons are above"));
-  }
-  return absl::OkStatus();
-}
-
-absl::Status WatchAtServer(const WatchFlags& flags, const End& end, const MovieOptions& movie,
-                           PictureRunOptions options, const std::stop_token& stop) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<ServerLink> server,
-                               ServerLink::Open(flags.pipeline.server));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<PictureRun> run,
-                               PictureRun::Open(std::move(options)));
-  RunProgress progress(flags.pipeline.progress, absl::StrCat("watching ", flags.folder));
-  const ServerWatch watch{.storm = flags.folder,
-                          .is_over =
-                              [&end](int times) {
-                                return (end.files.has_value() && times >= *end.files) ||
-                                       absl::Now() >= end.at;
-                              },
-                          .after_new =
-                              [&](const std::vector<PlannedPicture>& pictures) {
-                                return MakeMovies(movie, pictures, *run, progress, stop);
-                              }};
-  return WatchServer(watch, *server, *run, progress, stop);
+  return runs::WatchOptions{flags.folder,        flags.files,      std::move(ready),       end,
+                            std::move(pictures), std::move(movie), flags.pipeline.progress};
 }
 
 absl::Status Watch(const WatchFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   const Interruption interruption;
-  const std::stop_token stop = interruption.Token();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const End end, ParseUntil(flags.until));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::ReadinessPolicy policy,
-                               pipeline::ReadinessPolicy::Parse(flags.ready));
-  THUNDERHEAD_ASSIGN_OR_RETURN(PictureRunOptions options, RunOptionsOf(flags.pipeline, {}));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const MovieOptions movie,
-                               MovieOptionsOf(flags.pipeline, options.format));
-  if (options.product.Has("time")) {
-    return absl::InvalidArgumentError(
-        "--product has {time}, which counts the times of a whole run; files that still come have "
-        "no such number: use {valid:%Y%m%d_%H%M} or {lead_min:04d}");
+  THUNDERHEAD_ASSIGN_OR_RETURN(runs::WatchOptions options, WatchOptionsOf(flags));
+  if (flags.pipeline.server.address.empty()) {
+    return runs::RunWatch(std::move(options), interruption.Token());
   }
-  if (!flags.pipeline.server.address.empty()) {
-    return WatchAtServer(flags, end, movie, std::move(options), stop);
-  }
-  std::error_code error;
-  if (!std::filesystem::is_directory(flags.folder, error)) {
-    return absl::NotFoundError(absl::StrCat(flags.folder, ": there is no such folder; create it"));
-  }
-  base::FolderEvents events;
-  events.Watch(flags.folder);
-  const std::stop_callback wake(stop, [&events] { events.Wake(); });
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<PictureRun> run,
-                               PictureRun::Open(std::move(options)));
-  RunProgress progress(flags.pipeline.progress, absl::StrCat("watching ", flags.folder));
-  WatchedFolder folder(flags.folder, flags.files, policy);
-  RememberDone(*run, folder);
-  std::set<std::string> told;
-  while (!stop.stop_requested()) {
-    THUNDERHEAD_RETURN_IF_ERROR(folder.Look(progress));
-    absl::Status drawn = DrawReady(movie, folder, *run, progress, told, stop);
-    if (!drawn.ok() && !absl::IsCancelled(drawn)) return drawn;
-    if (stop.stop_requested()) break;
-    if (end.files.has_value() && folder.DoneCount() + folder.BadCount() >= *end.files) {
-      return Ended(folder, true);
-    }
-    if (absl::Now() >= end.at) return Ended(folder, false);
-    const absl::Duration pause = folder.WaitingCount() > 0 ? policy.Patience() : kRescan;
-    events.WaitUntil(
-        std::chrono::steady_clock::now() +
-        absl::ToChronoMilliseconds(std::clamp(end.at - absl::Now(), absl::ZeroDuration(), pause)));
-  }
-  return absl::CancelledError(absl::StrCat("interrupted: the products of ", folder.DoneCount(),
-                                           " files are made and in ", run->Records().Path(),
-                                           "; the same command goes on"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<runs::ServerLink> server,
+                               OpenServer(flags.pipeline.server));
+  return runs::RunWatchAtServer(std::move(options), *server, interruption.Token());
 }
 
 }  // namespace

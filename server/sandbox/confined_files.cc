@@ -187,4 +187,8 @@ storm_files::StormFormats Confined(storm_files::StormFormats formats,
   return formats;
 }
 
+storm_files::StormFormats ConfinedFormats(const ConfinedOptions& options) {
+  return Confined(storm_files::StormFormats::BuiltIn(), std::make_shared<ConfinedFiles>(options));
+}
+
 }  // namespace thunderhead::sandbox

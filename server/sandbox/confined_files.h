@@ -78,4 +78,7 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
 storm_files::StormFormats Confined(storm_files::StormFormats formats,
                                    const std::shared_ptr<ConfinedFiles>& files);
 
+// Returns the built-in formats such that confined readers read every file.
+storm_files::StormFormats ConfinedFormats(const ConfinedOptions& options = {});
+
 }  // namespace thunderhead::sandbox

@@ -1,0 +1,32 @@
+#include "app/reader_flags.h"
+
+#include <chrono>
+#include <cmath>
+
+#include "sandbox/confined_files.h"
+
+namespace thunderhead::app {
+
+void AddReaderFlags(CLI::App& command, ReaderFlags& flags) {
+  command
+      .add_option("--sandbox-memory", flags.memory_mib,
+                  "MiB that reading one time of a storm file may take; by default this machine's")
+      ->check(CLI::Range(16.0, 1e9))
+      ->capture_default_str();
+  command
+      .add_option("--sandbox-seconds", flags.seconds,
+                  "Seconds that reading one time of a storm file may take")
+      ->check(CLI::Range(1.0, 86400.0))
+      ->capture_default_str();
+}
+
+sandbox::ReaderLimits LimitsOf(const ReaderFlags& flags) {
+  return {.memory_bytes = static_cast<std::uint64_t>(flags.memory_mib) << 20,
+          .time = std::chrono::milliseconds(std::lround(1e3 * flags.seconds))};
+}
+
+absl::Status ProbeReaders(const sandbox::ReaderLimits& limits) {
+  return sandbox::ConfinedFiles({.limits = limits}).Probe();
+}
+
+}  // namespace thunderhead::app

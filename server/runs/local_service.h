@@ -1,0 +1,47 @@
+// The service run inside a command, for commands that work on a file without a server.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "grpcpp/channel.h"
+#include "grpcpp/support/status.h"
+#include "service/server.h"
+#include "storm_store/storm_store.h"
+
+namespace thunderhead::runs {
+
+// Opens the file or folder at `path`, which must contain exactly one storm.
+absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::string& path);
+
+// Returns the index of the time `wanted`, or of the last time if `wanted` is absent.
+// INVALID_ARGUMENT if the storm does not have that time; the error names the storm by `path`.
+absl::StatusOr<int> TimeOf(const storm_store::StormStore& store, const std::string& path,
+                           std::optional<int> wanted);
+
+// Converts an error about a storm's file to DATA_LOSS, whatever code the store gives for a bad
+// file. So it is not reported as a wrong request.
+absl::Status AsFileProblem(const absl::Status& status);
+// Converts an error about the file at `path`. A damaged file that has changed within the last two
+// minutes gives UNAVAILABLE, because a model may still be writing it.
+absl::Status AsFileProblem(const std::string& path, const absl::Status& status);
+
+// Reads one time of the store's storm into its cache, with a progress bar.
+absl::Status ReadWithProgress(storm_store::StormStore& store, int time_index);
+
+// Returns the fields of one time of the storm at `path`, read with a progress bar. Errors are
+// converted as by AsFileProblem.
+absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(
+    const std::string& path, std::optional<int> wanted);
+
+// Starts the service for `store`, drawing on `device`, without a listening port.
+absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
+    std::shared_ptr<storm_store::StormStore> store, const std::string& device);
+
+// Converts a gRPC status to a status with the same code and message.
+absl::Status FromGrpc(const grpc::Status& status);
+
+}  // namespace thunderhead::runs

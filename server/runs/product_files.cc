@@ -1,0 +1,218 @@
+#include "runs/product_files.h"
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "absl/time/time.h"
+#include "base/status.h"
+#include "base/utc_time.h"
+#include "frame/image_codec.h"
+#include "frame/png_text.h"
+#include "google/protobuf/descriptor.h"
+#include "google/protobuf/message.h"
+#include "picture/exr_file.h"
+#include "product/annotation.h"
+#include "product/geotiff.h"
+#include "product/light_netcdf.h"
+#include "product/map_place.h"
+#include "service/messages/picture_texts.h"
+
+namespace thunderhead::runs {
+namespace {
+
+using Texts = std::map<std::string, std::string>;
+
+std::string TextOr(const Texts& texts, const char* name, const std::string& otherwise) {
+  const auto found = texts.find(name);
+  return found == texts.end() || found->second.empty() ? otherwise : found->second;
+}
+
+std::optional<absl::Time> TimeIn(const Texts& texts, const char* name) {
+  return base::ParseUtcTime(TextOr(texts, name, ""));
+}
+
+std::string MinuteOf(absl::Time time) {
+  return absl::FormatTime("%E4Y-%m-%d %H:%MZ", time, absl::UTCTimeZone());
+}
+
+std::string RunText(const Texts& texts, absl::Time valid) {
+  const std::optional<absl::Time> run = TimeIn(texts, service::kRunText);
+  if (!run.has_value()) return "";
+  const std::int64_t minutes = absl::ToInt64Minutes(valid - *run);
+  return absl::StrFormat("run %s, %+d h %02d min", MinuteOf(*run), minutes / 60,
+                         std::abs(minutes % 60));
+}
+
+// Returns true if the chosen technique's setting false_colors is on.
+bool ShowsFalseColors(const v1::Rendering& rendering) {
+  const google::protobuf::FieldDescriptor* const technique =
+      rendering.GetReflection()->GetOneofFieldDescriptor(
+          rendering, rendering.GetDescriptor()->FindOneofByName("technique"));
+  if (technique == nullptr) return false;
+  const google::protobuf::Message& settings =
+      rendering.GetReflection()->GetMessage(rendering, technique);
+  const google::protobuf::FieldDescriptor* const field =
+      settings.GetDescriptor()->FindFieldByName("false_colors");
+  return field != nullptr && settings.GetReflection()->GetBool(settings, field);
+}
+
+// Returns the legend of the fields that the picture shows, if their colours distinguish them.
+std::vector<product::LegendEntry> LegendOf(const v1::RenderImageResponse& picture) {
+  std::vector<product::LegendEntry> legend;
+  if (!ShowsFalseColors(picture.scene().rendering())) return legend;
+  for (const v1::FieldParameters& field : picture.scene().fields()) {
+    bool shown = false;
+    for (const int hydrometeor : picture.modelled().fields()) {
+      shown = shown || hydrometeor == static_cast<int>(field.hydrometeor());
+    }
+    if (!shown) continue;
+    const v1::Color& color = field.false_color();
+    legend.push_back({absl::AsciiStrToLower(absl::StripPrefix(
+                          v1::Hydrometeor_Name(field.hydrometeor()), "HYDROMETEOR_")),
+                      {color.red(), color.green(), color.blue()}});
+  }
+  return legend;
+}
+
+absl::Status Annotate(const ProductFormat& format, const std::string& storm,
+                      const v1::RenderImageResponse& picture, const Texts& texts,
+                      frame::RgbImage& image) {
+  product::Annotation annotation;
+  annotation.title =
+      !format.title.empty() ? format.title : (storm.empty() ? TextOr(texts, "Title", "") : storm);
+  if (const auto valid = TimeIn(texts, service::kValidText); valid.has_value()) {
+    annotation.valid_time = MinuteOf(*valid);
+    annotation.run = RunText(texts, *valid);
+  }
+  annotation.legend = LegendOf(picture);
+  annotation.logo = format.logo.get();
+  return product::Annotate(annotation, image);
+}
+
+// Returns the map's position. INVALID_ARGUMENT if a projection is needed and the storm has none.
+absl::StatusOr<product::MapPlace> PlaceOf(const v1::RenderImageResponse& picture,
+                                          const Texts& texts) {
+  const v1::View& view = picture.view();
+  if (!view.parallel()) {
+    return absl::InvalidArgumentError("the picture is not seen from above; use a top-down camera");
+  }
+  product::MapPlace place;
+  place.projection = TextOr(texts, service::kProjectionText, "");
+  place.upper_left_m = {view.eye().x_m() - view.right().x(), view.eye().y_m() + view.up().y()};
+  place.pixel_m = {2.0 * view.right().x() / picture.width_px(),
+                   2.0 * view.up().y() / picture.height_px()};
+  if (place.projection.empty()) return place;
+  const std::pair<std::string, std::string> middle =
+      absl::StrSplit(TextOr(texts, service::kMiddleText, ""), ' ');
+  product::Place degrees;
+  if (!absl::SimpleAtod(middle.first, &degrees.latitude_deg) ||
+      !absl::SimpleAtod(middle.second, &degrees.longitude_deg)) {
+    return absl::InternalError("the picture has a map projection, but no place on it");
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const product::MapProjection projection,
+                               product::MapProjection::Open(place.projection));
+  place.upper_left_m += projection.PlaneOf_m(degrees);
+  if (std::isfinite(place.upper_left_m.x) && std::isfinite(place.upper_left_m.y)) return place;
+  return absl::DataLossError(
+      absl::StrCat("the middle of the domain is not on its own map (", place.projection, ")"));
+}
+
+absl::StatusOr<ProductFile> MakeNetcdf(const v1::RenderImageResponse& picture) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(picture::ExrPicture light,
+                               picture::DecodeExr(picture.image(), "the server's picture"));
+  product::LightMap map;
+  map.texts = std::move(light.attributes.texts);
+  THUNDERHEAD_ASSIGN_OR_RETURN(map.place, PlaceOf(picture, map.texts));
+  map.picture = std::move(light.picture);
+  map.eye_altitude_m = picture.view().eye().z_m();
+  map.valid = TimeIn(map.texts, service::kValidText).value_or(absl::UnixEpoch());
+  map.run = TimeIn(map.texts, service::kRunText);
+  if (picture.has_accuracy()) map.estimated_error = picture.accuracy().estimated_error();
+  ProductFile file;
+  THUNDERHEAD_ASSIGN_OR_RETURN(file.bytes, product::EncodeLightNetcdf(map, "a picture as light"));
+  return file;
+}
+
+absl::StatusOr<ProductFile> MakeFromPixels(const ProductFormat& format, const std::string& storm,
+                                           v1::RenderImageResponse picture) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Texts texts, frame::TextsOf(picture.image()));
+  ProductFile file;
+  product::MapPlace place;
+  if (format.IsMap()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(place, PlaceOf(picture, texts));
+    if (format.world_file) file.world_file = product::WorldFile(place);
+  }
+  if (format.kind == ProductKind::kGeoTiff && place.projection.empty()) {
+    return absl::InvalidArgumentError(
+        "the storm has no place on Earth for a GeoTIFF: it is of an idealised run, or its grid is "
+        "of a map projection that is not known; use a .png, with --world-file for metres from the "
+        "middle of its domain");
+  }
+  if (!format.annotate && format.kind == ProductKind::kPng) {
+    file.bytes = std::move(*picture.mutable_image());
+    return file;
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(frame::RgbImage image, frame::DecodePng(picture.image()));
+  if (format.annotate) {
+    THUNDERHEAD_RETURN_IF_ERROR(Annotate(format, storm, picture, texts, image));
+  }
+  if (format.kind == ProductKind::kGeoTiff) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(file.bytes, product::EncodeGeoTiff(image, place, texts));
+  } else if (format.kind == ProductKind::kJpeg) {
+    const int quality = static_cast<int>(picture.scene().output().jpeg_quality());
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        file.bytes, frame::EncodeJpeg(image.width_px, image.height_px, image.rgb, quality));
+  } else {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::string png,
+                                 frame::EncodePng(image.width_px, image.height_px, image.rgb));
+    file.bytes = frame::WithTexts(png, texts);
+  }
+  return file;
+}
+
+}  // namespace
+
+v1::ImageFormat ProductFormat::Drawn() const {
+  if (kind == ProductKind::kExr || kind == ProductKind::kNetcdf) return v1::IMAGE_FORMAT_EXR;
+  // If the product is made from the picture here, PNG is requested, because it is lossless.
+  return kind == ProductKind::kJpeg && !annotate && !world_file ? v1::IMAGE_FORMAT_JPEG
+                                                                : v1::IMAGE_FORMAT_PNG;
+}
+
+absl::Status CheckScene(const ProductFormat& format, const v1::Scene& scene) {
+  if (!format.IsMap() || scene.camera().has_top_down()) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      "a map (.tif, .nc or --world-file) is seen from above, and the scene's camera is not: use "
+      "--camera top-down or a scene with camera.topDown; of other views a .png or .exr has the "
+      "camera's place inside");
+}
+
+std::string WorldFilePath(const std::string& path) {
+  // The extension of a world file is the first and the last letter of the picture's extension, and
+  // a w.
+  const std::filesystem::path picture(path);
+  const std::string ending = picture.extension().string();
+  return std::filesystem::path(picture)
+      .replace_extension(
+          absl::StrCat(".", ending.substr(1, 1), ending.substr(ending.size() - 1), "w"))
+      .string();
+}
+
+absl::StatusOr<ProductFile> MakeProduct(const ProductFormat& format, const std::string& storm,
+                                        v1::RenderImageResponse picture) {
+  if (format.kind == ProductKind::kNetcdf) return MakeNetcdf(picture);
+  if (format.Drawn() == v1::IMAGE_FORMAT_PNG) {
+    return MakeFromPixels(format, storm, std::move(picture));
+  }
+  return ProductFile{std::move(*picture.mutable_image()), std::nullopt};
+}
+
+}  // namespace thunderhead::runs

@@ -1,0 +1,62 @@
+// A running server, as commands call it: one gRPC channel, and errors as absl::Status.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "absl/status/status.h"
+#include "grpcpp/channel.h"
+#include "grpcpp/client_context.h"
+#include "grpcpp/support/status.h"
+#include "thunderhead/v1/job.grpc.pb.h"
+#include "thunderhead/v1/thunderhead.grpc.pb.h"
+
+namespace thunderhead::runs {
+
+struct ServerPlace {
+  std::string address;    // HOST:PORT
+  std::string token;      // the access token; empty for none
+  std::string tls_roots;  // PEM text of the certificates to trust; empty for no TLS
+};
+
+class ServerLink {
+ public:
+  // Creates the link without waiting for the server.
+  explicit ServerLink(const ServerPlace& place);
+
+  v1::ThunderheadService::Stub& Service() { return *service_; }
+  v1::RenderJobService::Stub& Jobs() { return *jobs_; }
+  const std::shared_ptr<grpc::Channel>& Channel() const { return channel_; }
+  const std::string& Token() const { return token_; }
+  const std::string& Address() const { return address_; }
+
+  // Calls a unary rpc with the token, for example Call(Service(), &Stub::ListStorms, ...). Returns
+  // UNAVAILABLE after a timeout if the server does not respond.
+  template <typename Stub, typename Method, typename Request, typename Response>
+  absl::Status Call(Stub& stub, Method method, const Request& request, Response* response) {
+    grpc::ClientContext context;
+    Prepare(context);
+    context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    return StatusOf((stub.*method)(&context, request, response));
+  }
+
+  // Adds the access token to the call.
+  void Prepare(grpc::ClientContext& context) const;
+
+  // Converts a gRPC status to one with the same code and message. If the connection was lost, the
+  // message also names the server.
+  absl::Status StatusOf(const grpc::Status& status) const;
+
+ private:
+  // The timeout is long because a server may have to read a storm first.
+  static constexpr std::chrono::seconds kPatience{120};
+
+  const std::string address_;
+  const std::string token_;
+  const std::shared_ptr<grpc::Channel> channel_;
+  const std::unique_ptr<v1::ThunderheadService::Stub> service_;
+  const std::unique_ptr<v1::RenderJobService::Stub> jobs_;
+};
+
+}  // namespace thunderhead::runs

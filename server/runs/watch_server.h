@@ -1,0 +1,30 @@
+// Implements `thunderhead watch` for a storm of a running server. It draws each time of the storm
+// once the server's catalogue lists it. The server decides when a time's file is complete.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "runs/picture_run.h"
+#include "runs/run_progress.h"
+#include "runs/server_link.h"
+
+namespace thunderhead::runs {
+
+struct ServerWatch {
+  std::string storm;
+  // Returns true if the watch should end once `times` times are drawn.
+  std::function<bool(int times)> is_over;
+  // Called after new pictures were made, with the pictures of all times.
+  std::function<absl::Status(const std::vector<PlannedPicture>&)> after_new;
+};
+
+// Watches until the watch is over, and returns the worst error of any picture. Returns CANCELLED if
+// `stop` is requested, and UNAVAILABLE if the server cannot be reached for a minute.
+absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRun& run,
+                         RunProgress& progress, const std::stop_token& stop);
+
+}  // namespace thunderhead::runs
