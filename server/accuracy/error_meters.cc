@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <utility>
-#include <variant>
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "reference/scene_problem.h"
+#include "scene/scene_parts.h"
 #include "scene/technique.h"
 
 namespace thunderhead::accuracy {
@@ -26,15 +26,6 @@ constexpr float kLevel_m = 1.0F;
 
 bool IsEnough(const Estimated& error) {
   return error.high - error.low <= kEnoughWidth * error.value;
-}
-
-// Returns the scene with default values for the settings that change neither light nor view.
-scene::Scene WithoutDisplay(scene::Scene scene) {
-  scene.display = {};
-  scene.accuracy = {};
-  scene.output.jpeg_quality = {};
-  scene::SetTracedLight(&scene.rendering.technique, scene::TracedLight::kOff);
-  return scene;
 }
 
 }  // namespace
@@ -69,9 +60,10 @@ bool ErrorMeters::DropOldest() {
 
 absl::StatusOr<ErrorMeters::Kept*> ErrorMeters::For(const scene::Scene& measured,
                                                     const Fields& fields) {
-  const scene::Scene key = WithoutDisplay(measured);
-  const auto found = std::ranges::find_if(
-      kept_, [&](const Kept& kept) { return kept.fields == fields && kept.scene == key; });
+  const auto found = std::ranges::find_if(kept_, [&](const Kept& kept) {
+    return kept.fields == fields &&
+           scene::Agree(kept.scene, measured, &scene::ScenePart::measured_error);
+  });
   if (found != kept_.end()) return &*found;
   if (kept_.size() >= max_meters_ && !DropOldest()) {
     return absl::ResourceExhaustedError(
@@ -84,7 +76,7 @@ absl::StatusOr<ErrorMeters::Kept*> ErrorMeters::For(const scene::Scene& measured
   THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<ErrorMeter> meter,
                                ErrorMeter::Create(measured, fields, 0, 0, makes_tracer_));
   Kept& kept = kept_.emplace_back();
-  kept.scene = key;
+  kept.scene = measured;
   kept.fields = fields;
   kept.reserved = std::move(reserved);
   kept.meter = std::move(meter);

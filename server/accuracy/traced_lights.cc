@@ -1,27 +1,14 @@
 #include "accuracy/traced_lights.h"
 
-#include <algorithm>
 #include <utility>
-#include <variant>
+
+#include "scene/scene_parts.h"
 
 namespace thunderhead::accuracy {
 
 bool SharesLight(const scene::Scene& traced, const scene::Scene& scene) {
-  if (!scene::CapabilitiesOf(scene.rendering.technique).traced_light) return false;
-  scene::Scene known = traced;
-  scene::Scene alike = scene;
-  // When light is traced (TracedLight) does not matter, and neither do lines painted on the ground.
-  for (scene::Scene* const each : {&known, &alike}) {
-    each->ground = {.cover = each->ground.cover};
-    scene::SetTracedLight(&each->rendering.technique, scene::TracedLight::kOff);
-  }
-  alike.camera = traced.camera;
-  alike.lights = traced.lights;  // the correction does not include them
-  alike.display = traced.display;
-  alike.output = traced.output;
-  alike.accuracy = traced.accuracy;
-  alike.rendering.image_scale = traced.rendering.image_scale;
-  return alike == known;
+  return scene::CapabilitiesOf(scene.rendering.technique).traced_light &&
+         scene::Agree(traced, scene, &scene::ScenePart::light_correction);
 }
 
 std::optional<TracedLights::Found> TracedLights::Find(const scene::Scene& scene,

@@ -1,7 +1,6 @@
 // Tests that the defaults of a scene agree everywhere: in the options of the messages' fields, in
 // scene/scene.h and in the messages that the server completes.
 #include <algorithm>
-#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "service/messages/limits_check.h"
 #include "service/messages/scene_messages.h"
 #include "service/messages/technique_messages.h"
+#include "tests/service/scene_fields.h"
 #include "thunderhead/v1/limits.pb.h"
 
 namespace thunderhead::service {
@@ -26,6 +26,9 @@ namespace {
 using google::protobuf::FieldDescriptor;
 using google::protobuf::Message;
 using google::protobuf::util::MessageDifferencer;
+using testing::Completed;
+using testing::FieldValues;
+using testing::StormWithEveryField;
 
 double NumberOf(const Message& message, const FieldDescriptor& field) {
   const auto& reflection = *message.GetReflection();
@@ -110,19 +113,6 @@ int CompareDefaults(const Message& message, const std::string& path) {
   return compared;
 }
 
-storm_store::StormInfo Storm() {
-  storm_store::StormInfo storm;
-  storm.id = "storm";
-  storm.times.resize(1);
-  storm.fields.assign(physics::kHydrometeors.begin(), physics::kHydrometeors.end());
-  return storm;
-}
-
-v1::Scene Completed(v1::Scene scene = {}) {
-  FillSceneDefaults(scene, Storm());
-  return scene;
-}
-
 // Returns the value rounded to single precision, as a message stores it.
 scene::Scene InSinglePrecision(scene::Scene value) {
   v1::Camera camera;
@@ -183,19 +173,26 @@ Defaults DefaultsWith(const Camera& camera, const Technique& technique) {
   return defaults;
 }
 
+// Returns each alternative of the variant, with its defaults.
+template <typename Variant, std::size_t... i>
+std::vector<Variant> AllOf(std::index_sequence<i...> /*indices*/) {
+  return {Variant(std::variant_alternative_t<i, Variant>{})...};
+}
+
+template <typename Variant>
+std::vector<Variant> AllOf() {
+  return AllOf<Variant>(std::make_index_sequence<std::variant_size_v<Variant>>());
+}
+
 // Returns the defaults for each kind of camera and each technique with its own message.
 std::vector<Defaults> AllDefaults() {
-  const std::vector<scene::Camera> cameras = {scene::OrbitCamera{}, scene::SpotterCamera{},
-                                              scene::TopDownCamera{}};
-  const std::vector<scene::Technique> techniques = {scene::LightVolume{}, scene::HalfAngle{},
-                                                    scene::Metaballs{}, scene::Cumulus{},
-                                                    scene::Reference{}};
-  static_assert(std::variant_size_v<scene::Camera> == 3);
-  static_assert(std::variant_size_v<scene::Technique> == 6, "these and OtherTechnique");
   std::vector<Defaults> all;
-  for (const scene::Camera& camera : cameras) all.push_back(DefaultsWith(camera, techniques[0]));
-  for (const scene::Technique& technique : techniques) {
-    all.push_back(DefaultsWith(cameras[0], technique));
+  for (const scene::Camera& camera : AllOf<scene::Camera>()) {
+    all.push_back(DefaultsWith(camera, scene::Technique()));
+  }
+  for (const scene::Technique& technique : AllOf<scene::Technique>()) {
+    if (std::holds_alternative<scene::OtherTechnique>(technique)) continue;
+    all.push_back(DefaultsWith(scene::Camera(), technique));
   }
   return all;
 }
@@ -245,92 +242,23 @@ const std::set<std::string> kReplaced = {
     "thunderhead.v1.FieldParameters.hydrometeor",
 };
 
-void SetNumber(Message& message, const FieldDescriptor& field, double value) {
-  const auto& reflection = *message.GetReflection();
-  switch (field.cpp_type()) {
-    case FieldDescriptor::CPPTYPE_FLOAT:
-      return reflection.SetFloat(&message, &field, static_cast<float>(value));
-    case FieldDescriptor::CPPTYPE_DOUBLE:
-      return reflection.SetDouble(&message, &field, value);
-    case FieldDescriptor::CPPTYPE_UINT32:
-      return reflection.SetUInt32(&message, &field, static_cast<std::uint32_t>(value));
-    default:
-      ADD_FAILURE() << field.full_name() << " is of an unknown type";
+// Returns true if each value of the field results in a different scene.
+bool Matters(const FieldValues& values) {
+  for (auto at = values.scenes.begin(); at != values.scenes.end(); ++at) {
+    if (std::find(values.scenes.begin(), at, *at) != at) return false;
   }
-}
-
-// Sets the field to its `i`th value; a number is set to one of its limits. Returns false if there
-// are no further values. Enumerator 0 means "unset", so completing a message replaces it.
-bool SetValue(Message& message, const FieldDescriptor& field, int i) {
-  const auto& reflection = *message.GetReflection();
-  switch (field.cpp_type()) {
-    case FieldDescriptor::CPPTYPE_BOOL:
-      reflection.SetBool(&message, &field, i == 1);
-      return i < 2;
-    case FieldDescriptor::CPPTYPE_STRING:
-      reflection.SetString(&message, &field, i == 0 ? "one" : "other");
-      return i < 2;
-    case FieldDescriptor::CPPTYPE_ENUM:
-      if (i + 1 >= field.enum_type()->value_count()) return false;
-      reflection.SetEnum(&message, &field, field.enum_type()->value(i + 1));
-      return true;
-    default:
-      break;
-  }
-  const v1::NumberLimits& limits = field.options().GetExtension(v1::number);
-  SetNumber(message, field, i == 0 ? limits.minimum() : limits.maximum());
-  return i < 2;
-}
-
-// Returns true if each value of the field results in a different scene::Scene. `message` is part of
-// `scene`.
-bool Matters(const v1::Scene& scene, Message& message, const FieldDescriptor& field) {
-  const std::unique_ptr<Message> kept(message.New());
-  kept->CopyFrom(message);
-  std::vector<scene::Scene> made;
-  bool different = true;
-  for (int i = 0; SetValue(message, field, i); ++i) {
-    const scene::Scene scene_made = ToScene(scene);
-    different = different && std::find(made.begin(), made.end(), scene_made) == made.end();
-    made.push_back(scene_made);
-    message.CopyFrom(*kept);
-  }
-  message.CopyFrom(*kept);
-  return different && made.size() > 1;
-}
-
-// Checks the fields of `message`, which is part of `scene`, and adds their names to `checked`.
-void ExpectEachToMatter(const v1::Scene& scene, Message& message, std::set<std::string>* checked) {
-  const auto& reflection = *message.GetReflection();
-  for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
-    const FieldDescriptor& field = *message.GetDescriptor()->field(i);
-    const bool chosen =
-        field.real_containing_oneof() == nullptr || reflection.HasField(message, &field);
-    if (!chosen || field.is_map()) continue;
-    if (field.is_repeated()) {
-      ASSERT_GT(reflection.FieldSize(message, &field), 0) << field.full_name();
-      ExpectEachToMatter(scene, *reflection.MutableRepeatedMessage(&message, &field, 0), checked);
-    } else if (field.message_type() != nullptr) {
-      ExpectEachToMatter(scene, *reflection.MutableMessage(&message, &field), checked);
-    } else {
-      EXPECT_NE(Matters(scene, message, field), kReplaced.contains(field.full_name()))
-          << field.full_name();
-      checked->insert(field.full_name());
-    }
-  }
+  return values.scenes.size() > 1;
 }
 
 // Every field of the message reaches the value, whose defaults are compared above.
 TEST(SceneDefaults, EveryFieldOfTheMessageReachesTheValue) {
   std::set<std::string> checked;
-  for (Defaults& defaults : AllDefaults()) {
-    defaults.message.mutable_accuracy()->set_max_error(0.1F);
-    ExpectEachToMatter(defaults.message, defaults.message, &checked);
+  for (const v1::Scene& scene : testing::ScenesWithEveryField()) {
+    testing::VisitFields(scene, [&](const FieldValues& values) {
+      EXPECT_NE(Matters(values), kReplaced.contains(values.field.full_name())) << values.path;
+      checked.insert(values.field.full_name());
+    });
   }
-  v1::Scene within = Completed();
-  within.add_lights();
-  within.mutable_accuracy()->set_max_milliseconds(10.0F);
-  ExpectEachToMatter(within, within, &checked);
   EXPECT_GT(checked.size(), 80U);
 }
 
@@ -473,10 +401,10 @@ TEST(SceneDefaults, BordersAreOnWhereTheGroundIsThatOfARealPlace) {
     EXPECT_EQ(ToScene(scene).ground.borders, scene.ground().borders());
     return scene.ground().borders();
   };
-  storm_store::StormInfo real = Storm();
+  storm_store::StormInfo real = StormWithEveryField();
   real.latitude_deg = 35.0;
   real.longitude_deg = -97.0;
-  EXPECT_FALSE(borders(Storm()));
+  EXPECT_FALSE(borders(StormWithEveryField()));
   EXPECT_FALSE(borders(real)) << "its projection is not known";
   real.projection = "+proj=merc +lat_ts=15 +lon_0=120 +R=6370000";
   EXPECT_TRUE(borders(real));
@@ -498,20 +426,20 @@ TEST(SceneDefaults, TheGroundIsThatOfTheStormAndPlainInThePapersLook) {
     EXPECT_EQ(ToScene(scene).ground.rings, scene::Ground{}.rings);
     return ToScene(scene).ground.cover;
   };
-  storm_store::StormInfo real = Storm();
+  storm_store::StormInfo real = StormWithEveryField();
   real.latitude_deg = 35.0;
   real.longitude_deg = -97.0;
-  EXPECT_EQ(cover(Storm()), scene::GroundCover::kFields);
+  EXPECT_EQ(cover(StormWithEveryField()), scene::GroundCover::kFields);
   EXPECT_EQ(cover(real), scene::GroundCover::kLandUse);
   v1::Scene papers;
   papers.mutable_rendering()->set_preset(v1::PRESET_UNIFORM_PHASE_TRANSLUCENT);
-  EXPECT_EQ(cover(Storm(), papers), scene::GroundCover::kPlain);
+  EXPECT_EQ(cover(StormWithEveryField(), papers), scene::GroundCover::kPlain);
   EXPECT_EQ(cover(real, papers), scene::GroundCover::kPlain);
   papers.mutable_ground()->set_cover(v1::Ground::COVER_FIELDS);
-  EXPECT_EQ(cover(Storm(), papers), scene::GroundCover::kFields);
+  EXPECT_EQ(cover(StormWithEveryField(), papers), scene::GroundCover::kFields);
   v1::Scene plain;
   plain.mutable_ground()->set_cover(v1::Ground::COVER_PLAIN);
-  EXPECT_EQ(cover(Storm(), plain), scene::GroundCover::kPlain);
+  EXPECT_EQ(cover(StormWithEveryField(), plain), scene::GroundCover::kPlain);
 }
 
 TEST(SceneDefaults, APresetIsReplacedByItsTechnique) {
