@@ -49,17 +49,21 @@ class AnnotationTest(ProductTest):
         self.assertEqual(differs[240:].sum(), 0, "the valid time is the same")
 
     def test_false_colours_have_a_legend(self) -> None:
-        colours = self.scene("colours.json", '{"rendering": {"halfAngle": {"falseColors": true, "slices": 16}}}')
-        without = self.scene("without.json", '{"rendering": {"halfAngle": {"slices": 16}}}')
+        """The legend belongs to the setting, whichever technique has it."""
         output = self.folder / "out.png"
-        self.render(SAMPLE, output, *SIZE, "--annotate", "--scene", colours)
-        with_legend = pixels(output)[150:, 380:]
-        self.render(SAMPLE, output, *SIZE, "--annotate", "--scene", without)
-        without_legend = pixels(output)[150:, 380:]
-        # The colours are those of cloud, rain and ice.
-        for colour in ((0xE6, 0x9F, 0x00), (0x56, 0xB4, 0xE9), (0xCC, 0x79, 0xA7)):
-            self.assertGreater((numpy.abs(with_legend - colour) < 10).all(axis=2).sum(), 15, colour)
-            self.assertEqual((numpy.abs(without_legend - colour) < 10).all(axis=2).sum(), 0, colour)
+        for technique in ({"halfAngle": {"slices": 16}}, {"lightVolume": {"slices": 16, "tracedLight": "TRACED_LIGHT_OFF"}},
+                          {"metaball": {"count": 50}}):
+            (name, settings), = technique.items()
+            with self.subTest(name):
+                corner = {}
+                for colours in (True, False):
+                    scene = json.dumps({"rendering": {name: {**settings, "falseColors": colours}}})
+                    self.render(SAMPLE, output, *SIZE, "--annotate", "--scene", self.scene("scene.json", scene))
+                    corner[colours] = pixels(output)[150:, 380:]
+                # The colours are those of cloud, rain and ice.
+                for colour in ((0xE6, 0x9F, 0x00), (0x56, 0xB4, 0xE9), (0xCC, 0x79, 0xA7)):
+                    self.assertGreater((numpy.abs(corner[True] - colour) < 10).all(axis=2).sum(), 15, colour)
+                    self.assertEqual((numpy.abs(corner[False] - colour) < 10).all(axis=2).sum(), 0, colour)
 
     def test_logos(self) -> None:
         logo = self.folder / "logo.png"
