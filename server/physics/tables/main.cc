@@ -1,5 +1,5 @@
-// thunderhead_phase_tables FOLDER [CURVES.svg]: computes every phase table and writes it into
-// FOLDER. It also draws the curves of all tables.
+// thunderhead_phase_tables [--only NAME] FOLDER [CURVES.svg]: computes every phase table, or only
+// the named one, and writes it into FOLDER. It also draws the curves of the tables.
 #include <cstdio>
 #include <fstream>
 #include <string>
@@ -45,16 +45,28 @@ absl::Status BuildAndWrite(const Recipe& recipe, const std::string& folder,
   return WriteFile(absl::StrCat(folder, "/", recipe.name, ".txt"), table.ToText(built.provenance));
 }
 
-absl::Status Run(const std::vector<std::string>& arguments) {
+absl::Status Run(std::vector<std::string> arguments) {
+  std::string only;
+  if (arguments.size() > 1 && arguments[0] == "--only") {
+    only = arguments[1];
+    arguments.erase(arguments.begin(), arguments.begin() + 2);
+  }
   if (arguments.empty() || arguments.size() > 2) {
-    return absl::InvalidArgumentError("usage: thunderhead_phase_tables FOLDER [CURVES.svg]");
+    return absl::InvalidArgumentError(
+        "usage: thunderhead_phase_tables [--only NAME] FOLDER [CURVES.svg]");
   }
   std::vector<PhaseTable> tables;
   for (const DropletRecipe& recipe : DropletRecipes()) {
+    if (!only.empty() && recipe.name != only) continue;
     THUNDERHEAD_RETURN_IF_ERROR(BuildAndWrite(recipe, arguments[0], tables));
   }
   for (const IceRecipe& recipe : IceRecipes()) {
+    if (!only.empty() && recipe.name != only) continue;
     THUNDERHEAD_RETURN_IF_ERROR(BuildAndWrite(recipe, arguments[0], tables));
+  }
+  if (tables.empty()) {
+    return absl::NotFoundError(absl::StrCat(
+        "there is no recipe '", only, "'; the names are in server/physics/tables/recipes.cc"));
   }
   if (arguments.size() < 2) return absl::OkStatus();
   return WriteFile(arguments[1], CurvesSvg(tables));
