@@ -133,11 +133,18 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   expected.run = "run";
   expected.latitude_deg = 8.0;
   expected.longitude_deg = 9.0;
+  expected.middles = {{11.0, 12.0}, {13.0, 14.0}};
   expected.projection = "+proj=merc";
+  expected.member = "mem05";
+  expected.assumptions = {"one", "two"};
+  expected.part = {.of = "part", .at_all_times = true};
+  expected.parts = {"/storms/a.nc", "/storms/b.nc"};
   expected.version = expected.id = expected.device = 10;
+  expected.modified_ns = 15;
   const storm_files::StormFile received = Sent(expected);
   const auto& [path, cells, dx_m, dy_m, times, fields, about, domain, run, latitude_deg,
-               longitude_deg, projection, reader, version, id, device] = received;
+               longitude_deg, middles, projection, member, assumptions, part, parts, reader,
+               version, id, device, modified_ns] = received;
   EXPECT_EQ(cells, expected.cells);
   EXPECT_EQ(dx_m, expected.dx_m);
   EXPECT_EQ(dy_m, expected.dy_m);
@@ -148,11 +155,18 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   EXPECT_EQ(run, expected.run);
   EXPECT_EQ(latitude_deg, expected.latitude_deg);
   EXPECT_EQ(longitude_deg, expected.longitude_deg);
+  EXPECT_EQ(middles, expected.middles);
   EXPECT_EQ(projection, expected.projection);
+  EXPECT_EQ(member, expected.member);
+  EXPECT_EQ(assumptions, expected.assumptions);
+  EXPECT_EQ(part.of, expected.part.of);
+  EXPECT_EQ(part.at_all_times, expected.part.at_all_times);
   // The server sets the other members itself.
   EXPECT_EQ(path, "");
+  EXPECT_TRUE(parts.empty());
   EXPECT_EQ(reader, nullptr);
   for (const std::uint64_t number : {version, id, device}) EXPECT_EQ(number, 0U);
+  EXPECT_EQ(modified_ns, 0);
 }
 
 }  // namespace
