@@ -144,7 +144,7 @@ TOYS = {
                "  optional uint32 at_most = 1 [(number) = {minimum: 1, maximum: 100, default_value: 100, unit: \"1\"}];\n}\n"
                "\n// The response of CountStorms.\nmessage CountStormsResponse {\n  // The number of storms.\n"
                "  uint32 storms = 1;\n}\n"),
-        after("handlers.h", "using CallerRef = std::shared_ptr<const access::Caller>;\n",
+        after("handlers.h", "namespace thunderhead::service {\n",
               "\ngrpc::ServerUnaryReactor* CountStorms(Engine& engine, grpc::CallbackServerContext* context,\n"
               "                                      const CallerRef& caller,\n"
               "                                      const v1::CountStormsRequest* request,\n"

@@ -2,7 +2,7 @@
 #include <algorithm>
 
 #include "base/status.h"
-#include "service/finished.h"
+#include "rpc_port/finished.h"
 #include "service/handlers.h"
 #include "service/messages/limits_check.h"
 
@@ -25,7 +25,8 @@ grpc::ServerUnaryReactor* CountStorms(Engine& engine, grpc::CallbackServerContex
                                       const CallerRef& caller,
                                       const v1::CountStormsRequest* request,
                                       v1::CountStormsResponse* response) {
-  return Finished(engine.limits, context, caller, Count(engine, *request, response), *response);
+  return rpc_port::Finished(engine.limits, context, caller, Count(engine, *request, response),
+                            *response);
 }
 
 }  // namespace thunderhead::service
