@@ -1,0 +1,519 @@
+#include "grib/grid.h"
+
+#include <proj.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "base/status.h"
+#include "grib/octets.h"
+
+namespace thunderhead::grib {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kMicrodegrees = 1e-6;
+constexpr double kMillimetres = 1e-3;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+absl::Status UnreadGrid(std::string_view what) {
+  return absl::InvalidArgumentError(
+      absl::StrCat("its grid ", std::string(what),
+                   "; put the data on a grid of latitudes and longitudes, for example with "
+                   "wgrib2 -new_grid or cdo remap"));
+}
+
+absl::Status BadGrid(std::string_view what) {
+  return absl::DataLossError(
+      absl::StrCat("its grid ", std::string(what), "; the file is damaged: copy it again"));
+}
+
+// The shape of the Earth (code table 3.2).
+struct Earth {
+  double equator_m = 0.0;  // radius at the equator
+  double pole_m = 0.0;     // radius at the poles
+
+  bool IsSphere() const { return equator_m == pole_m; }
+  // Returns the parameters for PROJ.
+  std::string Text() const {
+    return IsSphere() ? absl::StrFormat("+R=%.10g", equator_m)
+                      : absl::StrFormat("+a=%.12g +b=%.12g", equator_m, pole_m);
+  }
+  // Returns the radii of curvature along a meridian and along a parallel, each in m per radian.
+  GridMap::Point Radii_m(double latitude_deg) const {
+    const double sine = std::sin(latitude_deg * kDegree);
+    const double eccentricity2 = 1.0 - pole_m * pole_m / (equator_m * equator_m);
+    const double part = 1.0 - eccentricity2 * sine * sine;
+    const double across_m = equator_m / std::sqrt(part);
+    return {across_m * std::cos(latitude_deg * kDegree), across_m * (1.0 - eccentricity2) / part};
+  }
+};
+
+absl::StatusOr<Earth> EarthOf(const Octets& section) {
+  constexpr double kLeast_m = 1e6;
+  constexpr double kMost_m = 1e8;
+  const auto shape = section.Unsigned(15, 1);
+  const double unit_m = shape == 3 ? 1000.0 : 1.0;
+  Earth earth;
+  switch (shape) {
+    case 0:
+      earth = {6'367'470.0, 6'367'470.0};
+      break;
+    case 1: {
+      const double radius_m = section.Scaled(16, 4);
+      earth = {radius_m, radius_m};
+      break;
+    }
+    case 2:
+      earth = {6'378'160.0, 6'356'775.0};
+      break;
+    case 3:
+    case 7:
+      earth = {unit_m * section.Scaled(21, 4), unit_m * section.Scaled(26, 4)};
+      break;
+    case 4:
+      earth = {6'378'137.0, 6'356'752.314};
+      break;
+    case 5:
+      earth = {6'378'137.0, 6'356'752.3142};
+      break;
+    case 6:
+      earth = {6'371'229.0, 6'371'229.0};
+      break;
+    case 8:
+      earth = {6'371'200.0, 6'371'200.0};
+      break;
+    case 9:
+      earth = {6'377'563.396, 6'356'256.909};
+      break;
+    default:
+      return UnreadGrid(absl::StrCat("has the shape of the Earth ", shape, ", which is not known"));
+  }
+  if (earth.pole_m > kLeast_m && earth.equator_m < kMost_m && earth.pole_m <= earth.equator_m) {
+    return earth;
+  }
+  return BadGrid("has an impossible radius of the Earth");
+}
+
+class LatitudeLongitude final : public GridMap {
+ public:
+  explicit LatitudeLongitude(const Earth& earth) : earth_(earth) {}
+
+  Point PointOf(const Place& place) const override {
+    return {place.longitude_deg, place.latitude_deg};
+  }
+  Place PlaceOf(const Point& point) const override { return {point.y, point.x}; }
+  Point TrueLength_m(const Point& point) const override {
+    const Point radii_m = earth_.Radii_m(point.y);
+    return {radii_m.x * kDegree, radii_m.y * kDegree};
+  }
+
+ private:
+  const Earth earth_;
+};
+
+// Latitudes and longitudes whose south pole is elsewhere. The coordinates are the rotated ones.
+class Rotated final : public GridMap {
+ public:
+  Rotated(const Earth& earth, const Place& south_pole)
+      : radius_m_(earth.equator_m),
+        tilt_((90.0 + south_pole.latitude_deg) * kDegree),
+        longitude_deg_(south_pole.longitude_deg) {}
+
+  Point PointOf(const Place& place) const override {
+    return Turned({place.longitude_deg - longitude_deg_, place.latitude_deg}, -tilt_);
+  }
+  Place PlaceOf(const Point& point) const override {
+    const Point turned = Turned(point, tilt_);
+    return {turned.y, longitude_deg_ + turned.x};
+  }
+  Point TrueLength_m(const Point& point) const override {
+    return {radius_m_ * kDegree * std::cos(point.y * kDegree), radius_m_ * kDegree};
+  }
+
+ private:
+  // Turns the sphere about the axis through longitudes 90 and -90, so that the place at longitude 0
+  // on the equator gets the latitude `angle`.
+  static Point Turned(const Point& point, double angle) {
+    const double longitude = point.x * kDegree;
+    const double latitude = point.y * kDegree;
+    const double x = std::cos(latitude) * std::cos(longitude);
+    const double y = std::cos(latitude) * std::sin(longitude);
+    const double z = std::sin(latitude);
+    const double up = std::clamp(z * std::cos(angle) + x * std::sin(angle), -1.0, 1.0);
+    return {std::atan2(y, x * std::cos(angle) - z * std::sin(angle)) / kDegree,
+            std::asin(up) / kDegree};
+  }
+
+  const double radius_m_;
+  const double tilt_;
+  const double longitude_deg_;
+};
+
+// A map projection in metres.
+class Projected final : public GridMap {
+ public:
+  static std::shared_ptr<const Projected> Of(const std::string& projection) {
+    std::shared_ptr<Projected> map(new Projected);
+    map->context_ = proj_context_create();
+    if (map->context_ == nullptr) return nullptr;
+    proj_log_level(map->context_, PJ_LOG_NONE);
+    map->projection_ = proj_create(map->context_, projection.c_str());
+    return map->projection_ == nullptr ? nullptr : map;
+  }
+  ~Projected() override {
+    proj_destroy(projection_);
+    proj_context_destroy(context_);
+  }
+  Projected(const Projected&) = delete;
+  Projected& operator=(const Projected&) = delete;
+
+  Point PointOf(const Place& place) const override {
+    const PJ_COORD to = proj_trans(projection_, PJ_FWD, Radians(place));
+    if (proj_errno_reset(projection_) != 0) return {kNaN, kNaN};
+    return {to.xy.x, to.xy.y};
+  }
+  Place PlaceOf(const Point& point) const override {
+    const PJ_COORD to = proj_trans(projection_, PJ_INV, proj_coord(point.x, point.y, 0.0, 0.0));
+    if (proj_errno_reset(projection_) != 0) return {kNaN, kNaN};
+    return {to.lp.phi / kDegree, to.lp.lam / kDegree};
+  }
+  Point TrueLength_m(const Point& point) const override {
+    const PJ_FACTORS factors = proj_factors(projection_, Radians(PlaceOf(point)));
+    if (proj_errno_reset(projection_) != 0) return {kNaN, kNaN};
+    // All projections here are conformal, so the scale is the same in all directions.
+    return {1.0 / factors.parallel_scale, 1.0 / factors.parallel_scale};
+  }
+
+ private:
+  Projected() = default;
+  static PJ_COORD Radians(const Place& place) {
+    return proj_coord(place.longitude_deg * kDegree, place.latitude_deg * kDegree, 0.0, 0.0);
+  }
+
+  PJ_CONTEXT* context_ = nullptr;
+  PJ* projection_ = nullptr;
+};
+
+// Reads the scanning mode (flag table 3.4).
+absl::Status ReadScanning(std::uint64_t mode, Grid& grid) {
+  constexpr std::uint64_t kWestwards = 0x80;
+  constexpr std::uint64_t kNorthwards = 0x40;
+  constexpr std::uint64_t kColumnsFirst = 0x20;
+  constexpr std::uint64_t kAlternates = 0x10;
+  constexpr std::uint64_t kStaggered = 0x0F;
+  if ((mode & kStaggered) != 0) return UnreadGrid("has rows that are offset against one another");
+  grid.from_east = (mode & kWestwards) != 0;
+  grid.from_south = (mode & kNorthwards) != 0;
+  grid.columns_first = (mode & kColumnsFirst) != 0;
+  grid.alternates = (mode & kAlternates) != 0;
+  return absl::OkStatus();
+}
+
+absl::Status ReadSize(const Octets& section, Grid& grid) {
+  if (section.Unsigned(11, 1) != 0 || section.IsMissing(31, 4) || section.IsMissing(35, 4)) {
+    return UnreadGrid("has rows of different lengths (a reduced grid)");
+  }
+  const std::uint64_t columns = section.Unsigned(31, 4);
+  const std::uint64_t rows = section.Unsigned(35, 4);
+  const std::uint64_t points = section.Unsigned(7, 4);
+  if (columns == 0 || rows == 0 || columns > points || columns * rows != points) {
+    return BadGrid(absl::StrCat("has ", columns, " x ", rows, " cells but ", points, " points"));
+  }
+  constexpr std::uint64_t kMost = 1'000'000;
+  if (columns > kMost || rows > kMost) {
+    return UnreadGrid(absl::StrCat("has ", columns, " x ", rows, " cells, which are too many"));
+  }
+  grid.columns = static_cast<int>(columns);
+  grid.rows = static_cast<int>(rows);
+  return absl::OkStatus();
+}
+
+// Sets south_west from the first point in the file.
+void SetCorner(const GridMap::Point& first, Grid& grid) {
+  grid.south_west = first;
+  if (grid.from_east) grid.south_west.x -= grid.step.x * (grid.columns - 1);
+  if (!grid.from_south) grid.south_west.y -= grid.step.y * (grid.rows - 1);
+}
+
+GridMap::Point MiddleOf(const Grid& grid) {
+  return {grid.south_west.x + 0.5 * grid.step.x * (grid.columns - 1),
+          grid.south_west.y + 0.5 * grid.step.y * (grid.rows - 1)};
+}
+
+// Sets the place of the middle and the true distances there.
+absl::Status SetMiddle(Grid& grid) {
+  const GridMap::Point middle = MiddleOf(grid);
+  const GridMap::Place place = grid.map->PlaceOf(middle);
+  const GridMap::Point length_m = grid.map->TrueLength_m(middle);
+  grid.latitude_deg = place.latitude_deg;
+  grid.longitude_deg = std::remainder(place.longitude_deg, 360.0);
+  grid.dx_m = grid.step.x * length_m.x;
+  grid.dy_m = grid.step.y * length_m.y;
+  const bool is_known = std::isfinite(grid.latitude_deg) && std::isfinite(grid.longitude_deg) &&
+                        grid.dx_m > 0.0 && grid.dy_m > 0.0 && std::isfinite(grid.dx_m) &&
+                        std::isfinite(grid.dy_m);
+  return is_known ? absl::OkStatus() : BadGrid("has no place in its map projection");
+}
+
+constexpr std::uint64_t kAlongGrid = 0x08;  // flag table 3.3, bit 5
+
+// Returns the step between two coordinates of a grid of latitudes and longitudes in degrees. It is
+// given, or follows from the last coordinate.
+absl::StatusOr<double> StepOf(const Octets& section, std::size_t octet, double unit,
+                              double range_deg, int count, const char* name) {
+  const double from_range_deg = count > 1 ? range_deg / (count - 1) : kNaN;
+  const bool is_given = !section.IsMissing(octet, 4) && section.Unsigned(octet, 4) != 0;
+  const double step_deg =
+      is_given ? unit * static_cast<double>(section.Unsigned(octet, 4)) : from_range_deg;
+  if (!(step_deg > 0.0)) return BadGrid(absl::StrCat("has no distance of its ", name));
+  // Coordinates are rounded to the unit, and longitudes may go around the Earth.
+  if (count > 1 && std::abs(step_deg - from_range_deg) * (count - 1) > step_deg / 2.0) {
+    return BadGrid(absl::StrFormat("has %s %.6g degrees apart, but its corners say %.6g", name,
+                                   step_deg, from_range_deg));
+  }
+  // The range is exact where the step is a rounded number.
+  return count > 1 ? from_range_deg : step_deg;
+}
+
+absl::StatusOr<Grid> ReadLatitudeLongitude(const Octets& section, bool is_rotated) {
+  if (section.Count() < (is_rotated ? 84U : 72U)) return BadGrid("has too few numbers");
+  Grid grid;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadSize(section, grid));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadScanning(section.Unsigned(72, 1), grid));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Earth earth, EarthOf(section));
+  double unit = kMicrodegrees;
+  if (section.Unsigned(39, 4) != 0 && !section.IsMissing(39, 4)) {
+    const std::uint64_t parts = section.Unsigned(43, 4);
+    if (parts == 0 || section.IsMissing(43, 4))
+      return BadGrid("has a unit of angles without parts");
+    unit = static_cast<double>(section.Unsigned(39, 4)) / static_cast<double>(parts);
+  }
+  const auto angle = [&](std::size_t octet) {
+    return unit * static_cast<double>(section.Signed(octet, 4));
+  };
+  const double first_latitude_deg = angle(47);
+  const double last_latitude_deg = angle(56);
+  const double first_longitude_deg = angle(51);
+  constexpr double kPole_deg = 90.0 + 1e-6;
+  if (std::abs(first_latitude_deg) > kPole_deg || std::abs(last_latitude_deg) > kPole_deg) {
+    return BadGrid("reaches beyond a pole");
+  }
+  const double northwards_deg = last_latitude_deg - first_latitude_deg;
+  if (grid.rows > 1 && (northwards_deg > 0.0) != grid.from_south) {
+    return BadGrid("has rows in another direction than its corners");
+  }
+  double eastwards_deg = angle(60) - first_longitude_deg;
+  if (grid.from_east) eastwards_deg = -eastwards_deg;
+  eastwards_deg = std::fmod(eastwards_deg, 360.0);
+  if (eastwards_deg < 0.0 || (eastwards_deg == 0.0 && grid.columns > 1)) eastwards_deg += 360.0;
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      grid.step.x, StepOf(section, 64, unit, eastwards_deg, grid.columns, "longitudes"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      grid.step.y, StepOf(section, 68, unit, std::abs(northwards_deg), grid.rows, "latitudes"));
+  grid.wind_along_grid = (section.Unsigned(55, 1) & kAlongGrid) != 0;
+  SetCorner({first_longitude_deg, first_latitude_deg}, grid);
+  const double middle_deg = MiddleOf(grid).y;
+  if (is_rotated) {
+    if (section.Unsigned(81, 4) != 0) return UnreadGrid("is turned about its rotated pole");
+    const GridMap::Place south_pole{angle(73), angle(77)};
+    grid.map = std::make_shared<Rotated>(earth, south_pole);
+    grid.projection = absl::StrFormat(
+        "+proj=ob_tran +o_proj=eqc +o_lat_p=%.10g +o_lon_p=0 +lon_0=%.10g +lat_ts=%.10g %s "
+        "+units=m +no_defs",
+        -south_pole.latitude_deg, std::remainder(south_pole.longitude_deg, 360.0), middle_deg,
+        earth.Text());
+    if (!earth.IsSphere()) return UnreadGrid("is rotated on an ellipsoid");
+  } else {
+    grid.map = std::make_shared<LatitudeLongitude>(earth);
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(SetMiddle(grid));
+  if (!is_rotated) {
+    grid.projection = absl::StrFormat(
+        "+proj=eqc +lat_ts=%.10g +lat_0=%.10g +lon_0=%.10g +x_0=0 +y_0=0 %s +units=m +no_defs",
+        grid.latitude_deg, grid.latitude_deg, grid.longitude_deg, earth.Text());
+  }
+  return grid;
+}
+
+// The places of a projection's numbers in section 3.
+struct ProjectedLayout {
+  std::size_t least_octets;
+  std::size_t scanning;
+  std::size_t dx;
+  std::size_t dy;
+};
+
+absl::StatusOr<Grid> ReadProjected(const Octets& section, const ProjectedLayout& layout,
+                                   const std::string& projection) {
+  if (section.Count() < layout.least_octets) return BadGrid("has too few numbers");
+  Grid grid;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadSize(section, grid));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadScanning(section.Unsigned(layout.scanning, 1), grid));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Earth earth, EarthOf(section));
+  grid.projection = absl::StrCat(projection, " +x_0=0 +y_0=0 ", earth.Text(), " +units=m +no_defs");
+  grid.map = Projected::Of(grid.projection);
+  if (grid.map == nullptr) {
+    return BadGrid(absl::StrCat("has an impossible map projection (", grid.projection, ")"));
+  }
+  grid.step = {kMillimetres * static_cast<double>(section.Unsigned(layout.dx, 4)),
+               kMillimetres * static_cast<double>(section.Unsigned(layout.dy, 4))};
+  grid.wind_along_grid = (section.Unsigned(47, 1) & kAlongGrid) != 0;
+  const GridMap::Place first{kMicrodegrees * static_cast<double>(section.Signed(39, 4)),
+                             kMicrodegrees * static_cast<double>(section.Signed(43, 4))};
+  SetCorner(grid.map->PointOf(first), grid);
+  THUNDERHEAD_RETURN_IF_ERROR(SetMiddle(grid));
+  return grid;
+}
+
+double Degrees(const Octets& section, std::size_t octet) {
+  return kMicrodegrees * static_cast<double>(section.Signed(octet, 4));
+}
+
+absl::StatusOr<Grid> ReadMercator(const Octets& section) {
+  constexpr ProjectedLayout kLayout{72, 60, 65, 69};
+  if (section.Unsigned(61, 4) != 0) return UnreadGrid("is turned on the Mercator map");
+  // The middle meridian is that of the first point, so that the grid crosses no edge of the map.
+  const double first_deg = Degrees(section, 43);
+  return ReadProjected(section, kLayout,
+                       absl::StrFormat("+proj=merc +lat_ts=%.10g +lon_0=%.10g",
+                                       Degrees(section, 48), std::remainder(first_deg, 360.0)));
+}
+
+absl::StatusOr<Grid> ReadPolarStereographic(const Octets& section) {
+  constexpr ProjectedLayout kLayout{65, 65, 56, 60};
+  constexpr std::uint64_t kSouthPole = 0x80;
+  const bool is_south = (section.Unsigned(64, 1) & kSouthPole) != 0;
+  const double true_deg = Degrees(section, 48);
+  return ReadProjected(
+      section, kLayout,
+      absl::StrFormat("+proj=stere +lat_0=%d +lat_ts=%.10g +lon_0=%.10g", is_south ? -90 : 90,
+                      is_south ? -std::abs(true_deg) : true_deg,
+                      std::remainder(Degrees(section, 52), 360.0)));
+}
+
+absl::StatusOr<Grid> ReadLambert(const Octets& section) {
+  constexpr ProjectedLayout kLayout{81, 65, 56, 60};
+  const double first_deg = Degrees(section, 66);
+  const double second_deg = Degrees(section, 70);
+  const double true_deg = Degrees(section, 48);
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      Grid grid,
+      ReadProjected(section, kLayout,
+                    absl::StrFormat("+proj=lcc +lat_1=%.10g +lat_2=%.10g +lat_0=%.10g +lon_0=%.10g",
+                                    first_deg, second_deg, true_deg,
+                                    std::remainder(Degrees(section, 52), 360.0))));
+  if (true_deg != first_deg && true_deg != second_deg) {
+    grid.assumptions.push_back(
+        absl::StrFormat("The grid's spacing is assumed to be that of the map, which is true at "
+                        "latitudes %.6g and %.6g, although the file names latitude %.6g.",
+                        first_deg, second_deg, true_deg));
+  }
+  return grid;
+}
+
+std::string NameOfTemplate(std::uint64_t number) {
+  switch (number) {
+    case 4:
+    case 5:
+      return "has latitudes or longitudes at uneven distances";
+    case 12:
+      return "is on a transverse Mercator map";
+    case 31:
+      return "is on an Albers map";
+    case 40:
+    case 41:
+    case 42:
+    case 43:
+      return "is Gaussian";
+    case 50:
+    case 51:
+    case 52:
+    case 53:
+      return "is spectral (spherical harmonics)";
+    case 90:
+      return "is a satellite's view";
+    case 100:
+    case 101:
+      return "is unstructured (ICON's triangles)";
+    case 140:
+      return "is on a Lambert map of equal areas";
+    case 150:
+      return "is HEALPix";
+    case 32768:
+    case 32769:
+      return "is NCEP's rotated Arakawa grid (32768, 32769), whose rows may be offset";
+    default:
+      return "is of a kind that is not known";
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<Grid> ReadGrid(std::span<const std::byte> section3) {
+  const Octets section(section3);
+  if (section.Count() < 14) return BadGrid("has too few numbers");
+  const std::uint64_t number = section.Unsigned(13, 2);
+  if (section.Unsigned(6, 1) != 0) return UnreadGrid("is not described in the file");
+  switch (number) {
+    case 0:
+    case 1:
+      return ReadLatitudeLongitude(section, number == 1);
+    case 10:
+      return ReadMercator(section);
+    case 20:
+      return ReadPolarStereographic(section);
+    case 30:
+      return ReadLambert(section);
+    default:
+      return UnreadGrid(
+          absl::StrCat(NameOfTemplate(number), " (template 3.", number, "), which is not read"));
+  }
+}
+
+std::vector<float> Arranged(const Grid& grid, std::vector<float> values) {
+  if (grid.from_south && !grid.from_east && !grid.columns_first && !grid.alternates) return values;
+  std::vector<float> arranged(values.size());
+  const auto columns = static_cast<std::size_t>(grid.columns);
+  const auto rows = static_cast<std::size_t>(grid.rows);
+  const std::size_t along = grid.columns_first ? rows : columns;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::size_t line = i / along;
+    std::size_t place = i % along;
+    if (grid.alternates && line % 2 == 1) place = along - 1 - place;
+    std::size_t x = grid.columns_first ? line : place;
+    std::size_t y = grid.columns_first ? place : line;
+    if (grid.from_east) x = columns - 1 - x;
+    if (!grid.from_south) y = rows - 1 - y;
+    arranged[y * columns + x] = values[i];
+  }
+  return arranged;
+}
+
+std::vector<float> AxisAngles(const Grid& grid) {
+  std::vector<float> angles;
+  if (dynamic_cast<const LatitudeLongitude*>(grid.map.get()) != nullptr) return angles;
+  angles.reserve(grid.Points());
+  constexpr double kShare = 0.01;  // of a cell, for the direction
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const GridMap::Point point{grid.south_west.x + grid.step.x * column,
+                                 grid.south_west.y + grid.step.y * row};
+      const GridMap::Place from = grid.map->PlaceOf(point);
+      const GridMap::Place to = grid.map->PlaceOf({point.x + kShare * grid.step.x, point.y});
+      const double north = to.latitude_deg - from.latitude_deg;
+      const double east = std::remainder(to.longitude_deg - from.longitude_deg, 360.0) *
+                          std::cos(from.latitude_deg * kDegree);
+      angles.push_back(static_cast<float>(std::atan2(north, east)));
+    }
+  }
+  return angles;
+}
+
+}  // namespace thunderhead::grib

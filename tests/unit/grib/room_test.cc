@@ -1,0 +1,499 @@
+// Tests of the room server/grib: index, decompression, packings and grids, with messages that are
+// written here.
+#include <bzlib.h>
+#include <eccodes.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "grib/decompressed.h"
+#include "grib/grid.h"
+#include "grib/index.h"
+#include "grib/packing_check.h"
+#include "grib/values.h"
+#include "tests/unit/grib/messages.h"
+
+namespace thunderhead::grib {
+namespace {
+
+using testing::BytesIn;
+using testing::BytesOf;
+using ::testing::ElementsAre;
+using testing::GridOf;
+using ::testing::HasSubstr;
+using testing::LatLon;
+using testing::Message;
+using testing::Number;
+using ::testing::Pointwise;
+
+Message Small() {
+  Message message;
+  message.grid = GridOf({});
+  message.points = 4;
+  message.values = {0.0F, 1.0F, 2.0F, 3.0F};
+  return message;
+}
+
+std::string ErrorOf(const std::string& bytes) {
+  return std::string(ReadIndex(*BytesIn(bytes)).status().message());
+}
+
+absl::StatusOr<std::vector<float>> ValuesOf(const std::string& bytes, std::size_t field = 0) {
+  const auto file = BytesIn(bytes);
+  const auto index = ReadIndex(*file);
+  if (!index.ok()) return index.status();
+  return DecodeValues(*file, index->fields[field]);
+}
+
+TEST(GribIndex, TellsWhatAFieldIs) {
+  Message message = Small();
+  message.category = 1;
+  message.number = 82;
+  message.unit = 0;
+  message.forecast = 90;
+  message.member = 7;
+  message.level = {150, 12, 0, 150, 13};
+  const auto index = ReadIndex(*BytesIn(BytesOf(message)));
+  ASSERT_TRUE(index.ok()) << index.status();
+  ASSERT_EQ(index->fields.size(), 1U);
+  const Field& field = index->fields[0];
+  EXPECT_EQ(NumbersOf(field.parameter), "0/1/82");
+  EXPECT_EQ(field.origin.centre, 7);
+  EXPECT_EQ(field.process, 83);
+  EXPECT_EQ(field.Valid(),
+            absl::FromCivil(absl::CivilMinute(2024, 5, 20, 22, 30), absl::UTCTimeZone()));
+  EXPECT_EQ(field.member, 7);
+  EXPECT_EQ(field.first.type, 150);
+  EXPECT_EQ(field.first.value, 12.0);
+  EXPECT_EQ(field.second.value, 13.0);
+  EXPECT_TRUE(field.is_instant);
+}
+
+TEST(GribIndex, ReadsEachUnitOfTime) {
+  const std::vector<std::pair<int, absl::Duration>> units = {
+      {0, absl::Minutes(1)}, {1, absl::Hours(1)},   {2, absl::Hours(24)},  {10, absl::Hours(3)},
+      {11, absl::Hours(6)},  {12, absl::Hours(12)}, {13, absl::Seconds(1)}};
+  for (const auto& [unit, length] : units) {
+    Message message = Small();
+    message.unit = unit;
+    message.forecast = 5;
+    const auto index = ReadIndex(*BytesIn(BytesOf(message)));
+    ASSERT_TRUE(index.ok()) << index.status();
+    EXPECT_EQ(index->fields[0].forecast, 5 * length) << unit;
+  }
+  // A month has no fixed length.
+  Message message = Small();
+  message.unit = 3;
+  EXPECT_FALSE(ReadIndex(*BytesIn(BytesOf(message)))->fields[0].is_instant);
+}
+
+// NCEP puts both components of the wind into one message, and later ones may use an earlier bitmap.
+TEST(GribIndex, ReadsRepeatedSections) {
+  Message u = Small();
+  u.category = 2;
+  u.number = 2;
+  u.values = {5.0F, 6.0F, 7.0F};
+  u.bitmap = std::string(1, '\xD0');
+  Message v = u;
+  v.number = 3;
+  v.values = {8.0F, 9.0F, 10.0F};
+  const std::string sections = Section1(u) + testing::Section(3, u.grid) + Section4(u) +
+                               Section5(u) + Section6(u) + Section7(u) + Section4(v) + Section5(v) +
+                               testing::Section(6, Number(254, 1)) + Section7(v);
+  const std::string bytes = testing::Whole(0, sections);
+  const auto first = ValuesOf(bytes, 0);
+  const auto second = ValuesOf(bytes, 1);
+  ASSERT_TRUE(first.ok()) << first.status();
+  ASSERT_TRUE(second.ok()) << second.status();
+  EXPECT_THAT(*first, Pointwise(::testing::NanSensitiveFloatEq(), {5.0F, 6.0F, NAN, 7.0F}));
+  EXPECT_THAT(*second, Pointwise(::testing::NanSensitiveFloatEq(), {8.0F, 9.0F, NAN, 10.0F}));
+}
+
+TEST(GribIndex, ReadsAroundBulletinHeaders) {
+  const std::string message = BytesOf(Small());
+  const std::string file =
+      "\001\r\r\n123\r\r\nYTXX KWBC\r\r\n" + message + "\r\r\n\003" + message + "\n";
+  const auto index = ReadIndex(*BytesIn(file));
+  ASSERT_TRUE(index.ok()) << index.status();
+  EXPECT_EQ(index->fields.size(), 2U);
+  EXPECT_TRUE(BeginsLikeGrib(file));
+}
+
+TEST(GribIndex, NamesDamage) {
+  const std::string whole = BytesOf(Small());
+  const std::string cut = whole.substr(0, whole.size() - 9);
+  EXPECT_THAT(ErrorOf(cut), HasSubstr("it was cut short"));
+  EXPECT_THAT(ErrorOf(whole + cut), HasSubstr("within the GRIB message at byte "));
+  std::string bad_end = whole;
+  bad_end.back() = '8';
+  EXPECT_THAT(ErrorOf(bad_end), HasSubstr("does not end with 7777"));
+  std::string bad_section = whole;
+  bad_section[16 + 21 + 1] = '\x7F';  // length of section 3
+  EXPECT_THAT(ErrorOf(bad_section), HasSubstr("section 3 of "));
+  std::string first_edition = whole;
+  first_edition[7] = 1;
+  EXPECT_THAT(ErrorOf(first_edition), HasSubstr("GRIB edition 1"));
+  Message no_date = Small();
+  no_date.month = 13;
+  EXPECT_THAT(ErrorOf(BytesOf(no_date)), HasSubstr("2024-13-20 21:0:0, which does not exist"));
+  EXPECT_THAT(ErrorOf("no message at all, but a text"), HasSubstr("has no GRIB message"));
+  EXPECT_THAT(ErrorOf(""), HasSubstr("has no GRIB message"));
+}
+
+TEST(GribIndex, ReportsEveryCutMessage) {
+  const std::string whole = BytesOf(Small());
+  for (std::size_t bytes = 4; bytes < whole.size(); ++bytes) {
+    EXPECT_EQ(ReadIndex(*BytesIn(whole.substr(0, bytes))).status().code(),
+              absl::StatusCode::kDataLoss)
+        << bytes;
+  }
+}
+
+std::string Bz2(const std::string& text) {
+  std::string packed(text.size() * 2 + 1000, '\0');
+  auto size = static_cast<unsigned>(packed.size());
+  EXPECT_EQ(BZ2_bzBuffToBuffCompress(packed.data(), &size, const_cast<char*>(text.data()),
+                                     static_cast<unsigned>(text.size()), 9, 0, 0),
+            BZ_OK);
+  packed.resize(size);
+  return packed;
+}
+
+std::string Gz(const std::string& text) {
+  z_stream stream{};
+  constexpr int kGzip = 16;
+  EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, kGzip + MAX_WBITS, 8, Z_DEFAULT_STRATEGY), Z_OK);
+  std::string packed(text.size() * 2 + 1000, '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+  stream.avail_in = static_cast<uInt>(text.size());
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  return packed;
+}
+
+std::string TextOf(const base::ByteSource& file) {
+  std::string text(file.Size_bytes(), '\0');
+  EXPECT_TRUE(file.Read(0, std::as_writable_bytes(std::span(text))).ok());
+  return text;
+}
+
+TEST(GribDecompression, ReadsBz2AndGz) {
+  const std::string message = BytesOf(Small());
+  for (const std::string& packed : {Bz2(message), Gz(message), Bz2(message) + Bz2(message)}) {
+    const auto file = Decompressed(BytesIn(packed));
+    ASSERT_TRUE(file.ok()) << file.status();
+    EXPECT_THAT(TextOf(**file), ::testing::StartsWith(message));
+    EXPECT_EQ((*file)->Size_bytes() % message.size(), 0U);
+    EXPECT_TRUE(BeginsCompressed(packed));
+  }
+  EXPECT_EQ(TextOf(**Decompressed(BytesIn(message))), message);
+}
+
+TEST(GribDecompression, NamesDamage) {
+  const std::string message = BytesOf(Small());
+  for (const std::string& packed : {Bz2(message), Gz(message)}) {
+    for (std::size_t bytes = 4; bytes < packed.size(); ++bytes) {
+      const auto file = Decompressed(BytesIn(packed.substr(0, bytes)));
+      ASSERT_EQ(file.status().code(), absl::StatusCode::kDataLoss) << bytes << file.status();
+    }
+    EXPECT_THAT(
+        std::string(Decompressed(BytesIn(packed.substr(0, packed.size() / 2))).status().message()),
+        HasSubstr("ends early; copy it again"));
+  }
+  EXPECT_THAT(std::string(Decompressed(BytesIn(Bz2("a text"))).status().message()),
+              HasSubstr("is a bz2 file without a GRIB message"));
+}
+
+// A few kilobytes can hold gigabytes.
+TEST(GribDecompression, LimitsTheSize) {
+  const std::string bomb = BytesOf(Small()) + std::string(50'000'000, '\0');
+  for (const std::string& packed : {Bz2(bomb), Gz(bomb)}) {
+    const auto file = Decompressed(BytesIn(packed), 10'000'000);
+    EXPECT_EQ(file.status().code(), absl::StatusCode::kResourceExhausted);
+    EXPECT_THAT(std::string(file.status().message()), HasSubstr("exceed 10000000 bytes"));
+  }
+}
+
+TEST(GribValues, AreRead) {
+  EXPECT_THAT(*ValuesOf(BytesOf(Small())), ElementsAre(0.0F, 1.0F, 2.0F, 3.0F));
+  Message constant = Small();
+  constant.values = {9999.0F};  // the value by which ecCodes means "missing"
+  EXPECT_THAT(*ValuesOf(BytesOf(constant)), ElementsAre(9999.0F, 9999.0F, 9999.0F, 9999.0F));
+  Message bitmap = Small();
+  bitmap.values = {7.0F, 8.0F};
+  bitmap.bitmap = std::string(1, '\x60');
+  EXPECT_THAT(*ValuesOf(BytesOf(bitmap)),
+              Pointwise(::testing::NanSensitiveFloatEq(), {NAN, 7.0F, 8.0F, NAN}));
+  Message empty = Small();
+  empty.values.clear();
+  empty.bitmap = std::string(1, '\0');
+  EXPECT_THAT(*ValuesOf(BytesOf(empty)),
+              Pointwise(::testing::NanSensitiveFloatEq(), {NAN, NAN, NAN, NAN}));
+}
+
+TEST(GribValues, FewBytesMayNotAnnounceManyValues) {
+  Message bomb = Small();
+  LatLon grid;
+  grid.columns = 50'000;
+  grid.rows = 50'000;
+  bomb.grid = GridOf(grid);
+  bomb.points = 2'500'000'000;
+  bomb.values = {1.0F};
+  EXPECT_EQ(ValuesOf(BytesOf(bomb)).status().code(), absl::StatusCode::kResourceExhausted);
+  bomb.values = {1.0F, 2.0F};
+  EXPECT_FALSE(ValuesOf(BytesOf(bomb)).ok());
+}
+
+std::vector<std::byte> AsBytes(const std::string& text) {
+  const auto* const begin = reinterpret_cast<const std::byte*>(text.data());
+  return {begin, begin + text.size()};
+}
+
+// Packs 4096 values by ecCodes, and returns sections 5 to 7 within a message of ours.
+std::string PackedBy(const char* packing, const std::vector<double>& values) {
+  codes_handle* const handle = codes_grib_handle_new_from_samples(nullptr, "regular_ll_sfc_grib2");
+  EXPECT_NE(handle, nullptr);
+  EXPECT_EQ(codes_set_long(handle, "Ni", 64), 0);
+  EXPECT_EQ(codes_set_long(handle, "Nj", 64), 0);
+  EXPECT_EQ(codes_set_long(handle, "bitsPerValue", 16), 0);
+  std::size_t length = std::strlen(packing);
+  EXPECT_EQ(codes_set_double_array(handle, "values", values.data(), values.size()), 0);
+  EXPECT_EQ(codes_set_string(handle, "packingType", packing, &length), 0) << packing;
+  EXPECT_EQ(codes_set_double_array(handle, "values", values.data(), values.size()), 0);
+  const void* bytes = nullptr;
+  std::size_t size = 0;
+  EXPECT_EQ(codes_get_message(handle, &bytes, &size), 0);
+  std::string message(static_cast<const char*>(bytes), size);
+  codes_handle_delete(handle);
+  return message;
+}
+
+struct NamedPacking {
+  const char* name;  // in ecCodes
+  Packing packing;
+};
+
+class GribPacking : public ::testing::TestWithParam<NamedPacking> {};
+INSTANTIATE_TEST_SUITE_P(Packings, GribPacking,
+                         ::testing::Values(NamedPacking{"grid_simple", Packing::kSimple},
+                                           NamedPacking{"grid_ieee", Packing::kIeee},
+                                           NamedPacking{"grid_jpeg", Packing::kJpeg2000},
+                                           NamedPacking{"grid_png", Packing::kPng},
+                                           NamedPacking{"grid_ccsds", Packing::kCcsds},
+                                           NamedPacking{"grid_second_order",
+                                                        Packing::kSecondOrder}),
+                         [](const auto& parameter) { return std::string(parameter.param.name); });
+
+TEST_P(GribPacking, IsReadWithinItsStep) {
+  ASSERT_TRUE(PrepareBeforeConfinement().ok());
+  std::vector<double> values(4096);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = 280.0 + 20.0 * std::sin(0.01 * static_cast<double>(i));
+  }
+  const std::string message = PackedBy(GetParam().name, values);
+  EXPECT_EQ(ReadIndex(*BytesIn(message))->fields[0].packing, static_cast<int>(GetParam().packing));
+  const auto read = ValuesOf(message);
+  ASSERT_TRUE(read.ok()) << read.status();
+  ASSERT_EQ(read->size(), values.size());
+  constexpr double kStep = 40.0 / 65535;
+  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_NEAR((*read)[i], values[i], kStep) << i;
+}
+
+// Whatever one changed byte does, the process continues, and returns values or one error.
+TEST_P(GribPacking, SurvivesDamage) {
+  std::vector<double> values(4096);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i % 97);
+  const std::string whole = PackedBy(GetParam().name, values);
+  const auto index = ReadIndex(*BytesIn(whole));
+  ASSERT_TRUE(index.ok()) << index.status();
+  const Field& field = index->fields[0];
+  std::size_t errors = 0;
+  const auto damage = [&](std::size_t at, unsigned mask) {
+    std::string damaged = whole;
+    damaged[at] = static_cast<char>(static_cast<unsigned char>(damaged[at]) ^ mask);
+    const auto read = ValuesOf(damaged);
+    errors += read.ok() ? 0 : 1;
+    EXPECT_EQ(read.value_or(std::vector<float>(values.size())).size(), values.size());
+  };
+  const std::size_t begin = field.packing_section.offset;
+  const std::size_t data = field.data_section.offset;
+  for (std::size_t at = begin; at < begin + field.packing_section.size_bytes; ++at) {
+    for (const unsigned mask : {1U, 0x80U, 0xFFU}) damage(at, mask);
+  }
+  for (std::size_t at = data; at < data + 60; ++at) damage(at, 0xFF);
+  EXPECT_GT(errors, 10U);
+}
+
+// Packs groups of template 5.2 or 5.3: references 10, 20 and 30 of 8 bits, and 3 + 2 + 3 values of
+// 2 bits each.
+struct Groups {
+  int order = 0;  // of spatial differences; 0 for template 5.2
+  std::int64_t values = 8;
+  std::int64_t groups = 3;
+  int widths = 2;
+  std::vector<int> lengths = {3, 2, 3};
+  std::int64_t last_length = 3;
+  int cut_bytes = 0;
+};
+
+absl::Status CheckGroups(const Groups& groups) {
+  std::string section5 = Number(groups.values, 4) + Number(groups.order > 0 ? 3 : 2, 2) +
+                         testing::Float(0.0F) + Number(0, 2) + Number(0, 2) + Number(8, 1) +
+                         Number(0, 1) + Number(1, 1) + Number(0, 1) + Number(0, 8) +
+                         Number(groups.groups, 4) + Number(groups.widths, 1) + Number(0, 1) +
+                         Number(0, 4) + Number(1, 1) + Number(groups.last_length, 4) + Number(8, 1);
+  std::string data;
+  if (groups.order > 0) {
+    section5 += Number(groups.order, 1) + Number(1, 1);
+    data += std::string(static_cast<std::size_t>(groups.order) + 1, '\1');
+  }
+  data += Number(10, 1) + Number(20, 1) + Number(30, 1);
+  for (const int length : groups.lengths) data += Number(length, 1);
+  data += std::string(2 - static_cast<std::size_t>(groups.cut_bytes), '\x55');
+  const auto packing = AsBytes(testing::Section(5, section5));
+  const auto packed = AsBytes(testing::Section(7, data));
+  return CheckPacked({static_cast<std::uint64_t>(groups.values), packing, {}, packed});
+}
+
+TEST(GribGroups, MustAddUp) {
+  for (const int order : {0, 1, 2}) {
+    const auto message = [&](Groups groups) {
+      groups.order = order;
+      return std::string(CheckGroups(groups).message());
+    };
+    EXPECT_EQ(message({}), "") << order;
+    EXPECT_THAT(message({.lengths = {3, 7, 3}}), HasSubstr("groups for more values than the 8"));
+    EXPECT_THAT(message({.lengths = {3, 1, 3}}), HasSubstr("groups for fewer values than the 8"));
+    EXPECT_THAT(message({.last_length = 4}), HasSubstr("groups for more values than the 8"));
+    EXPECT_THAT(message({.groups = 9}), HasSubstr("9 groups for 8 values"));
+    EXPECT_THAT(message({.groups = 8}), HasSubstr("end before their groups"));
+    EXPECT_THAT(message({.widths = 33}), HasSubstr("a group of 33 bits"));
+    EXPECT_THAT(message({.widths = 3}), HasSubstr("end before their last group"));
+    EXPECT_THAT(message({.cut_bytes = 1}), HasSubstr("end before their last group"));
+  }
+  EXPECT_THAT(std::string(CheckGroups({.order = 3}).message()), HasSubstr("of order 3"));
+}
+
+TEST(GribGrid, PlacesTheMiddleOfLatitudesAndLongitudes) {
+  LatLon layout;
+  layout.columns = 5;
+  layout.rows = 3;
+  layout.first_latitude = 50'000'000;
+  layout.first_longitude = 359'000'000;
+  layout.scanning = 0;
+  Message message = Small();
+  message.grid = GridOf(layout);
+  const auto grid = ReadGrid(AsBytes(testing::Section(3, message.grid)));
+  ASSERT_TRUE(grid.ok()) << grid.status();
+  EXPECT_NEAR(grid->latitude_deg, 49.0, 1e-9);
+  EXPECT_NEAR(grid->longitude_deg, 1.0, 1e-9);
+  EXPECT_NEAR(grid->dy_m, 6'371'229.0 * std::numbers::pi / 180.0, 0.01);
+  EXPECT_NEAR(grid->dx_m, grid->dy_m * std::cos(49.0 * std::numbers::pi / 180.0), 0.01);
+}
+
+// Each scanning mode describes the same field, so all give the same order.
+TEST(GribGrid, ArrangesEveryScanningMode) {
+  constexpr int kColumns = 3;
+  constexpr int kRows = 2;
+  for (const int mode : {0x00, 0x40, 0x80, 0xC0, 0x20, 0x60, 0xA0, 0xE0, 0x10, 0x50, 0x90, 0x70}) {
+    Grid grid;
+    grid.columns = kColumns;
+    grid.rows = kRows;
+    grid.from_east = (mode & 0x80) != 0;
+    grid.from_south = (mode & 0x40) != 0;
+    grid.columns_first = (mode & 0x20) != 0;
+    grid.alternates = (mode & 0x10) != 0;
+    // Writes the points in the file's order: the value tells column and row.
+    std::vector<float> values;
+    const int lines = grid.columns_first ? kColumns : kRows;
+    const int along = grid.columns_first ? kRows : kColumns;
+    for (int line = 0; line < lines; ++line) {
+      for (int step = 0; step < along; ++step) {
+        const int place = grid.alternates && line % 2 == 1 ? along - 1 - step : step;
+        int x = grid.columns_first ? line : place;
+        int y = grid.columns_first ? place : line;
+        if (grid.from_east) x = kColumns - 1 - x;
+        if (!grid.from_south) y = kRows - 1 - y;
+        values.push_back(static_cast<float>(10 * y + x));
+      }
+    }
+    EXPECT_THAT(Arranged(grid, values), ElementsAre(0.0F, 1.0F, 2.0F, 10.0F, 11.0F, 12.0F)) << mode;
+  }
+}
+
+// The first point of rows from north to south is the north-west one, so the grid lies south of it.
+TEST(GribGrid, ReadsLambertGridsFromNorthToSouth) {
+  // 101 x 51 points of 2 km, tangent at 45 N 10 E, which is the middle of the grid.
+  const auto section = [](double latitude_deg, double longitude_deg, int scanning) {
+    const auto micro = [](double degrees) { return static_cast<int>(std::lround(degrees * 1e6)); };
+    return AsBytes(testing::Section(
+        3, Number(0, 1) + Number(101 * 51, 4) + Number(0, 2) + Number(30, 2) + Number(6, 1) +
+               Number(0, 15) + Number(101, 4) + Number(51, 4) + Number(micro(latitude_deg), 4) +
+               Number(micro(longitude_deg), 4) + Number(0x08, 1) + Number(45'000'000, 4) +
+               Number(10'000'000, 4) + Number(2'000'000, 4) + Number(2'000'000, 4) + Number(0, 1) +
+               Number(scanning, 1) + Number(45'000'000, 4) + Number(45'000'000, 4) +
+               Number(-90'000'000, 4) + Number(0, 4)));
+  };
+  const auto centred = ReadGrid(section(45.0, 10.0, 0x40));
+  ASSERT_TRUE(centred.ok()) << centred.status();
+  // The place of the point 100 km west and 50 km north of the tangent point is the first one.
+  const GridMap::Place north_west = centred->map->PlaceOf({-100'000.0, 50'000.0});
+  const auto grid = ReadGrid(section(north_west.latitude_deg, north_west.longitude_deg, 0));
+  ASSERT_TRUE(grid.ok()) << grid.status();
+  EXPECT_NEAR(grid->latitude_deg, 45.0, 1e-5);
+  EXPECT_NEAR(grid->longitude_deg, 10.0, 1e-5);
+  EXPECT_NEAR(grid->dx_m, 2000.0, 0.01);
+  EXPECT_TRUE(grid->wind_along_grid);
+  // North of the tangent point the map is wider than the Earth.
+  const auto far = ReadGrid(section(55.0, 10.0, 0x40));
+  ASSERT_TRUE(far.ok()) << far.status();
+  EXPECT_LT(far->dx_m, 1980.0);
+}
+
+TEST(GribGrid, NamesGridsThatAreNotRead) {
+  const auto error = [](int number) {
+    return std::string(
+        ReadGrid(AsBytes(testing::Section(3, Number(0, 1) + Number(4, 4) + Number(0, 2) +
+                                                 Number(number, 2) + std::string(90, '\0'))))
+            .status()
+            .message());
+  };
+  EXPECT_THAT(error(40), HasSubstr("is Gaussian (template 3.40)"));
+  EXPECT_THAT(error(101), HasSubstr("ICON's triangles"));
+  EXPECT_THAT(error(32769), HasSubstr("32769"));
+  EXPECT_THAT(error(4711), HasSubstr("of a kind that is not known (template 3.4711)"));
+}
+
+// A rotated grid whose rotated equator passes through its middle has the same distances there.
+TEST(GribGrid, TurnsRotatedGrids) {
+  LatLon layout;
+  layout.columns = 3;
+  layout.rows = 3;
+  layout.first_latitude = -1'000'000;
+  layout.first_longitude = -1'000'000;
+  layout.flags = 0x38;
+  std::string grid_text = GridOf(layout);
+  grid_text.replace(7, 2, Number(1, 2));
+  grid_text += Number(-40'000'000, 4) + Number(10'000'000, 4) + Number(0, 4);
+  const auto grid = ReadGrid(AsBytes(testing::Section(3, grid_text)));
+  ASSERT_TRUE(grid.ok()) << grid.status();
+  EXPECT_NEAR(grid->latitude_deg, 50.0, 1e-9);
+  EXPECT_NEAR(grid->longitude_deg, 10.0, 1e-9);
+  EXPECT_NEAR(grid->dx_m, 111'198.9, 0.2);
+  const GridMap::Point back = grid->map->PointOf(grid->map->PlaceOf({0.7, -0.3}));
+  EXPECT_NEAR(back.x, 0.7, 1e-9);
+  EXPECT_NEAR(back.y, -0.3, 1e-9);
+  const std::vector<float> angles = AxisAngles(*grid);
+  ASSERT_EQ(angles.size(), 9U);
+  EXPECT_NEAR(angles[4], 0.0F, 1e-3F);    // in the middle, x points east
+  EXPECT_GT(std::abs(angles[3]), 0.01F);  // at the western side, it does not
+}
+
+}  // namespace
+}  // namespace thunderhead::grib
