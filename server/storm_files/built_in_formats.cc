@@ -1,5 +1,6 @@
 // The list of storm formats. A new format needs a separate file, and a line here.
 #include "storm_files/cf_format.h"
+#include "storm_files/grib_format.h"
 #include "storm_files/storm_format.h"
 #include "storm_files/wrf_format.h"
 
@@ -9,6 +10,7 @@ StormFormats StormFormats::BuiltIn() {
   StormFormats formats;
   formats.Add(MakeWrfFormat());
   formats.Add(MakeCfFormat());
+  formats.Add(MakeGribFormat());
   return formats;
 }
 

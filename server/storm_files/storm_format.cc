@@ -75,6 +75,14 @@ absl::Status StormFormats::CheckStart(const std::string& path, int file) const {
   return known ? absl::OkStatus() : netcdf::NetcdfFile::CheckStart(path, file);
 }
 
+absl::Status StormFormats::PrepareBeforeConfinement(std::string_view start) const {
+  for (const std::shared_ptr<const StormFormat>& format : formats_) {
+    if (!format->MayBegin(start)) continue;
+    THUNDERHEAD_RETURN_IF_ERROR(format->PrepareBeforeConfinement());
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<StormFile> StormFormat::DescribeTogether(
     const std::vector<UnknownFile>& files) const {
   return absl::InternalError(absl::StrCat(files.front().Path(), ": ", std::string(Name()),

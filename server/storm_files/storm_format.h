@@ -72,6 +72,9 @@ class StormFormat {
   // is checked elsewhere.
   virtual bool MayBegin(std::string_view start) const;
 
+  // Loads the files that the format's libraries need, for a process that then may open no file.
+  virtual absl::Status PrepareBeforeConfinement() const { return absl::OkStatus(); }
+
   // Checks the file quickly. Reads no fields and never fails.
   virtual FormatFit Sniff(const UnknownFile& file) const = 0;
 
@@ -111,6 +114,10 @@ class StormFormats {
   // no format's files. Returns UNAVAILABLE while another program writes it and has locked it.
   absl::Status CheckStart(const std::string& path, int file) const;
 
+  // Prepares each format that may read a file that begins with these bytes
+  // (StormFormat::PrepareBeforeConfinement).
+  absl::Status PrepareBeforeConfinement(std::string_view start) const;
+
   // Describes the file at `path` by the format that fits it best. It is an error if no format fits,
   // or if two fit equally well.
   absl::StatusOr<StormFile> Describe(const std::string& path) const;
@@ -123,7 +130,7 @@ class StormFormats {
   // first path.
   absl::StatusOr<StormFile> DescribeTogether(const std::vector<std::string>& paths) const;
 
-  // Returns the formats' examples for a message: "wrfout_..., or CF netCDF".
+  // Returns the formats' examples for a message: "wrfout_..., CF netCDF, or GRIB2".
   std::string Examples() const;
 
  private:

@@ -222,7 +222,8 @@ TEST_F(StormFormatTest, AFileOfNoFormatIsToldWhatEachWouldNeed) {
       path +
       ": is neither WRF output (it has no dimensions west_east, south_north, bottom_top) "
       "nor a CF file with a hydrometeor (by standard name, e.g. "
-      "mass_concentration_of_cloud_liquid_water_in_air) or a variable extinction (m-1)";
+      "mass_concentration_of_cloud_liquid_water_in_air) or a variable extinction (m-1) "
+      "nor GRIB2 (it has no GRIB message)";
   const std::string toy = " nor a toy (it does not begin so)";
   const std::string advice = "; give a file that is";
   EXPECT_EQ(message(StormFormats::BuiltIn()), built_in + advice);
@@ -230,11 +231,11 @@ TEST_F(StormFormatTest, AFileOfNoFormatIsToldWhatEachWouldNeed) {
 }
 
 TEST_F(StormFormatTest, MessagesSayWhichFilesToGive) {
-  EXPECT_EQ(StormFormats::BuiltIn().Examples(), "wrfout_..., or CF netCDF");
-  EXPECT_EQ(With(std::make_shared<ToyFormat>()).Examples(), "wrfout_..., CF netCDF, or *.toy");
+  EXPECT_EQ(StormFormats::BuiltIn().Examples(), "wrfout_..., CF netCDF, or GRIB2");
+  EXPECT_EQ(With(std::make_shared<ToyFormat>()).Examples(), "wrfout_..., CF netCDF, GRIB2, or *.toy");
   const auto nothing =
       storm_store::FindStorms({folder_.Path().string()}, With(std::make_shared<ToyFormat>()));
-  EXPECT_THAT(std::string(nothing.status().message()), HasSubstr("CF netCDF, or *.toy"));
+  EXPECT_THAT(std::string(nothing.status().message()), HasSubstr("GRIB2, or *.toy"));
 }
 
 }  // namespace

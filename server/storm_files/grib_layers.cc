@@ -1,0 +1,680 @@
+#include "storm_files/grib_layers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "base/status.h"
+#include "storm_files/grib_parts.h"
+
+namespace thunderhead::storm_files {
+namespace {
+
+using physics::Hydrometeor;
+
+// Types of surfaces (code table 4.5).
+constexpr int kGround = 1;
+constexpr int kIsobaricSurface = 100;
+constexpr int kHybrid = 105;
+constexpr int kHybridHeight = 118;
+constexpr int kHybridPressure = 119;
+constexpr int kGeneralized = 150;
+
+// The types of levels that a storm may have. If two have equally many levels, the first is used.
+constexpr std::array kLevelTypes = {kHybrid, kGeneralized, kHybridHeight, kHybridPressure,
+                                    kIsobaricSurface};
+
+std::string LevelName(int type, double value) {
+  switch (type) {
+    case kIsobaricSurface:
+      return absl::StrFormat("%.6g hPa", value / 100.0);
+    case kHybrid:
+      return absl::StrFormat("hybrid level %.6g", value);
+    case kGeneralized:
+      return absl::StrFormat("generalized level %.6g", value);
+    case kHybridHeight:
+      return absl::StrFormat("hybrid height level %.6g", value);
+    case kHybridPressure:
+      return absl::StrFormat("hybrid pressure level %.6g", value);
+    default:
+      return absl::StrFormat("level %.6g of type %d", value, type);
+  }
+}
+
+// Returns whether the field is a mean between two pressures.
+bool IsBetweenPressures(const grib::Field& field) {
+  return field.first.type == kIsobaricSurface && field.second.type == kIsobaricSurface;
+}
+
+std::string TimeText(absl::Time time) {
+  return absl::FormatTime("%Y-%m-%d %H:%M UTC", time, absl::UTCTimeZone());
+}
+
+struct Candidate {
+  GribPlace place;
+  GribMeaning meaning;
+
+  const grib::Field& Field() const { return *place.field; }
+};
+
+using Candidates = std::vector<Candidate>;
+using ByLevel = std::map<double, GribPlace>;
+
+// A field with the levels on which it is.
+struct Found {
+  GribKind kind = GribKind::kNone;
+  std::string name;
+  ByLevel levels;
+};
+
+class Finder {
+ public:
+  Finder(const std::string& path, const GribIndexes& files) : files_(files) {
+    contents_.path = path;
+  }
+
+  absl::StatusOr<GribContents> Find();
+
+ private:
+  void Collect();
+  absl::Status ChooseLevels();
+  absl::Status CheckOneRun();
+  absl::StatusOr<GribLayers> FindTime(absl::Time time);
+  absl::Status FindHydrometeors(absl::Time time, GribLayers& layers, std::vector<Found>& needed);
+  absl::Status FindState(absl::Time time, std::vector<Found>& needed);
+  absl::Status ShareLevels(std::vector<Found>& needed, std::size_t amounts, GribLayers& layers);
+  absl::Status ShareModelLevels(const std::vector<Found>& needed, const std::set<double>& all,
+                                GribLayers& layers);
+  absl::Status FindHeights(absl::Time time, GribLayers& layers);
+  absl::Status FindIsobaricHeights(absl::Time time, GribLayers& layers);
+  absl::Status FindHydrostatic(absl::Time time, GribLayers& layers);
+  absl::Status FindHalfHeights(GribLayers& layers);
+  absl::Status FindSurface(absl::Time time, GribLayers& layers);
+  absl::Status FindMotion(absl::Time time, GribLayers& layers);
+
+  // Returns the levels of the fields that fulfil `is_wanted`. It is an error if a level has two.
+  // `time` is absent for fields that do not change with time.
+  using IsWanted = std::function<bool(const Candidate&)>;
+  absl::StatusOr<Found> Levels(const std::optional<absl::Time>& time, bool on_half_levels,
+                               const IsWanted& is_wanted) const;
+  absl::StatusOr<Found> LevelsOf(GribKind kind, const std::optional<absl::Time>& time,
+                                 bool on_half_levels = false) const;
+  absl::StatusOr<std::optional<GribPlace>> AtGround(GribKind kind, absl::Time time,
+                                                    bool at_any_time) const;
+
+  bool IsOnLevel(const grib::Field& field, bool on_half_level) const;
+  std::string NameOf(const grib::Field& field) const {
+    return GribNameOf(field.parameter, field.origin.centre);
+  }
+  std::string Described(const Found& found) const {
+    if (found.levels.empty()) return found.name;
+    return absl::StrCat(found.name, " (",
+                        grib::NumbersOf(found.levels.begin()->second.field->parameter), ")");
+  }
+  absl::Status Refused(std::string_view what) const {
+    return absl::InvalidArgumentError(absl::StrCat(contents_.path, ": ", std::string(what)));
+  }
+  absl::Status Missing(std::string_view what, absl::Time time) const {
+    return absl::DataLossError(absl::StrCat(contents_.path, ": ", std::string(what),
+                                            " is missing at ", TimeText(time),
+                                            "; get the complete set of fields"));
+  }
+  void Assume(std::string sentence) {
+    std::vector<std::string>& all = contents_.assumptions;
+    if (std::ranges::find(all, sentence) == all.end()) all.push_back(std::move(sentence));
+  }
+  GribSeries Series(const Found& found, const std::vector<double>& levels) const;
+  static bool Covers(const Found& found, const std::vector<double>& levels) {
+    return std::ranges::all_of(levels, [&](double level) { return found.levels.contains(level); });
+  }
+
+  const GribIndexes& files_;
+  GribContents contents_;
+  Candidates candidates_;
+  int type_ = 0;                        // the type of the storm's levels
+  bool has_layers_ = false;             // true if amounts lie between two half levels
+  const grib::Field* first_ = nullptr;  // the first field of a hydrometeor
+};
+
+void Finder::Collect() {
+  for (std::size_t file = 0; file < files_.size(); ++file) {
+    for (const grib::Field& field : files_[file]->fields) {
+      if (!field.is_instant) continue;
+      const GribMeaning meaning = MeaningOf(field.parameter);
+      if (meaning.kind != GribKind::kNone) candidates_.push_back({{file, &field}, meaning});
+    }
+  }
+}
+
+// Chooses the type of levels on which hydrometeors have the most levels. A file on isobaric levels
+// can have its hydrometeors also on one hybrid level, which is no part of the set.
+absl::Status Finder::ChooseLevels() {
+  std::map<int, std::set<double>> levels;
+  bool has_amounts = false;
+  for (const Candidate& candidate : candidates_) {
+    if (candidate.meaning.kind != GribKind::kAmount) continue;
+    has_amounts = true;
+    const grib::Surface& surface = candidate.Field().first;
+    if (std::isfinite(surface.value) && !IsBetweenPressures(candidate.Field())) {
+      levels[surface.type].insert(surface.value);
+    }
+  }
+  if (!has_amounts) {
+    return Refused(
+        "has no field of cloud water (0/1/22, 0/1/83), cloud ice (0/1/23, 0/1/82, 0/1/84), rain "
+        "(0/1/24, 0/1/85), snow (0/1/25, 0/1/86), graupel (0/1/32) or hail (0/1/71); give a file "
+        "with at least one");
+  }
+  std::size_t most = 0;
+  for (const int type : kLevelTypes) {
+    if (levels[type].size() <= most) continue;
+    most = levels[type].size();
+    type_ = type;
+  }
+  if (most < 2) {
+    return Refused(
+        "has hydrometeors on fewer than two levels; it needs hybrid (105, 118, 119), generalized "
+        "(150) or isobaric (100) levels");
+  }
+  for (const Candidate& candidate : candidates_) {
+    const grib::Field& field = candidate.Field();
+    if (candidate.meaning.kind != GribKind::kAmount || field.first.type != type_) continue;
+    if (first_ == nullptr && !IsBetweenPressures(field)) first_ = &field;
+  }
+  has_layers_ = first_->second.type == type_;
+  return absl::OkStatus();
+}
+
+absl::Status Finder::CheckOneRun() {
+  std::set<int> members;
+  for (const Candidate& candidate : candidates_) {
+    const grib::Field& field = candidate.Field();
+    if (field.first.type != type_) continue;
+    // Heights that do not change may come from an earlier run.
+    const bool may_differ = candidate.meaning.kind == GribKind::kGeometricHeight;
+    if (!may_differ && field.origin != first_->origin) {
+      return Refused(absl::StrCat(
+          "has fields of several runs (", TimeText(first_->origin.reference), " of centre ",
+          first_->origin.centre, ", and ", TimeText(field.origin.reference), " of centre ",
+          field.origin.centre, "); put each run into a separate file or folder"));
+    }
+    if (candidate.meaning.kind != GribKind::kAmount) continue;
+    members.insert(field.member.value_or(-1));
+    if (*field.grid != *first_->grid) {
+      return Refused("has hydrometeors on several grids; put each grid into a separate file");
+    }
+  }
+  if (members.size() > 1) {
+    return Refused(
+        absl::StrCat("has ", members.size(),
+                     " members of an ensemble, and each is a storm of its own; put each "
+                     "into a separate file, for example with grib_copy and [perturbationNumber]"));
+  }
+  contents_.origin = first_->origin;
+  contents_.process = first_->process;
+  contents_.member = GribMemberOf(*first_);
+  contents_.model = ModelOf(*first_);
+  auto grid = grib::ReadGrid(*first_->grid);
+  if (!grid.ok()) return base::Annotate(grid.status(), contents_.path);
+  contents_.grid = *std::move(grid);
+  for (const std::string& assumption : contents_.grid.assumptions) Assume(assumption);
+  return absl::OkStatus();
+}
+
+// Returns whether the field is on a level of the storm's type, or on a half level between them.
+bool Finder::IsOnLevel(const grib::Field& field, bool on_half_level) const {
+  if (field.first.type != type_ || !std::isfinite(field.first.value)) return false;
+  if (*field.grid != *first_->grid) return false;
+  if (field.member != first_->member && field.member.has_value()) return false;
+  const bool is_layer = field.second.type == type_;
+  if (type_ == kIsobaricSurface) return !IsBetweenPressures(field) && !on_half_level;
+  return is_layer == (has_layers_ && !on_half_level);
+}
+
+absl::StatusOr<Found> Finder::Levels(const std::optional<absl::Time>& time, bool on_half_levels,
+                                     const IsWanted& is_wanted) const {
+  Found found;
+  for (const Candidate& candidate : candidates_) {
+    const grib::Field& field = candidate.Field();
+    if (!IsOnLevel(field, on_half_levels) || !is_wanted(candidate)) continue;
+    if (time.has_value() && field.Valid() != *time) continue;
+    const auto [at, is_new] = found.levels.emplace(field.first.value, candidate.place);
+    found.kind = candidate.meaning.kind;
+    found.name = NameOf(field);
+    // A field that does not change may be repeated at each time.
+    if (is_new || !time.has_value()) continue;
+    return Refused(absl::StrCat(found.name, " (", grib::NumbersOf(field.parameter),
+                                ") is there twice at ", LevelName(type_, field.first.value),
+                                " and ", TimeText(*time), "; keep one"));
+  }
+  return found;
+}
+
+absl::StatusOr<Found> Finder::LevelsOf(GribKind kind, const std::optional<absl::Time>& time,
+                                       bool on_half_levels) const {
+  return Levels(time, on_half_levels,
+                [kind](const Candidate& candidate) { return candidate.meaning.kind == kind; });
+}
+
+GribSeries Finder::Series(const Found& found, const std::vector<double>& levels) const {
+  GribSeries series;
+  series.kind = found.kind;
+  series.name = found.name;
+  for (const double level : levels) {
+    const auto at = found.levels.find(level);
+    series.levels.push_back(at == found.levels.end() ? GribPlace{} : at->second);
+  }
+  return series;
+}
+
+// Finds the hydrometeors at `time`, and adds one element to `needed` for each.
+absl::Status Finder::FindHydrometeors(absl::Time time, GribLayers& layers,
+                                      std::vector<Found>& needed) {
+  for (const Hydrometeor hydrometeor : physics::kHydrometeors) {
+    // If there are several parameters for one hydrometeor, the one on the most levels is used.
+    std::map<grib::Parameter, GribMeaning> parameters;
+    for (const Candidate& candidate : candidates_) {
+      const GribMeaning& meaning = candidate.meaning;
+      if (meaning.kind == GribKind::kAmount && meaning.hydrometeor == hydrometeor) {
+        parameters.emplace(candidate.Field().parameter, meaning);
+      }
+    }
+    Found best;
+    GribHydrometeor found;
+    for (const auto& [parameter, meaning] : parameters) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(Found levels,
+                                   Levels(time, false, [&](const Candidate& candidate) {
+                                     return candidate.Field().parameter == parameter;
+                                   }));
+      if (levels.levels.size() <= best.levels.size()) continue;
+      best = std::move(levels);
+      found.hydrometeor = hydrometeor;
+      found.quantity = meaning.quantity;
+      found.per = meaning.is_specific ? AirMass::kWhole : contents_.model.mixing_ratios_per;
+    }
+    if (best.levels.empty()) continue;
+    layers.hydrometeors.push_back(std::move(found));
+    needed.push_back(std::move(best));
+  }
+  return absl::OkStatus();
+}
+
+// Adds temperature, humidity and, on model levels that need it, pressure to `needed`.
+absl::Status Finder::FindState(absl::Time time, std::vector<Found>& needed) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(Found temperature, LevelsOf(GribKind::kTemperature, time));
+  if (temperature.levels.empty()) {
+    return Missing(GribKindName(GribKind::kTemperature), time);
+  }
+  needed.push_back(std::move(temperature));
+  Found humidity;
+  for (const GribKind kind :
+       {GribKind::kSpecificHumidity, GribKind::kVapourRatio, GribKind::kRelativeHumidity}) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(Found found, LevelsOf(kind, time));
+    if (found.levels.size() > humidity.levels.size()) humidity = std::move(found);
+  }
+  if (humidity.levels.empty()) {
+    Assume("The air is treated as dry, because the file has no humidity.");
+  } else {
+    if (humidity.kind == GribKind::kRelativeHumidity) {
+      Assume("Vapour is computed from the relative humidity over water.");
+    }
+    needed.push_back(std::move(humidity));
+  }
+  return absl::OkStatus();
+}
+
+// Model levels must be complete, because each is a part of the column.
+absl::Status Finder::ShareModelLevels(const std::vector<Found>& needed, const std::set<double>& all,
+                                      GribLayers& layers) {
+  double expected = *all.begin();
+  for (const double level : all) {
+    if (level != expected) {
+      return Missing(absl::StrCat("every field of ", LevelName(type_, expected)), layers.time);
+    }
+    expected += 1.0;
+    for (const Found& found : needed) {
+      if (found.levels.contains(level)) continue;
+      return Missing(absl::StrCat(Described(found), " of ", LevelName(type_, level)), layers.time);
+    }
+  }
+  layers.levels.assign(all.begin(), all.end());
+  return absl::OkStatus();
+}
+
+// Sets the levels that all needed fields share. The first `amounts` of them are hydrometeors.
+absl::Status Finder::ShareLevels(std::vector<Found>& needed, std::size_t amounts,
+                                 GribLayers& layers) {
+  std::set<double> all;
+  for (std::size_t i = 0; i < amounts; ++i) {
+    for (const auto& [level, place] : needed[i].levels) all.insert(level);
+  }
+  if (type_ != kIsobaricSurface) return ShareModelLevels(needed, all, layers);
+  std::set<double> shared = all;
+  for (const Found& found : needed) {
+    std::erase_if(shared, [&](double level) { return !found.levels.contains(level); });
+  }
+  if (shared.size() < 2) {
+    return Refused("has hydrometeors, temperature and humidity together on fewer than two levels");
+  }
+  std::vector<std::string> left_out;
+  for (const double level : all) {
+    if (shared.contains(level)) continue;
+    if (level < *shared.begin() || level > *shared.rbegin()) {
+      left_out.push_back(LevelName(type_, level));
+      continue;
+    }
+    for (const Found& found : needed) {
+      if (found.levels.contains(level)) continue;
+      return Missing(absl::StrCat(Described(found), " of ", LevelName(type_, level)), layers.time);
+    }
+  }
+  if (!left_out.empty()) {
+    Assume(absl::StrCat(
+        "Levels that not all fields have are left out: ", absl::StrJoin(left_out, ", "), "."));
+  }
+  // Pressure falls upwards.
+  layers.levels.assign(shared.rbegin(), shared.rend());
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::optional<GribPlace>> Finder::AtGround(GribKind kind, absl::Time time,
+                                                          bool at_any_time) const {
+  std::optional<GribPlace> any;
+  for (const Candidate& candidate : candidates_) {
+    const grib::Field& field = candidate.Field();
+    // IFS codes the surface pressure and geopotential as its hybrid level 1.
+    const bool is_first_hybrid =
+        field.first.type == kHybrid && field.first.value == 1.0 &&
+        (kind == GribKind::kLogPressure || kind == GribKind::kGeopotential);
+    if (candidate.meaning.kind != kind) continue;
+    if (field.first.type != kGround && !is_first_hybrid) continue;
+    if (*field.grid != *first_->grid) continue;
+    if (field.Valid() == time) return candidate.place;
+    if (at_any_time && !any.has_value()) any = candidate.place;
+  }
+  return any;
+}
+
+absl::Status Finder::FindSurface(absl::Time time, GribLayers& layers) {
+  const auto find = [&](std::initializer_list<GribKind> kinds, bool at_any_time,
+                        GribSeries& series) -> absl::Status {
+    for (const GribKind kind : kinds) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<GribPlace> place,
+                                   AtGround(kind, time, at_any_time));
+      if (!place.has_value()) continue;
+      series.kind = kind;
+      series.name = NameOf(*place->field);
+      series.levels = {*place};
+      return absl::OkStatus();
+    }
+    return absl::OkStatus();
+  };
+  THUNDERHEAD_RETURN_IF_ERROR(
+      find({GribKind::kGeopotentialHeight, GribKind::kGeometricHeight, GribKind::kGeopotential},
+           true, layers.surface_height));
+  return find({GribKind::kPressure, GribKind::kLogPressure}, false, layers.surface_pressure);
+}
+
+absl::Status Finder::FindIsobaricHeights(absl::Time time, GribLayers& layers) {
+  layers.vertical = GribVertical::kIsobaric;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Found heights, LevelsOf(GribKind::kGeopotentialHeight, time));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Found geopotential, LevelsOf(GribKind::kGeopotential, time));
+  const Found& found = heights.levels.size() >= geopotential.levels.size() ? heights : geopotential;
+  layers.heights = Series(found, layers.levels);
+  std::vector<std::string> computed;
+  for (std::size_t i = 0; i < layers.levels.size(); ++i) {
+    if (layers.heights.levels[i].field == nullptr) {
+      computed.push_back(LevelName(type_, layers.levels[i]));
+    }
+  }
+  if (computed.size() == layers.levels.size()) {
+    if (layers.surface_height.Empty() || layers.surface_pressure.Empty()) {
+      return Refused(
+          "has neither the height (0/3/5, 0/3/4) of its isobaric levels nor height and pressure of "
+          "the ground; give a file with one of them");
+    }
+    layers.heights = {};
+    Assume("Heights of levels are computed from pressure, temperature and humidity (hydrostatic).");
+  } else if (!computed.empty()) {
+    Assume(
+        absl::StrCat("Heights of these levels are computed from the next level's (hydrostatic): ",
+                     absl::StrJoin(computed, ", "), "."));
+  }
+  if (layers.surface_pressure.Empty() && layers.surface_height.Empty()) {
+    Assume(
+        "Levels below the ground are not recognised, because the file has neither height nor "
+        "pressure of the ground.");
+  } else {
+    Assume("Levels below the ground are left out.");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status Finder::FindHalfHeights(GribLayers& layers) {
+  const auto is_height = [this](const Candidate& candidate) {
+    if (candidate.meaning.kind != GribKind::kGeometricHeight) return false;
+    const auto& mine = candidate.Field().vertical;
+    const auto& storms = first_->vertical;
+    const bool both =
+        mine != nullptr && storms != nullptr && mine->has_grid_id && storms->has_grid_id;
+    return !both || mine->grid_id == storms->grid_id;
+  };
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Found found, Levels(std::nullopt, true, is_height));
+  if (found.levels.empty()) return absl::OkStatus();
+  std::vector<double> half_levels = layers.levels;
+  half_levels.push_back(layers.levels.back() + 1.0);
+  for (const double level : half_levels) {
+    if (found.levels.contains(level)) continue;
+    return Missing(absl::StrCat(Described(found), " of half level ", level), layers.time);
+  }
+  if (found.levels.rbegin()->first > half_levels.back()) {
+    return Missing(absl::StrCat("every field of ", LevelName(type_, half_levels.back())),
+                   layers.time);
+  }
+  layers.heights = Series(found, half_levels);
+  layers.heights.on_half_levels = true;
+  layers.vertical = GribVertical::kHalfHeights;
+  return absl::OkStatus();
+}
+
+absl::Status Finder::FindHydrostatic(absl::Time time, GribLayers& layers) {
+  const auto& vertical = first_->vertical;
+  if (vertical == nullptr || vertical->numbers.empty() || type_ == kHybridHeight ||
+      type_ == kGeneralized) {
+    const std::string levels = LevelName(type_, layers.levels.front());
+    if (type_ == kGeneralized) {
+      return Refused(absl::StrCat(
+          levels,
+          " and the others have no heights; add the files with the heights of half levels "
+          "(HHL, 0/3/6), which match the fields' uuidOfVGrid"));
+    }
+    return Refused(absl::StrCat(
+        levels,
+        " and the others have neither heights (0/3/5, 0/3/6) nor coefficients (pv) with "
+        "surface pressure and geopotential; add one of them"));
+  }
+  const std::vector<float>& numbers = vertical->numbers;
+  const std::size_t half_levels = numbers.size() / 2;
+  if (numbers.size() % 2 != 0 || layers.levels.back() + 1.0 > static_cast<double>(half_levels) ||
+      layers.levels.front() < 1.0) {
+    return Refused(absl::StrCat("has ", numbers.size(),
+                                " coefficients of hybrid levels (pv), which do not fit level ",
+                                layers.levels.back()));
+  }
+  if (layers.levels.back() + 1.0 != static_cast<double>(half_levels)) {
+    return Missing(absl::StrCat("every field of ", LevelName(type_, layers.levels.back() + 1.0)),
+                   time);
+  }
+  if (layers.surface_pressure.Empty()) {
+    return Missing("the surface pressure (0/3/25 or 0/3/0), which the heights of levels need,",
+                   time);
+  }
+  if (layers.surface_height.Empty()) {
+    return Missing("the ground's geopotential (0/3/4), which the heights of levels need,", time);
+  }
+  layers.half_level_coefficients = numbers;
+  layers.vertical = GribVertical::kHydrostatic;
+  Assume("Heights of levels are computed from pressure, temperature and humidity (hydrostatic).");
+  return absl::OkStatus();
+}
+
+absl::Status Finder::FindHeights(absl::Time time, GribLayers& layers) {
+  if (type_ == kIsobaricSurface) return FindIsobaricHeights(time, layers);
+  if (has_layers_) THUNDERHEAD_RETURN_IF_ERROR(FindHalfHeights(layers));
+  if (layers.heights.Empty()) {
+    for (const GribKind kind :
+         {GribKind::kGeometricHeight, GribKind::kGeopotentialHeight, GribKind::kGeopotential}) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(const Found found, LevelsOf(kind, time));
+      // One level is the ground's geopotential of IFS.
+      if (found.levels.size() < 2) continue;
+      for (const double level : layers.levels) {
+        if (found.levels.contains(level)) continue;
+        return Missing(absl::StrCat(Described(found), " of ", LevelName(type_, level)), time);
+      }
+      layers.heights = Series(found, layers.levels);
+      break;
+    }
+  }
+  if (layers.heights.Empty()) return FindHydrostatic(time, layers);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Found pressure, LevelsOf(GribKind::kPressure, time));
+  if (pressure.levels.empty()) {
+    return Missing(absl::StrCat(GribKindName(GribKind::kPressure), " of ",
+                                LevelName(type_, layers.levels.front()), " and the others"),
+                   time);
+  }
+  for (const double level : layers.levels) {
+    if (pressure.levels.contains(level)) continue;
+    return Missing(absl::StrCat(Described(pressure), " of ", LevelName(type_, level)), time);
+  }
+  layers.pressure = Series(pressure, layers.levels);
+  return absl::OkStatus();
+}
+
+// Finds wind and turbulence, which a storm does not need. They are left out if a level is missing.
+// ICON has the vertical wind and the turbulence on half levels.
+absl::Status Finder::FindMotion(absl::Time time, GribLayers& layers) {
+  std::vector<double> half_levels = layers.levels;
+  half_levels.push_back(layers.levels.back() + 1.0);
+  const auto find = [&](GribKind kind, bool on_half_levels, GribSeries& series) -> absl::Status {
+    if (!series.Empty()) return absl::OkStatus();
+    const std::vector<double>& levels = on_half_levels ? half_levels : layers.levels;
+    THUNDERHEAD_ASSIGN_OR_RETURN(const Found found, LevelsOf(kind, time, on_half_levels));
+    if (found.levels.empty() || !Covers(found, levels)) return absl::OkStatus();
+    series = Series(found, levels);
+    series.on_half_levels = on_half_levels;
+    return absl::OkStatus();
+  };
+  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kWindX, false, layers.wind_x));
+  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kWindY, false, layers.wind_y));
+  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kAscent, false, layers.ascent));
+  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kOmega, false, layers.ascent));
+  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kTurbulentEnergy, false, layers.energy));
+  if (!has_layers_) return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kAscent, true, layers.ascent));
+  return find(GribKind::kTurbulentEnergy, true, layers.energy);
+}
+
+absl::StatusOr<GribLayers> Finder::FindTime(absl::Time time) {
+  GribLayers layers;
+  layers.time = time;
+  std::vector<Found> needed;
+  THUNDERHEAD_RETURN_IF_ERROR(FindHydrometeors(time, layers, needed));
+  const std::size_t amounts = needed.size();
+  THUNDERHEAD_RETURN_IF_ERROR(FindState(time, needed));
+  THUNDERHEAD_RETURN_IF_ERROR(ShareLevels(needed, amounts, layers));
+  for (std::size_t i = 0; i < amounts; ++i) {
+    GribHydrometeor& hydrometeor = layers.hydrometeors[i];
+    hydrometeor.amounts = Series(needed[i], layers.levels);
+    THUNDERHEAD_ASSIGN_OR_RETURN(const Found numbers,
+                                 Levels(time, false, [&](const Candidate& candidate) {
+                                   return candidate.meaning.kind == GribKind::kNumber &&
+                                          candidate.meaning.hydrometeor == hydrometeor.hydrometeor;
+                                 }));
+    if (!numbers.levels.empty() && Covers(numbers, layers.levels)) {
+      hydrometeor.numbers = Series(numbers, layers.levels);
+    }
+  }
+  layers.temperature = Series(needed[amounts], layers.levels);
+  if (needed.size() > amounts + 1) layers.humidity = Series(needed[amounts + 1], layers.levels);
+  THUNDERHEAD_RETURN_IF_ERROR(FindSurface(time, layers));
+  THUNDERHEAD_RETURN_IF_ERROR(FindHeights(time, layers));
+  THUNDERHEAD_RETURN_IF_ERROR(FindMotion(time, layers));
+  return layers;
+}
+
+// Splits cloud water that holds liquid and ice into two hydrometeors.
+void SplitCloud(GribLayers& layers) {
+  GribHydrometeor ice = layers.hydrometeors.front();
+  layers.hydrometeors.front().is_split = true;
+  ice.hydrometeor = Hydrometeor::kIce;
+  ice.is_split = true;
+  layers.hydrometeors.push_back(std::move(ice));
+}
+
+absl::StatusOr<GribContents> Finder::Find() {
+  Collect();
+  THUNDERHEAD_RETURN_IF_ERROR(ChooseLevels());
+  THUNDERHEAD_RETURN_IF_ERROR(CheckOneRun());
+  std::set<absl::Time> times;
+  for (const Candidate& candidate : candidates_) {
+    const grib::Field& field = candidate.Field();
+    if (candidate.meaning.kind == GribKind::kAmount && IsOnLevel(field, false)) {
+      times.insert(field.Valid());
+    }
+  }
+  for (const absl::Time time : times) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(GribLayers layers, FindTime(time));
+    const bool is_alone = layers.hydrometeors.size() == 1 &&
+                          layers.hydrometeors[0].hydrometeor == Hydrometeor::kCloud;
+    if (is_alone && contents_.model.splits_cloud) {
+      SplitCloud(layers);
+      Assume(absl::StrCat(layers.hydrometeors[0].amounts.name,
+                          " holds liquid and ice: all ice below -40 C, all liquid above 0 C, mixed "
+                          "linearly between."));
+    }
+    contents_.times.push_back(std::move(layers));
+  }
+  const GribLayers& first = contents_.times.front();
+  for (const GribLayers& layers : contents_.times) {
+    if (layers.levels == first.levels && layers.hydrometeors.size() == first.hydrometeors.size() &&
+        layers.vertical == first.vertical) {
+      continue;
+    }
+    return Refused(absl::StrCat("has other fields or levels at ", TimeText(layers.time),
+                                " than at ", TimeText(first.time),
+                                "; get the complete set of fields"));
+  }
+  const bool has_ratios = std::ranges::any_of(first.hydrometeors, [](const GribHydrometeor& found) {
+    return found.quantity == volume::Quantity::kMixingRatio;
+  });
+  if (has_ratios) {
+    const bool is_specific = MeaningOf(first_->parameter).is_specific;
+    const bool is_dry = first.hydrometeors[0].per == AirMass::kDry;
+    Assume(absl::StrCat(
+        "Hydrometeors are taken as kg per kg of ",
+        is_dry ? "dry air" : "the whole air (dry air, vapour and condensate)", ", because ",
+        is_specific ? "the parameters' definition says so" : contents_.model.why, "."));
+  }
+  if (contents_.model.microphysics == physics::Microphysics::kThompson) {
+    Assume(
+        "Particle sizes that the file does not give are those of the Thompson scheme, which HRRR "
+        "and RAP use.");
+  }
+  return std::move(contents_);
+}
+
+}  // namespace
+
+absl::StatusOr<GribContents> FindGribLayers(const std::string& path, const GribIndexes& files) {
+  return Finder(path, files).Find();
+}
+
+}  // namespace thunderhead::storm_files

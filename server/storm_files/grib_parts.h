@@ -1,0 +1,37 @@
+// Tells to which time of which storm a GRIB file belongs. Centres that write one file for each
+// field and level spread a time over hundreds of files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/time/time.h"
+#include "grib/index.h"
+
+namespace thunderhead::storm_files {
+
+enum class GribPartKind {
+  kWhole,      // hydrometeors and temperature on several levels: one or several whole times
+  kFields,     // part of a time
+  kInvariant,  // heights of levels (HHL) or of the ground, which are parts of all times
+};
+
+struct GribPart {
+  GribPartKind kind = GribPartKind::kFields;
+  // A text that is the same for all parts of one run, member and grid, and different for others.
+  std::string of;
+  std::vector<absl::Time> times;  // valid times in ascending order; empty for kInvariant
+};
+
+// Returns what the file of `index` is, by its headers alone. Errors name the file: INVALID_ARGUMENT
+// if it has no field that a storm needs, or parts of several runs, members or grids.
+absl::StatusOr<GribPart> GribPartOf(const grib::Index& index);
+
+// Returns a text that is the same for all fields of one run: "2024-05-20 21:00 UTC, centre 7/0".
+std::string GribRunOf(const grib::Origin& origin);
+
+// Returns the name of an ensemble's member, "mem05", or an empty text if the field has none.
+std::string GribMemberOf(const grib::Field& field);
+
+}  // namespace thunderhead::storm_files

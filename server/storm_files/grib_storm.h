@@ -1,0 +1,32 @@
+// Describes a storm that one or several GRIB files hold. ICON's files have one field of one level
+// each, so a time of its storms consists of hundreds of files.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "base/byte_source.h"
+#include "storm_files/grib_source.h"
+#include "storm_files/storm_file.h"
+
+namespace thunderhead::storm_files {
+
+// Returns an input that opens the file at `path` by base::OpenBytes.
+GribInput GribFileAt(const std::string& path);
+
+// Reads the index of a file, compressed or not.
+absl::StatusOr<std::shared_ptr<const grib::Index>> IndexOfGrib(
+    std::shared_ptr<const base::ByteSource> bytes);
+
+// Finds the times of the storm in files with these indexes. `path` names the storm in errors. All
+// files must belong to one run and one member. Errors name the file, the field and what to do.
+absl::StatusOr<std::shared_ptr<const GribStorm>> MakeGribStorm(const std::string& path,
+                                                               std::vector<GribInput> files,
+                                                               GribIndexes indexes);
+
+// Describes the storm, and sets the reader of its times.
+StormFile DescribeGribStorm(std::shared_ptr<const GribStorm> storm);
+
+}  // namespace thunderhead::storm_files

@@ -1,0 +1,477 @@
+// Tests of storms in GRIB files: genuine files of weather centres, and small files written here
+// whose fields, levels, runs or members do not fit together.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+
+#include "absl/strings/str_cat.h"
+#include "storm_files/grib_air.h"
+#include "storm_files/grib_parts.h"
+#include "storm_files/grib_storm.h"
+#include "storm_files/storm_format.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/unit/grib/messages.h"
+
+namespace thunderhead::storm_files {
+namespace {
+
+using grib::testing::BytesOf;
+using grib::testing::GridOf;
+using grib::testing::LatLon;
+using grib::testing::Message;
+using physics::Hydrometeor;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+std::string Real(const std::string& name) {
+  return (std::filesystem::path(THUNDERHEAD_SOURCE_DIR).parent_path() / "shared/data/real" / name)
+      .string();
+}
+
+std::string ErrorOf(const absl::StatusOr<StormFile>& file) {
+  return std::string(file.status().message());
+}
+
+absl::StatusOr<StormFile> DescribeAlone(const std::string& path) {
+  const StormFormats formats = StormFormats::BuiltIn();
+  auto file = formats.Describe(path);
+  if (!file.ok() || file->part.of.empty()) return file;
+  return formats.DescribeTogether({path});
+}
+
+// GFS of 2011: one variable for liquid and ice, relative humidity, wind in shared messages.
+TEST(GenuineGrib, ReadsAnOldGfs) {
+  const auto file = DescribeAlone(Real("pygrib_gfs.t12z.pgrbf120.2p5deg.grib2"));
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_EQ(file->cells, glm::ivec3(144, 73, 21));
+  EXPECT_THAT(file->fields, ElementsAre(Hydrometeor::kCloud, Hydrometeor::kIce));
+  EXPECT_THAT(file->assumptions,
+              ::testing::IsSupersetOf({HasSubstr("CLMR holds liquid and ice"),
+                                       HasSubstr("relative humidity over water"),
+                                       HasSubstr("kg per kg of the whole air")}));
+  EXPECT_THAT(file->about, HasSubstr("NCEP GFS, run "));
+  EXPECT_THAT(file->about, HasSubstr("+120 h"));
+  const auto fields = file->reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  // The maximum of both phases together is 1.118e-3 at 350 hPa, where ice dominates.
+  EXPECT_LE(fields->fields[0].statistics.maximum, 1.118e-3F);
+  EXPECT_GT(fields->fields[1].statistics.maximum, 0.5e-3F);
+  EXPECT_LE(fields->fields[1].statistics.maximum, 1.118e-3F);
+  EXPECT_EQ(fields->fields[1].variable, "CLMR");
+  EXPECT_FALSE(fields->motion.ascent.empty());
+}
+
+TEST(GenuineGrib, NamesWhatOthersLack) {
+  EXPECT_THAT(ErrorOf(DescribeAlone(Real("earthkit_ml_data.grib"))),
+              HasSubstr("has no field of cloud water (0/1/22"));
+  EXPECT_THAT(ErrorOf(DescribeAlone(Real("earthkit_test_icon.grib"))), HasSubstr("has no field"));
+}
+
+// A storm on hybrid levels, level 1 lowest, of HRRR's layout. Every field has one value on each
+// level, except for cloud water, whose western column has twice as much.
+struct Layout {
+  int centre = 7;
+  int process = 83;
+  int levels = 4;
+  int member = -1;
+  int hour = 21;
+  int forecast = 1;
+  int level_type = 105;
+  LatLon grid;
+  // Changes or drops (false) a field.
+  std::function<bool(Message&)> edit = [](Message&) { return true; };
+};
+
+std::string FileOf(const Layout& layout) {
+  std::string bytes;
+  const auto add = [&](int category, int number, int type, int level, std::vector<float> values,
+                       float minimum, float step) {
+    Message message;
+    message.category = category;
+    message.number = number;
+    message.centre = layout.centre;
+    message.process = layout.process;
+    message.member = layout.member;
+    message.hour = layout.hour;
+    message.forecast = layout.forecast;
+    message.level = {type, level};
+    message.grid = GridOf(layout.grid);
+    message.points = std::int64_t{layout.grid.columns} * layout.grid.rows;
+    message.values = std::move(values);
+    message.minimum = minimum;
+    message.step = step;
+    if (layout.edit(message)) bytes += BytesOf(message);
+  };
+  for (int level = 1; level <= layout.levels; ++level) {
+    const auto height = static_cast<float>(1000 * level);
+    const int type = layout.level_type;
+    add(3, 5, type, level, {height}, 0.0F, 1.0F);
+    add(3, 0, type, level, {100'000.0F - 10.0F * height}, 0.0F, 1.0F);
+    add(0, 0, type, level, {280.0F}, 0.0F, 1.0F);
+    add(1, 0, type, level, {0.0F}, 0.0F, 1.0F);
+    const float step = std::exp2(-14.0F);
+    add(1, 22, type, level, {16 * step, 8 * step, 16 * step, 8 * step}, 0.0F, step);
+    add(1, 24, type, level, {8 * step}, 0.0F, step);
+  }
+  add(3, 5, 1, 0, {400.0F}, 0.0F, 1.0F);
+  add(3, 0, 1, 0, {99'000.0F}, 0.0F, 1.0F);
+  return bytes;
+}
+
+class GribStormTest : public ::testing::Test {
+ protected:
+  std::string Write(const std::string& name, const std::string& bytes) {
+    const std::string path = folder_.File(name);
+    std::ofstream(path, std::ios::binary) << bytes;
+    return path;
+  }
+  absl::StatusOr<StormFile> Describe(const Layout& layout) {
+    return DescribeAlone(Write("storm.grib2", FileOf(layout)));
+  }
+  std::string ErrorWith(std::function<bool(Message&)> edit, Layout layout = {}) {
+    layout.edit = std::move(edit);
+    const auto file = Describe(layout);
+    if (!file.ok()) return ErrorOf(file);
+    return std::string(file->reader->Read(0, std::nullopt, {}).status().message());
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+bool Is(const Message& message, int category, int number, int level, int type = 105) {
+  return message.category == category && message.number == number && message.level.value == level &&
+         message.level.type == type;
+}
+
+double PathAt(const volume::HydrometeorFields& fields, std::size_t field, std::size_t column) {
+  const std::size_t columns = static_cast<std::size_t>(fields.grid.cells.x) * fields.grid.cells.y;
+  double path = 0.0;
+  const auto& values = fields.fields[field].concentration_kg_per_m3;
+  for (std::size_t i = column; i < values.size(); i += columns) {
+    path += values[i] * fields.grid.spacing_m.z;
+  }
+  return path;
+}
+
+TEST_F(GribStormTest, ReadsAWholeFile) {
+  const auto file = Describe({});
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_EQ(file->cells, glm::ivec3(2, 2, 4));
+  EXPECT_EQ(file->about, "NCEP HRRR, run 2024-05-20 21:00 UTC, +1 h");
+  EXPECT_THAT(file->fields, ElementsAre(Hydrometeor::kCloud, Hydrometeor::kRain));
+  EXPECT_THAT(file->assumptions, Contains(HasSubstr("kg per kg of dry air")));
+  EXPECT_EQ(file->member, "");
+  const auto fields = file->reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ(fields->terrain_height_m[0], 400.0F);
+  // Interfaces are at 400, 1500, 2500, 3500 and 4500 m, and pressure is 900 to 600 hPa at 280 K.
+  constexpr double kGas = 287.0;
+  const double mass =
+      (90'000.0 * 1100 + 80'000.0 * 1000 + 70'000.0 * 1000 + 60'000.0 * 1000) / (kGas * 280.0);
+  EXPECT_NEAR(PathAt(*fields, 0, 0), mass * 16 / 16384, 0.002 * mass * 16 / 16384);
+  EXPECT_NEAR(PathAt(*fields, 0, 1), PathAt(*fields, 0, 0) / 2, 1e-3 * mass * 16 / 16384);
+  EXPECT_NEAR(PathAt(*fields, 1, 0), mass * 8 / 16384, 0.002 * mass * 8 / 16384);
+}
+
+// The same file with rows from north to south has its rows in the other order.
+TEST_F(GribStormTest, RowsRunNorthwards) {
+  Layout layout;
+  layout.edit = [](Message& message) {
+    // The southern row of the file's order has twice the northern one's.
+    if (message.number == 22) {
+      message.values = {8 * message.step, 8 * message.step, 16 * message.step, 16 * message.step};
+    }
+    return true;
+  };
+  layout.grid.scanning = 0;
+  const auto file = Describe(layout);
+  ASSERT_TRUE(file.ok()) << file.status();
+  const auto fields = file->reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR(PathAt(*fields, 0, 0), 2.0 * PathAt(*fields, 0, 2), 1e-4);
+  EXPECT_NEAR(PathAt(*fields, 0, 0), PathAt(*fields, 0, 1), 1e-6);
+}
+
+TEST_F(GribStormTest, RunsAndMembersDiffer) {
+  const auto first = Describe({});
+  const auto later = Describe({.hour = 22});
+  const auto centre = Describe({.centre = 98});
+  const auto member = Describe({.member = 5});
+  ASSERT_TRUE(first.ok() && later.ok() && centre.ok() && member.ok());
+  EXPECT_NE(first->run, later->run);
+  EXPECT_NE(first->run, centre->run);
+  EXPECT_EQ(member->member, "mem05");
+  EXPECT_THAT(member->about, HasSubstr(", mem05"));
+  EXPECT_EQ(first->run, Describe({.forecast = 3})->run);
+}
+
+TEST_F(GribStormTest, ReadsSeveralTimes) {
+  const auto file = DescribeAlone(
+      Write("times.grib2", FileOf({.forecast = 2}) + FileOf({}) + FileOf({.forecast = 3})));
+  ASSERT_TRUE(file.ok()) << file.status();
+  ASSERT_EQ(file->times.size(), 3U);
+  EXPECT_EQ(file->times[0] + absl::Hours(1), file->times[1]);
+  EXPECT_THAT(file->about, HasSubstr("+1 h to +3 h"));
+  EXPECT_TRUE(file->reader->Read(2, std::nullopt, {}).ok());
+}
+
+TEST_F(GribStormTest, NamesMixedRunsAndMembers) {
+  EXPECT_THAT(ErrorOf(DescribeAlone(Write("a", FileOf({}) + FileOf({.hour = 18})))),
+              HasSubstr("has fields of several runs (2024-05-20 21:00 UTC of centre 7, and "
+                        "2024-05-20 18:00 UTC of centre 7)"));
+  EXPECT_THAT(ErrorOf(DescribeAlone(Write("b", FileOf({.member = 1}) + FileOf({.member = 2})))),
+              HasSubstr("has 2 members of an ensemble"));
+  EXPECT_THAT(ErrorOf(DescribeAlone(Write("c", FileOf({}) + FileOf({})))),
+              HasSubstr("is there twice at hybrid level 1"));
+}
+
+TEST_F(GribStormTest, NamesMissingLevels) {
+  const auto without = [this](int category, int number, int level) {
+    return ErrorWith([=](Message& message) { return !Is(message, category, number, level); });
+  };
+  EXPECT_THAT(without(1, 24, 3), HasSubstr("RWMR (0/1/24) of hybrid level 3 is missing at "
+                                           "2024-05-20 22:00 UTC"));
+  EXPECT_THAT(without(1, 22, 1), HasSubstr("CLMR (0/1/22) of hybrid level 1 is missing"));
+  EXPECT_THAT(without(0, 0, 2), HasSubstr("TMP (0/0/0) of hybrid level 2 is missing"));
+  EXPECT_THAT(without(1, 0, 4), HasSubstr("SPFH (0/1/0) of hybrid level 4 is missing"));
+  EXPECT_THAT(without(3, 5, 2), HasSubstr("HGT (0/3/5) of hybrid level 2 is missing"));
+  EXPECT_THAT(without(3, 0, 4), HasSubstr("PRES (0/3/0) of hybrid level 4 is missing"));
+  EXPECT_THAT(ErrorWith([](Message& message) { return message.level.value != 2; }),
+              HasSubstr("every field of hybrid level 2 is missing"));
+  EXPECT_THAT(ErrorWith([](Message& message) { return message.level.value != 1; }),
+              HasSubstr("every field of the levels below level 2 is missing"));
+}
+
+TEST_F(GribStormTest, NamesHeightsThatCannotBeKnown) {
+  const auto no_heights = [](Message& message) {
+    return message.number != 5 || message.level.type == 1;
+  };
+  EXPECT_THAT(ErrorWith(no_heights), HasSubstr("neither heights (0/3/5, 0/3/6) nor coefficients"));
+  EXPECT_THAT(ErrorWith(no_heights, {.level_type = 150}),
+              HasSubstr("add the files with the heights of half levels (HHL, 0/3/6)"));
+  EXPECT_THAT(ErrorWith(no_heights, {.level_type = 118}), HasSubstr("neither heights"));
+  EXPECT_THAT(ErrorWith([](Message& message) {
+                return message.number != 0 || message.category != 3 || message.level.type == 1;
+              }),
+              HasSubstr("pressure (0/3/0) of hybrid level 1 and the others is missing"));
+}
+
+TEST_F(GribStormTest, ReadsOtherModelLevels) {
+  for (const int type : {118, 119}) {
+    const auto file = Describe({.level_type = type});
+    ASSERT_TRUE(file.ok()) << file.status();
+    EXPECT_TRUE(file->reader->Read(0, std::nullopt, {}).ok());
+  }
+}
+
+// Levels of pressure 1000, 900, 800 and 700 hPa, of which the first is below the ground (990 hPa).
+Layout Isobaric() {
+  Layout layout;
+  layout.level_type = 100;
+  layout.edit = [](Message& message) {
+    if (message.level.type != 100) return true;
+    message.level.value = 110'000 - 10'000 * message.level.value;
+    if (message.number == 5)
+      message.values[0] = message.level.value == 100'000 ? 300.0F : message.values[0];
+    return message.category != 3 || message.number != 0;
+  };
+  return layout;
+}
+
+TEST_F(GribStormTest, CutsIsobaricLevelsAtTheGround) {
+  const auto file = Describe(Isobaric());
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_THAT(file->assumptions, Contains("Levels below the ground are left out."));
+  const auto fields = file->reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR(fields->grid.low_corner_m.z, 400.0, 1.0);
+  // Heights are 2000, 3000 and 4000 m from 900 hPa up, and the ground is at 400 m.
+  const double mass =
+      (90'000.0 * 2100 + 80'000.0 * 1000 + 70'000.0 * 1000) / (287.0 * 280.0) * 8 / 16384;
+  EXPECT_NEAR(PathAt(*fields, 1, 0), mass, 0.002 * mass);
+}
+
+TEST_F(GribStormTest, ComputesAMissingHeight) {
+  Layout layout = Isobaric();
+  const auto edit = layout.edit;
+  layout.edit = [edit](Message& message) {
+    return edit(message) && !Is(message, 3, 5, 80'000, 100);
+  };
+  const auto file = Describe(layout);
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_THAT(file->assumptions, Contains(HasSubstr("(hydrostatic): 800 hPa")));
+  EXPECT_TRUE(file->reader->Read(0, std::nullopt, {}).ok());
+}
+
+// ICON: generalized levels, 1 at the top, between half levels whose heights are known.
+std::string Generalized(const std::vector<float>& grid_of_fields,
+                        const std::vector<float>& grid_of_heights) {
+  Layout layout;
+  layout.centre = 78;
+  layout.edit = [&](Message& message) {
+    if (message.level.type == 1) return false;
+    message.level = {150, message.level.value, 0, 150, message.level.value + 1};
+    message.coordinates = grid_of_fields;
+    return message.category != 3 || message.number != 5;
+  };
+  std::string file = FileOf(layout);
+  for (int level = 1; level <= 5; ++level) {
+    Message heights;
+    heights.category = 3;
+    heights.number = 6;
+    heights.centre = 78;
+    heights.forecast = 0;
+    heights.level = {150, level, 0, 101, 0};
+    heights.coordinates = grid_of_heights;
+    heights.grid = GridOf({});
+    heights.points = 4;
+    heights.values = {5000.0F - 900.0F * static_cast<float>(level)};
+    file += BytesOf(heights);
+  }
+  return file;
+}
+
+TEST_F(GribStormTest, ReadsHeightsOfHalfLevels) {
+  const std::vector<float> id = {5.0F, 1.0F, 0.1F, 0.2F, 0.3F, 0.4F};
+  const auto file = DescribeAlone(Write("icon", Generalized(id, id)));
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_THAT(file->assumptions, Contains(HasSubstr("the whole air")));
+  const auto fields = file->reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ(fields->terrain_height_m[0], 500.0F);
+  // 900 m thick layers at 900 to 600 hPa and 280 K, with 24 and 8 or 16 and 8 times 2^-14 of water.
+  const double air = (90'000.0 + 80'000.0 + 70'000.0 + 60'000.0) * 900.0 / (287.0 * 280.0);
+  EXPECT_NEAR(PathAt(*fields, 1, 1), air * 8 / 16384 / (1 - 16.0 / 16384), 0.002 * air * 8 / 16384);
+  std::vector<float> other = id;
+  other[5] = 0.5F;
+  EXPECT_THAT(ErrorOf(DescribeAlone(Write("mixed", Generalized(id, other)))),
+              HasSubstr("which match the fields' uuidOfVGrid"));
+}
+
+TEST_F(GribStormTest, OneHybridLevelIsNoPartOfIsobaricLevels) {
+  Layout layout = Isobaric();
+  const std::string extra = FileOf({.levels = 1, .edit = [](Message& message) {
+                                      return message.category == 1 && message.level.type == 105;
+                                    }});
+  const auto file = DescribeAlone(Write("gfs", extra + FileOf(layout)));
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_EQ(file->cells.z, 4);
+}
+
+TEST_F(GribStormTest, LeavesOutIsobaricLevelsAtTheEnds) {
+  Layout layout = Isobaric();
+  const auto edit = layout.edit;
+  layout.edit = [edit](Message& message) {
+    return edit(message) && !Is(message, 1, 24, 70'000, 100);
+  };
+  const auto file = Describe(layout);
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_EQ(file->cells.z, 3);
+  EXPECT_THAT(file->assumptions, Contains(HasSubstr("left out: 700 hPa")));
+  layout.edit = [edit](Message& message) {
+    return edit(message) && !Is(message, 1, 24, 80'000, 100);
+  };
+  EXPECT_THAT(ErrorOf(Describe(layout)), HasSubstr("RWMR (0/1/24) of 800 hPa is missing"));
+}
+
+TEST_F(GribStormTest, NamesDamagedFiles) {
+  const std::string whole = FileOf({});
+  EXPECT_THAT(ErrorOf(DescribeAlone(Write("cut", whole.substr(0, whole.size() / 2 + 10)))),
+              HasSubstr("it was cut short: copy it again"));
+  EXPECT_THAT(ErrorOf(DescribeAlone(Write("first", "GRIB\x01\x02\x03\x01" + whole.substr(8)))),
+              HasSubstr("GRIB edition 1"));
+  EXPECT_THAT(
+      ErrorOf(DescribeAlone(Write(
+          "precipitation",
+          BytesOf(
+              {.category = 1, .number = 8, .grid = GridOf({}), .points = 4, .values = {0.0F}})))),
+      HasSubstr("has no field that a storm needs"));
+}
+
+TEST_F(GribStormTest, NamesParts) {
+  const auto part_of = [](const Message& message) {
+    const auto index = grib::ReadIndex(*grib::testing::BytesIn(BytesOf(message)));
+    return *GribPartOf(*index);
+  };
+  Message heights;
+  heights.category = 3;
+  heights.number = 6;
+  heights.forecast = 0;
+  heights.level = {150, 3, 0, 101, 0};
+  heights.grid = GridOf({});
+  heights.points = 4;
+  heights.values = {100.0F};
+  Message cloud = heights;
+  cloud.category = 1;
+  cloud.number = 22;
+  cloud.forecast = 2;
+  cloud.level = {150, 3, 0, 150, 4};
+  EXPECT_EQ(part_of(heights).kind, GribPartKind::kInvariant);
+  EXPECT_EQ(part_of(cloud).kind, GribPartKind::kFields);
+  EXPECT_EQ(part_of(cloud).of, part_of(heights).of);
+  EXPECT_EQ(part_of(cloud).times.size(), 1U);
+  EXPECT_TRUE(part_of(heights).times.empty());
+  Message later = cloud;
+  later.hour = 22;
+  EXPECT_NE(part_of(later).of, part_of(cloud).of);
+  Message member = cloud;
+  member.member = 3;
+  EXPECT_NE(part_of(member).of, part_of(cloud).of);
+}
+
+TEST(GribAir, LevelsBelowTheGroundAreEmpty) {
+  const std::vector<double> pressure = {100'000.0, 90'000.0, 80'000.0};
+  const std::vector<float> heights = {100.0F, 1000.0F, 2000.0F};
+  const auto cut = [&](const std::vector<float>& surface, const std::vector<float>& ground) {
+    std::vector<float> interfaces = InterfacesBetween(heights, ground, 1);
+    CutAtGround(pressure, heights, surface, ground, interfaces);
+    return interfaces;
+  };
+  EXPECT_THAT(cut({95'000.0F}, {400.0F}), ElementsAre(400.0F, 400.0F, 1500.0F, 2500.0F));
+  EXPECT_THAT(cut({}, {400.0F}), ElementsAre(400.0F, 400.0F, 1500.0F, 2500.0F));
+  EXPECT_THAT(cut({95'000.0F}, {700.0F}), ElementsAre(700.0F, 700.0F, 1500.0F, 2500.0F));
+  EXPECT_THAT(cut({101'000.0F}, {50.0F}), ElementsAre(50.0F, 550.0F, 1500.0F, 2500.0F));
+  // Without the ground's height, only the level below the ground is missing.
+  const std::vector<float> unknown = cut({95'000.0F}, {});
+  EXPECT_TRUE(std::isnan(unknown[0]));
+  EXPECT_EQ(unknown[1], 550.0F);
+}
+
+TEST(GribAir, SplitsCloudByTemperature) {
+  EXPECT_EQ(IceShare(230.0F), 1.0F);
+  EXPECT_EQ(IceShare(275.0F), 0.0F);
+  EXPECT_NEAR(IceShare(253.15F), 0.5F, 1e-6F);
+}
+
+// Air at 0 C that is saturated has 611 Pa of vapour.
+TEST(GribAir, ComputesVapour) {
+  std::vector<float> humidity = {100.0F, 50.0F};
+  RelativeHumidityToVapour({100'000.0F, 100'000.0F}, {273.15F, 273.15F}, humidity);
+  EXPECT_NEAR(humidity[0], 0.622 * 611.2 / (1e5 - 611.2), 1e-5);
+  EXPECT_NEAR(humidity[1], 0.622 * 305.6 / (1e5 - 305.6), 1e-5);
+  std::vector<float> specific = {0.01F};
+  SpecificHumidityToVapour(specific);
+  EXPECT_NEAR(specific[0], 0.01 / 0.99, 1e-7);
+}
+
+// An isothermal atmosphere of 0 C has a scale height of 7996 m.
+TEST(GribAir, HydrostaticHeightsFollowTheScaleHeight) {
+  const std::vector<float> coefficients = {0.0F, 20'000.0F, 0.0F, 0.0F, 0.25F, 1.0F};
+  const std::vector<float> pressure = HybridPressures(coefficients, 1, {100'000.0F});
+  EXPECT_THAT(pressure, ElementsAre(100'000.0F, 45'000.0F));
+  const std::vector<float> heights = HydrostaticInterfaces(pressure, {273.15F}, {200.0F});
+  EXPECT_EQ(heights[0], 200.0F);
+  EXPECT_NEAR(heights[1], 200.0 + 7996.0 * std::log(1.0 / 0.45), 1.0);
+  std::vector<float> omega = {-10.0F};
+  OmegaToAscent({50'000.0F}, {273.15F}, omega);
+  EXPECT_NEAR(omega[0], 10.0 * 7996.0 / 50'000.0, 0.001);
+}
+
+}  // namespace
+}  // namespace thunderhead::storm_files
