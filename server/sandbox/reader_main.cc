@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -92,6 +93,14 @@ void OfferToEndFirst() {
   close(file);
 }
 
+// Returns the first bytes of the first file.
+std::string_view StartOf(const std::vector<BundledFile>& files) {
+  if (files.empty()) return {};
+  const std::span<const std::byte> bytes = files.front().bytes;
+  return {reinterpret_cast<const char*>(bytes.data()),
+          std::min(bytes.size(), storm_files::UnknownFile::kStart_bytes)};
+}
+
 constexpr std::uint64_t kLargestRequest = 64 << 10;
 
 // The time after which an idle reader ends. It is longer than the time for which the server keeps
@@ -139,16 +148,16 @@ absl::Status Reader::Prepare(const Request& first) {
   if (first.wanted != Wanted::kProbe) {
     const auto bytes = MapFile();
     if (!bytes.ok()) return base::Annotate(bytes.status(), first.path);
-    if (first.bundle == 0) {
-      paths_ = {first.path};
-      base::ReadFromMemory(first.path, *bytes);
-    } else {
-      THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<BundledFile> files, FilesOfBundle(*bytes));
-      for (const BundledFile& file : files) {
-        paths_.push_back(file.path);
-        base::ReadFromMemory(file.path, file.bytes);
-      }
+    std::vector<BundledFile> files = {{first.path, *bytes}};
+    if (first.bundle != 0) {
+      THUNDERHEAD_ASSIGN_OR_RETURN(files, FilesOfBundle(*bytes));
     }
+    for (const BundledFile& file : files) {
+      paths_.push_back(file.path);
+      base::ReadFromMemory(file.path, file.bytes);
+    }
+    // The files of a bundle have one format.
+    THUNDERHEAD_RETURN_IF_ERROR(formats_.PrepareBeforeConfinement(StartOf(files)));
   }
   return Confine({first.memory_bytes, first.processor_s});
 }

@@ -1,0 +1,81 @@
+// Tests that a confined reader reads GRIB files as the program itself does, although ecCodes reads
+// its definitions from files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "absl/strings/match.h"
+#include "sandbox/confined_files.h"
+#include "storm_files/storm_format.h"
+
+namespace thunderhead::sandbox {
+namespace {
+
+const std::filesystem::path kShared =
+    std::filesystem::path(THUNDERHEAD_SOURCE_DIR).parent_path() / "shared/data/grib";
+
+std::shared_ptr<ConfinedFiles> Files() {
+  ConfinedOptions options;
+  options.limits = {std::uint64_t{1} << 30, std::chrono::minutes(1)};
+  options.program = "/proc/self/exe";
+  return std::make_shared<ConfinedFiles>(options);
+}
+
+void ExpectSame(const storm_files::StormFile& own, const storm_files::StormFile& confined) {
+  EXPECT_EQ(confined.about, own.about);
+  EXPECT_EQ(confined.cells, own.cells);
+  EXPECT_EQ(confined.times, own.times);
+  EXPECT_EQ(confined.fields, own.fields);
+  EXPECT_EQ(confined.assumptions, own.assumptions);
+  const auto expected = own.reader->Read(0, std::nullopt, {});
+  const auto fields = confined.reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(expected.ok()) << expected.status();
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  ASSERT_EQ(fields->fields.size(), expected->fields.size());
+  for (std::size_t i = 0; i < fields->fields.size(); ++i) {
+    EXPECT_EQ(fields->fields[i].concentration_kg_per_m3,
+              expected->fields[i].concentration_kg_per_m3);
+  }
+  EXPECT_EQ(fields->motion.turbulence, expected->motion.turbulence);
+}
+
+class ConfinedGrib : public ::testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Sets, ConfinedGrib,
+                         ::testing::Values("hrrr-native/hrrr.t21z.wrfnatf01.grib2",
+                                           "hrrr-pressure/hrrr.t21z.wrfprsf01.grib2",
+                                           "gfs-0p25-like/gfs.t18z.pgrb2.0p25.f003",
+                                           "ifs-like/ifs_2024052012_009_ml.grib2"));
+
+TEST_P(ConfinedGrib, IsReadAsInTheProgram) {
+  const std::string path = (kShared / GetParam()).string();
+  const auto files = Files();
+  const auto own = storm_files::StormFormats::BuiltIn().Describe(path);
+  const auto confined = files->Describe(path);
+  ASSERT_TRUE(own.ok()) << own.status();
+  ASSERT_TRUE(confined.ok()) << confined.status();
+  ExpectSame(*own, *confined);
+}
+
+TEST(ConfinedGribParts, AreReadTogether) {
+  for (const char* hour : {"_001_", "_002_"}) {
+    std::vector<std::string> paths;
+    for (const auto& entry : std::filesystem::directory_iterator(kShared / "icon-d2-like")) {
+      const std::string name = entry.path().filename().string();
+      if (absl::StrContains(name, hour) || absl::StrContains(name, "_hhl.")) {
+        paths.push_back(entry.path().string());
+      }
+    }
+    std::ranges::sort(paths);
+    const auto files = Files();
+    const auto own = storm_files::StormFormats::BuiltIn().DescribeTogether(paths);
+    const auto confined = files->DescribeTogether(paths.front(), paths);
+    ASSERT_TRUE(own.ok()) << own.status();
+    ASSERT_TRUE(confined.ok()) << confined.status();
+    ExpectSame(*own, *confined);
+  }
+}
+
+}  // namespace
+}  // namespace thunderhead::sandbox
