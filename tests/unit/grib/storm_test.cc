@@ -318,6 +318,7 @@ std::string Generalized(const std::vector<float>& grid_of_fields,
     if (message.level.type == 1) return false;
     message.level = {150, message.level.value, 0, 150, message.level.value + 1};
     message.coordinates = grid_of_fields;
+    if (message.category == 1 && message.number == 0) message.values = {0.05F};
     return message.category != 3 || message.number != 5;
   };
   std::string file = FileOf(layout);
@@ -345,9 +346,13 @@ TEST_F(GribStormTest, ReadsHeightsOfHalfLevels) {
   const auto fields = file->reader->Read(0, std::nullopt, {});
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_EQ(fields->terrain_height_m[0], 500.0F);
-  // 900 m thick layers at 900 to 600 hPa and 280 K, with 24 and 8 or 16 and 8 times 2^-14 of water.
-  const double air = (90'000.0 + 80'000.0 + 70'000.0 + 60'000.0) * 900.0 / (287.0 * 280.0);
-  EXPECT_NEAR(PathAt(*fields, 1, 1), air * 8 / 16384 / (1 - 16.0 / 16384), 0.002 * air * 8 / 16384);
+  // 900 m thick layers at 900 to 600 hPa and 280 K, with 5 % of vapour and 16 times 2^-14 of water.
+  constexpr double kVapour = 0.05 / 0.95;  // per dry air
+  constexpr double kShare = 16.0 / 16384.0;
+  const double dry = (90'000.0 + 80'000.0 + 70'000.0 + 60'000.0) * 900.0 / (287.0 * 280.0) /
+                     (1.0 + 1.608 * kVapour);
+  const double rain = dry * (1.0 + kVapour) / (1.0 - kShare) * 8.0 / 16384.0;
+  EXPECT_NEAR(PathAt(*fields, 1, 1), rain, 0.002 * rain);
   std::vector<float> other = id;
   other[5] = 0.5F;
   EXPECT_THAT(ErrorOf(DescribeAlone(Write("mixed", Generalized(id, other)))),
