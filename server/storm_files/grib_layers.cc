@@ -290,10 +290,10 @@ absl::Status Finder::FindHydrometeors(absl::Time time, GribLayers& layers,
     Found best;
     GribHydrometeor found;
     for (const auto& [parameter, meaning] : parameters) {
-      THUNDERHEAD_ASSIGN_OR_RETURN(Found levels,
-                                   Levels(time, false, [&](const Candidate& candidate) {
-                                     return candidate.Field().parameter == parameter;
-                                   }));
+      THUNDERHEAD_ASSIGN_OR_RETURN(
+          Found levels, Levels(time, false, [&wanted = parameter](const Candidate& candidate) {
+            return candidate.Field().parameter == wanted;
+          }));
       if (levels.levels.size() <= best.levels.size()) continue;
       best = std::move(levels);
       found.hydrometeor = hydrometeor;
