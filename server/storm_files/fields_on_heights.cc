@@ -371,14 +371,23 @@ void TimeReader::TakeWind(const ModelWind& wind, volume::HydrometeorFields& resu
       wind.on_faces ? LayerMeans(wind.w_m_per_s, air_.levels, air_.columns) : wind.w_m_per_s;
   std::ranges::transform(ascent, ascent.begin(), volume::AscentByte);
   motion.ascent = BytesOntoGrid(ascent);
-  const std::vector<glm::dvec2> winds = MeanWinds(wind.u_m_per_s, wind.v_m_per_s, wind.cells.z);
-  motion.steering_m_per_s =
-      SteeringWind_m_per_s(winds, LevelMeans(air_.interface_height_m, air_.levels + 1));
-  motion.time_s = absl::ToDoubleSeconds(domain_.time - absl::UnixEpoch());
+  std::vector<glm::dvec2> winds = MeanWinds(wind.u_m_per_s, wind.v_m_per_s, wind.cells.z);
+  std::vector<double> height_m = LevelMeans(air_.interface_height_m, air_.levels + 1);
   std::vector<double> first_column_m;
   for (std::size_t i = 0; i < air_.interface_height_m.size(); i += air_.columns) {
     first_column_m.push_back(air_.interface_height_m[i]);
   }
+  const auto is_missing = [](double each_m) { return std::isnan(each_m); };
+  if (std::ranges::any_of(first_column_m, is_missing)) first_column_m = height_m;
+  // Levels that lie below the ground everywhere have no heights.
+  const auto first = std::ranges::find_if_not(height_m, is_missing);
+  const auto below = std::min(first - height_m.begin(), std::ssize(winds));
+  winds.erase(winds.begin(), winds.begin() + below);
+  height_m.erase(height_m.begin(), height_m.begin() + below);
+  first_column_m.erase(first_column_m.begin(), first_column_m.begin() + below);
+  if (winds.empty()) return;
+  motion.steering_m_per_s = SteeringWind_m_per_s(winds, height_m);
+  motion.time_s = absl::ToDoubleSeconds(domain_.time - absl::UnixEpoch());
   motion.shear_m_per_s = Shear_m_per_s(result, winds, first_column_m);
 }
 

@@ -198,7 +198,8 @@ glm::dvec2 SteeringWind_m_per_s(const std::vector<glm::dvec2>& winds,
   for (std::size_t level = 0; level < winds.size(); ++level) {
     const double thickness_m =
         std::min(interface_height_m[level + 1], top_m) - interface_height_m[level];
-    if (!(thickness_m > 0.0)) break;
+    // Levels below the ground have no thickness.
+    if (!(thickness_m > 0.0)) continue;
     sum += thickness_m * winds[level];
     depth_m += thickness_m;
   }

@@ -284,6 +284,16 @@ TEST_P(GribWind, IsAlongTheGrid) {
   }
 }
 
+// The lowest pressure levels are below the ground, and the steering wind begins above them.
+TEST_P(GribWind, SteersDetail) {
+  const auto file = Describe(time_);
+  ASSERT_TRUE(file.ok()) << file.status();
+  const auto fields = file->reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR(fields->motion.steering_m_per_s.x, 4.5, 2.0);
+  EXPECT_NEAR(fields->motion.steering_m_per_s.y, 2.2, 1.0);
+}
+
 // The wind is known both along the grid and along east and north.
 TEST_P(GribWind, TurnsWithTheGrid) {
   const auto storm = StormOf(time_);
