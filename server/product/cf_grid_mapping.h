@@ -6,23 +6,34 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "product/map_place.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::product {
 
+// A coordinate axis of a map in this mapping. A value on it is `origin` + `per_metre` times the
+// projection's own coordinate.
+struct CfMapAxis {
+  std::string name;  // of the dimension and its variable
+  std::string units;
+  std::string standard_name;
+  double origin = 0.0;
+  double per_metre = 1.0;
+};
+
 // The attributes of the grid mapping variable, which a data variable's attribute `grid_mapping`
-// names.
+// names, and the axes of a map.
 struct CfGridMapping {
-  // True for a grid in degrees of latitude and longitude whose cells are drawn as evenly spaced
-  // metres. The conventions have no name for this projection, so its coordinates are written in
-  // degrees.
+  CfMapAxis x;
+  CfMapAxis y;
+  // True if the axes are longitude and latitude. The conventions have no name for the projection of
+  // a grid in degrees that is drawn as evenly spaced metres, so its coordinates are in degrees.
   bool in_degrees = false;
   std::map<std::string, std::string> texts;
   std::map<std::string, std::vector<double>> numbers;
 };
 
-// Returns the grid mapping of a projection. INVALID_ARGUMENT if storm files cannot have this
-// projection.
-absl::StatusOr<CfGridMapping> GridMappingOf(const MapProjection& projection);
+// Returns the grid mapping of a projection. INVALID_ARGUMENT if the conventions have no name for
+// it.
+absl::StatusOr<CfGridMapping> GridMappingOf(const volume::MapProjection& projection);
 
 }  // namespace thunderhead::product

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "product/gdal_library.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::product {
 namespace {
@@ -100,11 +101,17 @@ absl::StatusOr<std::string> EncodeGeoTiff(const frame::RgbImage& image, const Ma
                                           const std::map<std::string, std::string>& texts) {
   THUNDERHEAD_CHECK(!place.projection.empty(), "a GeoTIFF without a projection");
   THUNDERHEAD_ASSIGN_OR_RETURN(const GdalLibrary* gdal, GdalLibrary::Get());
-  THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection projection,
-                               MapProjection::Open(place.projection));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::MapProjection projection,
+                               volume::MapProjection::Open(place.projection));
+  if (projection.Text().HasRotatedPole()) {
+    return absl::InvalidArgumentError(
+        "a GeoTIFF cannot state the place of a grid with a rotated pole; use a .nc, or a .png with "
+        "--world-file");
+  }
   TiffInMemory tiff(*gdal);
   std::string file;
-  if (tiff.Create(image.width_px, image.height_px) && tiff.Place(place, projection.GdalText()) &&
+  if (tiff.Create(image.width_px, image.height_px) &&
+      tiff.Place(place, projection.WellKnownText(volume::MapProjection::WellKnown::kGdal)) &&
       tiff.Describe(texts) && tiff.Write(image)) {
     file = tiff.Take();
   }

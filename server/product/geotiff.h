@@ -12,7 +12,8 @@ namespace thunderhead::product {
 
 // Returns the file's bytes: red, green and blue with 8 bits each, with lossless compression.
 // `texts` become metadata; their keys are the names. `place` must have a projection.
-// FAILED_PRECONDITION if GDAL is not installed. Safe from any thread.
+// FAILED_PRECONDITION if GDAL is not installed. INVALID_ARGUMENT for a grid with a rotated pole,
+// which GeoTIFF cannot express. Safe from any thread.
 absl::StatusOr<std::string> EncodeGeoTiff(const frame::RgbImage& image, const MapPlace& place,
                                           const std::map<std::string, std::string>& texts);
 

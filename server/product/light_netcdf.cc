@@ -13,6 +13,7 @@
 #include "base/status.h"
 #include "netcdf/netcdf_writer.h"
 #include "product/cf_grid_mapping.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::product {
 namespace {
@@ -79,32 +80,15 @@ class LightFile {
       dimensions_ = {1, 0};
       return absl::OkStatus();
     }
-    THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection projection,
-                                 MapProjection::Open(map_.place.projection));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const volume::MapProjection projection,
+                                 volume::MapProjection::Open(map_.place.projection));
     THUNDERHEAD_ASSIGN_OR_RETURN(const CfGridMapping mapping, GridMappingOf(projection));
-    if (mapping.in_degrees) {
-      for (double& x : columns) x = projection.PlaceOf({x, rows.front()}).longitude_deg;
-      for (double& y : rows) y = projection.PlaceOf({0.0, y}).latitude_deg;
-      Axis("lon", std::move(columns),
-           {{"axis", "X"}, {"units", "degrees_east"}, {"standard_name", "longitude"}});
-      Axis("lat", std::move(rows),
-           {{"axis", "Y"}, {"units", "degrees_north"}, {"standard_name", "latitude"}});
-    } else {
-      std::vector<double> latitudes;
-      std::vector<double> longitudes;
-      for (const double y : rows) {
-        for (const double x : columns) {
-          const Place place = projection.PlaceOf({x, y});
-          latitudes.push_back(place.latitude_deg);
-          longitudes.push_back(place.longitude_deg);
-        }
-      }
-      Axis("x", std::move(columns),
-           {{"axis", "X"}, {"units", "m"}, {"standard_name", "projection_x_coordinate"}});
-      Axis("y", std::move(rows),
-           {{"axis", "Y"}, {"units", "m"}, {"standard_name", "projection_y_coordinate"}});
-      PlaceField("lat", "latitude", "degrees_north", std::move(latitudes));
-      PlaceField("lon", "longitude", "degrees_east", std::move(longitudes));
+    if (!mapping.in_degrees) PlacesOf(projection, columns, rows);
+    MapAxis(mapping.x, "X", std::move(columns));
+    MapAxis(mapping.y, "Y", std::move(rows));
+    if (!mapping.in_degrees) {
+      PlaceField("lat", "latitude", "degrees_north", std::move(latitudes_));
+      PlaceField("lon", "longitude", "degrees_east", std::move(longitudes_));
       coordinates_ = {"lat", "lon"};
     }
     dimensions_ = {1, 0};
@@ -115,7 +99,28 @@ class LightFile {
     return absl::OkStatus();
   }
 
-  using Attributes = std::vector<std::pair<const char*, const char*>>;
+  // Computes the latitude and longitude of each pixel; NaN beyond the map.
+  void PlacesOf(const volume::MapProjection& projection, const std::vector<double>& columns,
+                const std::vector<double>& rows) {
+    constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+    for (const double y : rows) {
+      for (const double x : columns) {
+        const auto place =
+            projection.PlaceOf({x, y}).value_or(volume::EarthPlace{kNowhere, kNowhere});
+        latitudes_.push_back(place.latitude_deg);
+        longitudes_.push_back(place.longitude_deg);
+      }
+    }
+  }
+
+  using Attributes = std::vector<std::pair<const char*, std::string>>;
+
+  // Writes an axis of the map. `values` are the projection's own coordinates.
+  void MapAxis(const CfMapAxis& axis, const char* direction, std::vector<double> values) {
+    for (double& value : values) value = axis.origin + axis.per_metre * value;
+    Axis(axis.name.c_str(), std::move(values),
+         {{"axis", direction}, {"units", axis.units}, {"standard_name", axis.standard_name}});
+  }
 
   void Axis(const char* name, std::vector<double> values, const Attributes& attributes) {
     const int variable = file_.Variable(name, NC_DOUBLE, {file_.Dimension(name, values.size())});
@@ -128,6 +133,7 @@ class LightFile {
     const int variable = file_.Variable(name, NC_DOUBLE, {1, 0});
     file_.Text(variable, "standard_name", standard_name);
     file_.Text(variable, "units", units);
+    file_.Number(variable, "_FillValue", std::numeric_limits<double>::quiet_NaN());
     doubles_.emplace_back(variable, std::move(values));
   }
 
@@ -216,6 +222,8 @@ class LightFile {
   // Identifiers of netCDF-C. The dimension x is declared first, but is the last dimension of
   // variables.
   std::vector<int> dimensions_;
+  std::vector<double> latitudes_;
+  std::vector<double> longitudes_;
   std::vector<std::string> coordinates_;
   bool mapped_ = false;
   std::vector<std::pair<int, std::vector<double>>> doubles_;

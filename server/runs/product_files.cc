@@ -24,6 +24,7 @@
 #include "product/light_netcdf.h"
 #include "product/map_place.h"
 #include "service/messages/picture_texts.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::runs {
 namespace {
@@ -112,17 +113,15 @@ absl::StatusOr<product::MapPlace> PlaceOf(const v1::RenderImageResponse& picture
   if (place.projection.empty()) return place;
   const std::pair<std::string, std::string> middle =
       absl::StrSplit(TextOr(texts, service::kMiddleText, ""), ' ');
-  product::Place degrees;
+  volume::EarthPlace degrees;
   if (!absl::SimpleAtod(middle.first, &degrees.latitude_deg) ||
       !absl::SimpleAtod(middle.second, &degrees.longitude_deg)) {
     return absl::InternalError("the picture has a map projection, but no place on it");
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const product::MapProjection projection,
-                               product::MapProjection::Open(place.projection));
-  place.upper_left_m += projection.PlaneOf_m(degrees);
-  if (std::isfinite(place.upper_left_m.x) && std::isfinite(place.upper_left_m.y)) return place;
-  return absl::DataLossError(
-      absl::StrCat("the middle of the domain is not on its own map (", place.projection, ")"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::MapProjection projection,
+                               volume::MapProjection::Of(place.projection, degrees));
+  place.upper_left_m += projection.Origin_m();
+  return place;
 }
 
 absl::StatusOr<ProductFile> MakeNetcdf(const v1::RenderImageResponse& picture) {

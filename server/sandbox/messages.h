@@ -213,10 +213,11 @@ void Visit(Archive& archive, volume::RegularGrid& grid) {
   archive(low_corner_m);
 }
 
-// Sends all members except `borders`, which the storm store sets.
+// Sends all members except `borders` and `true_north_deg`, which the storm store sets.
 template <typename Archive>
 void Visit(Archive& archive, volume::HydrometeorFields& fields) {
-  auto& [grid, of_hydrometeors, terrain_height_m, land, borders, motion, air, condensate] = fields;
+  auto& [grid, of_hydrometeors, terrain_height_m, land, borders, true_north_deg, motion, air,
+         condensate] = fields;
   Visit(archive, grid);
   auto count = static_cast<std::uint32_t>(of_hydrometeors.size());
   archive(count);

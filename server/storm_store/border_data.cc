@@ -354,14 +354,11 @@ absl::StatusOr<std::vector<volume::BorderLine>> BorderData::LinesOf(
 std::shared_ptr<const volume::BorderMap> BorderData::MapOf(const StormInfo& storm,
                                                            std::size_t time_index,
                                                            const volume::RegularGrid& grid) {
-  const std::optional<volume::EarthPlace> at = MiddleOf(storm, time_index);
-  if (!at.has_value()) return nullptr;
-  const volume::EarthPlace& middle = *at;
-  const std::optional<volume::MapProjection> projection =
-      volume::MapProjection::Of(storm.projection, middle);
+  const std::optional<volume::MapProjection> projection = ProjectionOf(storm, time_index);
   if (!projection.has_value()) return nullptr;
   const volume::BorderGrid around = BorderGridOf(grid);
   const glm::dvec2 size_m = glm::dvec2(around.texels) * around.texel_m;
+  const volume::EarthPlace middle = MiddleOf(storm, time_index).value_or(volume::EarthPlace());
   const Key key{storm.projection, middle.latitude_deg, middle.longitude_deg,
                 around.low_m.x,   around.low_m.y,      size_m.x,
                 size_m.y};

@@ -380,6 +380,7 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
                                    return Checkpoint(read, activity, share);
                                  }));
     THUNDERHEAD_RETURN_IF_ERROR(CheckNotReplaced(file, ReplacedRetryAfter()));
+    counted->fields.true_north_deg = TrueNorthOf_deg(place.storm->info, place.time);
     if (options_.borders != nullptr) {
       counted->fields.borders =
           options_.borders->MapOf(place.storm->info, place.time, counted->fields.grid);

@@ -488,6 +488,29 @@ std::vector<std::vector<storm_files::StormFile>> FilesOfRuns(
   return runs;
 }
 
+namespace {
+
+// Sets the storm's map projection if PROJ accepts it. The file is untrusted, so this is also the
+// check of its text.
+void SetProjection(const storm_files::StormFile& file, CataloguedStorm& storm) {
+  StormInfo& info = storm.info;
+  if (file.projection.empty() || !info.latitude_deg.has_value() ||
+      !info.longitude_deg.has_value()) {
+    return;
+  }
+  const volume::EarthPlace middle{*info.latitude_deg, *info.longitude_deg};
+  const auto projection = volume::MapProjection::Of(file.projection, middle);
+  if (!projection.ok()) {
+    storm.notes.push_back(absl::StrCat(file.path, ": the storm is shown without a map: ",
+                                       std::string(projection.status().message())));
+    return;
+  }
+  info.projection = file.projection;
+  info.true_north_deg = projection->TrueNorth_deg(middle).value_or(0.0);
+}
+
+}  // namespace
+
 CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::StormFile> files) {
   THUNDERHEAD_CHECK(!files.empty(), name);
   std::ranges::sort(files, {}, &storm_files::StormFile::path);
@@ -528,7 +551,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
   if (const auto start = storm_files::RunStart(first); start.has_value()) {
     info.run_start = FormatValidTime(*start);
   }
-  info.projection = first.projection;
+  SetProjection(first, storm);
   for (const storm_files::StormFile& file : files) {
     for (const std::string& assumption : file.assumptions) {
       if (std::ranges::find(info.assumptions, assumption) == info.assumptions.end()) {

@@ -26,6 +26,23 @@ std::string DomainOf(const StormInfo& storm) {
   return domain;
 }
 
+std::optional<volume::MapProjection> ProjectionOf(const StormInfo& storm, std::size_t time_index) {
+  const std::optional<volume::EarthPlace> middle = MiddleOf(storm, time_index);
+  if (storm.projection.empty() || !middle.has_value()) return std::nullopt;
+  auto projection = volume::MapProjection::Of(storm.projection, *middle);
+  if (!projection.ok()) return std::nullopt;
+  return *std::move(projection);
+}
+
+double TrueNorthOf_deg(const StormInfo& storm, std::size_t time_index) {
+  if (time_index >= storm.times.size() || !storm.times[time_index].middle.has_value()) {
+    return storm.true_north_deg;
+  }
+  const std::optional<volume::MapProjection> projection = ProjectionOf(storm, time_index);
+  if (!projection.has_value()) return 0.0;
+  return projection->TrueNorth_deg(*storm.times[time_index].middle).value_or(0.0);
+}
+
 namespace {
 
 // Checks the paths. A missing path is an error, because it is probably mistyped. A named file of

@@ -22,6 +22,7 @@
 #include "storm_files/storm_file.h"
 #include "storm_files/storm_format.h"
 #include "volume/hydrometeor_fields.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::storm_store {
 
@@ -55,9 +56,13 @@ struct StormInfo {
   std::optional<double> longitude_deg;
   std::optional<std::string> run_start;  // start of the model run, in the format of valid times;
                                          // nothing if unknown
-  // The grid's map projection as a PROJ string. The domain's middle is at latitude_deg and
-  // longitude_deg. The string is empty if the grid has no projection.
+  // The grid's map projection in PROJ's notation. volume::MapProjection::Of accepts it, with the
+  // middle of the domain at latitude_deg and longitude_deg. It is empty if the grid has no
+  // projection.
   std::string projection;
+  // The direction of true north in the middle of the domain, in degrees clockwise from the grid's
+  // north (the world's y axis), at the first time. It is 0 without a projection.
+  double true_north_deg = 0.0;
   // What the files' reader assumed because they do not say it, a sentence each, for users.
   std::vector<std::string> assumptions;
 };
@@ -70,6 +75,13 @@ inline std::optional<volume::EarthPlace> MiddleOf(const StormInfo& storm, std::s
   if (!storm.latitude_deg.has_value() || !storm.longitude_deg.has_value()) return std::nullopt;
   return volume::EarthPlace{*storm.latitude_deg, *storm.longitude_deg};
 }
+
+// Returns the map projection of a storm's world coordinates at a time, or nothing for a storm
+// without one.
+std::optional<volume::MapProjection> ProjectionOf(const StormInfo& storm, std::size_t time_index);
+
+// Returns StormInfo::true_north_deg at a time of the storm.
+double TrueNorthOf_deg(const StormInfo& storm, std::size_t time_index);
 
 // A description never changes. A storm that grows gets a new description.
 using StormInfoPtr = std::shared_ptr<const StormInfo>;

@@ -92,6 +92,9 @@ struct HydrometeorFields {
   // Coastlines and borders, the same for all times of a storm. Null if the storm's place on Earth
   // is unknown or the border data are not installed. The storm store sets this pointer.
   std::shared_ptr<const BorderMap> borders;
+  // The direction of true north in the middle of the domain, in degrees clockwise from the y axis.
+  // The storm store sets it.
+  double true_north_deg = 0.0;
   AirMotion motion;    // motion of the air
   AirDensity air;      // density of the air for mixing ratios; empty if the file has no mixing
                        // ratios

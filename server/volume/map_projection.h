@@ -1,13 +1,18 @@
-// Converts between world coordinates and places on Earth, with the map projections in
-// StormInfo::projection, on the sphere. Formulas: Snyder 1987, Map Projections - A Working Manual
-// (USGS Professional Paper 1395), equations 7-1, 7-5, 15-1 to 15-11, 21-15 to 21-18 and 12-1. This
-// code does not depend on files.
+// Converts between world coordinates and places on Earth with PROJ, in the map projection of a
+// storm's grid. World coordinates are metres along the axes of that grid. Their y axis is therefore
+// the grid's north, which differs from true north except at places such as a Lambert grid's central
+// meridian. PROJ opens no file here, neither its database nor its settings, so this code also works
+// in a confined process.
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 
+#include "absl/status/statusor.h"
 #include "glm/vec2.hpp"
+#include "volume/projection_text.h"
 
 namespace thunderhead::volume {
 
@@ -18,37 +23,64 @@ struct EarthPlace {
   bool operator==(const EarthPlace&) const = default;
 };
 
+// The figure of the Earth: an ellipsoid, or a sphere with an inverse flattening of 0.
+struct EarthFigure {
+  double semi_major_m = 0.0;
+  double inverse_flattening = 0.0;
+};
+
+// A map projection. Safe from any thread; calls from several threads wait for each other.
 class MapProjection {
  public:
-  // Returns the projection of a grid whose middle is at `middle`. `proj` is a PROJ string. Returns
-  // nothing for an empty string or an unsupported projection. Supported are lcc, stere centred on a
-  // pole, merc and eqc, all on a sphere.
-  static std::optional<MapProjection> Of(std::string_view proj, const EarthPlace& middle);
+  // Opens a projection in PROJ's notation (see ProjectionText). World coordinates are metres east
+  // and north of the projection's own origin. INVALID_ARGUMENT if the text is not accepted.
+  static absl::StatusOr<MapProjection> Open(std::string_view proj);
+  // Opens the projection of a grid whose middle is at `middle`. World coordinates are metres from
+  // that middle. INVALID_ARGUMENT if the text is not accepted or the middle is not on the map.
+  static absl::StatusOr<MapProjection> Of(std::string_view proj, const EarthPlace& middle);
 
-  // Returns the place at these metres east and north of the domain's middle, or nothing if they lie
-  // beyond the map.
+  MapProjection(MapProjection&&) noexcept;
+  MapProjection& operator=(MapProjection&&) noexcept;
+  ~MapProjection();
+
+  // Returns the place at these world coordinates, or nothing if they lie beyond the map.
   std::optional<EarthPlace> PlaceOf(const glm::dvec2& world_m) const;
-  // Returns the metres east and north of the middle for a place, or nothing if it is not on the
-  // map.
+  // Returns the world coordinates of a place, or nothing if it is not on the map. On a map that
+  // goes around the Earth, they are the ones nearest to the origin.
   std::optional<glm::dvec2> WorldOf(const EarthPlace& place) const;
 
+  // Returns the direction of true north at a place, in degrees clockwise from the grid's north (the
+  // world's y axis), -180 to 180. East of the central meridian of a Lambert grid in the northern
+  // hemisphere it is negative. An azimuth from true north plus this angle is an azimuth in the
+  // world. Returns nothing if the place is not on the map.
+  std::optional<double> TrueNorth_deg(const EarthPlace& place) const;
+
+  // Returns the origin of world coordinates in the projection's own coordinates, in metres.
+  const glm::dvec2& Origin_m() const { return origin_m_; }
+  const ProjectionText& Text() const { return text_; }
+  EarthFigure Figure() const;
+
+  // Returns the projection as well-known text, by ISO 19162 or in GDAL's variant of its first
+  // version. Returns an empty text if that cannot express the projection.
+  enum class WellKnown { kIso, kGdal };
+  std::string WellKnownText(WellKnown variant) const;
+
  private:
-  enum class Kind { kConic, kPolar, kMercator, kPlateCarree };
+  class Proj;
 
-  MapProjection() = default;
+  MapProjection(ProjectionText text, std::unique_ptr<Proj> proj);
   std::optional<glm::dvec2> Project(const EarthPlace& place) const;
-  std::optional<EarthPlace> Unproject(const glm::dvec2& map_m) const;
+  double FullCircle_m() const;
 
-  Kind kind_ = Kind::kConic;
-  double radius_m_ = 0.0;
-  double longitude0_deg_ = 0.0;
-  double latitude0_ = 0.0;  // radians
-  double cone_ = 1.0;       // Snyder's cone constant n; 1 for the polar projection
-  double scale_m_ = 0.0;    // R F for a cone, 2 R k0 for the polar projection, R cos(lat_ts) for a
-                            // cylinder
-  double origin_m_ = 0.0;   // distance on the map from latitude0_ to the cone's tip
-  double pole_ = 1.0;       // 1 for the north pole, -1 for the south pole
-  glm::dvec2 middle_m_{0.0};
+  ProjectionText text_;
+  std::unique_ptr<Proj> proj_;
+  // The distance on the map around the Earth along a parallel, if it is the same on all parallels.
+  std::optional<double> full_circle_m_;
+  glm::dvec2 origin_m_{0.0};
 };
+
+// Returns the projection of a coordinate reference system in well-known text, in PROJ's notation.
+// INVALID_ARGUMENT if it is not a projection that ProjectionText accepts.
+absl::StatusOr<std::string> ProjectionOfWellKnownText(const std::string& text);
 
 }  // namespace thunderhead::volume

@@ -78,9 +78,9 @@ void SetFieldMaximum(const volume::FieldPeak& peak, const StormPlaces& places,
 
 StormPlaces::StormPlaces(const storm_store::StormInfo& storm, int time_index,
                          const volume::HydrometeorFields& fields)
-    : middle_(storm_store::MiddleOf(storm, static_cast<std::size_t>(time_index))), fields_(fields) {
-  if (middle_.has_value()) projection_ = volume::MapProjection::Of(storm.projection, *middle_);
-}
+    : middle_(storm_store::MiddleOf(storm, static_cast<std::size_t>(time_index))),
+      fields_(fields),
+      projection_(storm_store::ProjectionOf(storm, static_cast<std::size_t>(time_index))) {}
 
 std::optional<v1::EarthPlace> StormPlaces::OnEarth(const glm::dvec2& place_m) const {
   if (!projection_.has_value()) return std::nullopt;

@@ -21,6 +21,7 @@
 #include "base/error_details.h"
 #include "base/stopwatch.h"
 #include "sandbox/messages.h"
+#include "storm_store/storm_catalogue.h"
 #include "storm_store/storm_store.h"
 #include "telemetry/metrics.h"
 #include "tests/support/figure.h"
@@ -30,6 +31,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait_for.h"
 #include "tests/unit/sandbox/misbehaving_format.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::sandbox {
 namespace {
@@ -409,6 +411,32 @@ TEST_F(ConfinedFilesTest, AStormLargerThanItsMemoryIsSaidToBe) {
 TEST_F(ConfinedFilesTest, AReaderMayDoNothingElse) {
   const absl::Status status = Files()->Describe(Bad("everything")).status();
   EXPECT_EQ(std::string(status.message()), "[]");
+}
+
+// PROJ opens no file, so a format can convert coordinates in the confined process.
+TEST_F(ConfinedFilesTest, AReaderFindsPlacesOnAMap) {
+  const auto file = Files()->Describe(Bad("lambert"));
+  ASSERT_TRUE(file.ok()) << file.status();
+  ASSERT_TRUE(file->latitude_deg.has_value() && file->longitude_deg.has_value());
+  const auto map = volume::MapProjection::Open(file->projection);
+  ASSERT_TRUE(map.ok()) << map.status();
+  const auto plane_m = map->WorldOf({*file->latitude_deg, *file->longitude_deg});
+  ASSERT_TRUE(plane_m.has_value());
+  EXPECT_NEAR(plane_m->x, 700'000.0, 0.01);
+  EXPECT_NEAR(plane_m->y, 300'000.0, 0.01);
+}
+
+// The map projection of a file is untrusted, and PROJ's notation can name files.
+TEST_F(ConfinedFilesTest, AMapThatNamesFilesIsNotUsed) {
+  auto file = Files()->Describe(Bad("grids"));
+  ASSERT_TRUE(file.ok()) << file.status();
+  const storm_store::CataloguedStorm storm = storm_store::AssembleStorm("grids", {*file});
+  EXPECT_EQ(storm.info.projection, "");
+  EXPECT_EQ(storm.info.true_north_deg, 0.0);
+  ASSERT_EQ(storm.notes.size(), 1U);
+  EXPECT_THAT(storm.notes[0], HasSubstr("without a map"));
+  EXPECT_THAT(storm.notes[0], HasSubstr("+nadgrids is not accepted"));
+  EXPECT_FALSE(storm_store::ProjectionOf(storm.info).has_value());
 }
 
 TEST_F(ConfinedFilesTest, AReaderThatTalksNonsenseIsNotBelieved) {

@@ -16,6 +16,7 @@
 #include "absl/strings/str_cat.h"
 #include "sandbox/archive.h"
 #include "sandbox/messages.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::sandbox {
 namespace {
@@ -172,6 +173,18 @@ class MisbehavingReader final : public storm_files::RecordReader {
   const std::string name_;
 };
 
+// Gives the file a place, by PROJ in this confined process or by a text that makes PROJ open a
+// file.
+void Place(const std::string& name, StormFile& file) {
+  file.projection = "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000";
+  const auto map = volume::MapProjection::Open(file.projection);
+  const auto place = map.ok() ? map->PlaceOf({700'000.0, 300'000.0}) : std::nullopt;
+  if (!place.has_value()) return;
+  file.latitude_deg = place->latitude_deg;
+  file.longitude_deg = place->longitude_deg;
+  if (name == "grids") file.projection += " +nadgrids=/etc/passwd";
+}
+
 class MisbehavingFormat final : public storm_files::StormFormat {
  public:
   std::string_view Name() const override { return "a misbehaving file"; }
@@ -194,6 +207,7 @@ class MisbehavingFormat final : public storm_files::StormFormat {
     file.times = {absl::FromUnixSeconds(name == "future" ? 1LL << 50 : 0)};
     file.fields = {physics::Hydrometeor::kCloud};
     file.about = name;
+    if (name == "lambert" || name == "grids") Place(name, file);
     file.reader = std::make_shared<MisbehavingReader>(name);
     return file;
   }

@@ -99,7 +99,7 @@ TEST_F(BorderDataTest, LinesAreWhereTheirPlacesAreProjected) {
 TEST_F(BorderDataTest, ParallelsAreCurves) {
   Write({}, {SegmentThrough({{-99.0, 36.7}, {-94.0, 36.7}})});
   const auto projection = volume::MapProjection::Of(plains_.projection, {36.7, -96.2});
-  ASSERT_TRUE(projection.has_value());
+  ASSERT_TRUE(projection.ok());
   const auto map = Map(plains_);
   for (double longitude = -98.0; longitude < -94.5; longitude += 0.07) {
     EXPECT_GT(PaintedAt(*map, *projection->WorldOf({36.7, longitude})), 0.9F) << longitude;
@@ -205,6 +205,10 @@ TEST_F(BorderDataTest, TimesOfAStormShareItsMap) {
   EXPECT_EQ((*first)->borders, (*second)->borders);
   EXPECT_EQ((*nowhere)->borders, nullptr);
   EXPECT_GT(PaintedAt(*(*first)->borders, {0.0, 0.0}), 0.99F);
+  // The cone with both parallels at 30 degrees has the constant sin(30). The domain's middle is
+  // 0.15 degrees east of its central meridian.
+  EXPECT_NEAR((*first)->true_north_deg, -0.15 * 0.5, 1e-3);
+  EXPECT_EQ((*nowhere)->true_north_deg, 0.0);
   EXPECT_GT((*first)->Bytes(), (*nowhere)->Bytes() + (*first)->borders->Bytes() / 2);
 }
 

@@ -1,0 +1,65 @@
+// Converts the attributes of a CF grid mapping variable (CF-1.11, appendix F) to a map projection
+// in PROJ's notation, which volume::MapProjection opens. docs/storm_files.md lists the mappings.
+// This code does not depend on files.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "glm/vec2.hpp"
+
+namespace thunderhead::storm_files {
+
+// The radius of the sphere that is assumed if a grid mapping does not give the figure of the Earth.
+inline constexpr double kAssumedEarthRadius_m = 6.371e6;
+
+// An attribute's value: a text, or its numbers.
+using AttributeValue = std::variant<std::string, std::vector<double>>;
+using Attributes = std::map<std::string, AttributeValue, std::less<>>;
+
+// The quantity along the x and y axes of a grid.
+enum class GridAxes {
+  kMetres,          // coordinates on the map, in metres or kilometres
+  kDegrees,         // longitude and latitude
+  kRotatedDegrees,  // grid_longitude and grid_latitude, in degrees
+  kScanAngles,      // a satellite's scanning angles, in radians
+};
+
+struct GridMapping {
+  std::string projection;  // volume::ProjectionText::Parse accepts it
+  GridAxes axes = GridAxes::kMetres;
+  // Metres on the map per unit of x and y. A grid of degrees is even in metres only with these
+  // factors.
+  glm::dvec2 metres_per_unit{1.0};
+  // Values of x and y at the origin of the map.
+  glm::dvec2 origin{0.0};
+  // What the attributes leave open and this code assumed, as sentences for the user.
+  std::vector<std::string> assumptions;
+
+  // Returns the position on the map, in metres, of values of x and y.
+  // volume::MapProjection::Open(projection) gives its place on Earth.
+  glm::dvec2 Plane_m(const glm::dvec2& coordinates) const {
+    return (coordinates - origin) * metres_per_unit;
+  }
+};
+
+// What must be known of the grid whose mapping is converted.
+struct MappedGrid {
+  // Values of x and y in the middle of the grid. Only grids of degrees need them.
+  glm::dvec2 middle{0.0};
+  // The length of one unit of x and y in metres, if their unit is a length. Without it, they are
+  // taken as metres, and those of a geostationary grid as radians.
+  std::optional<double> unit_m;
+};
+
+// Returns the projection that the attributes of a grid mapping variable describe. The attribute
+// crs_wkt, or GDAL's spatial_ref, is used only if there is no grid_mapping_name. INVALID_ARGUMENT
+// if an attribute is missing or wrong, or if the mapping is not supported; the error names the
+// attribute. The caller adds the names of the file and the variable.
+absl::StatusOr<GridMapping> ReadGridMapping(const Attributes& attributes, const MappedGrid& grid);
+
+}  // namespace thunderhead::storm_files
