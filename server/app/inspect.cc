@@ -73,6 +73,13 @@ std::string DriftOf(const v1::StormDescription& storm) {
                          storm.steering_east_m_per_s(), storm.steering_north_m_per_s());
 }
 
+// Describes the map projection, and how the grid is turned against true north.
+std::string MapOf(const v1::StormDescription& storm) {
+  if (!storm.has_true_north_deg()) return "no map projection is known for the grid";
+  return absl::StrFormat("%s\n        true north is at azimuth %.1f from the grid's north",
+                         storm.projection(), storm.true_north_deg());
+}
+
 std::string Table(const v1::StormDescription& storm) {
   const v1::Grid& grid = storm.grid();
   std::string text = absl::StrFormat(
@@ -85,6 +92,7 @@ std::string Table(const v1::StormDescription& storm) {
   if (storm.has_latitude_deg()) {
     absl::StrAppendFormat(&text, "middle  %.3f N %.3f E\n", storm.latitude_deg(),
                           storm.longitude_deg());
+    absl::StrAppend(&text, "map     ", MapOf(storm), "\n");
   } else {
     absl::StrAppend(&text, "middle  no place on Earth (idealised)\n");
   }

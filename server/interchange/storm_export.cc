@@ -123,11 +123,17 @@ VdbMetadata OriginOf(const scene::Scene& scene, const storm_store::StormInfo& st
                        {"elapsed_s", time.elapsed_s},
                        {"turbulent_detail", std::int64_t{options.detail ? 1 : 0}},
                        {"world_coordinates",
-                        "metres: x east and y north of the domain's middle, z up from sea level"}};
-  const auto middle = storm_store::MiddleOf(storm, static_cast<std::size_t>(scene.time_index));
+                        "metres: x east and y north of the domain's middle along its grid's axes, "
+                        "z up from sea level"}};
+  const auto time_index = static_cast<std::size_t>(scene.time_index);
+  const auto middle = storm_store::MiddleOf(storm, time_index);
   if (middle.has_value()) {
     metadata["origin_latitude_deg"] = middle->latitude_deg;
     metadata["origin_longitude_deg"] = middle->longitude_deg;
+  }
+  if (!storm.projection.empty()) {
+    metadata["projection"] = storm.projection;
+    metadata["true_north_deg"] = storm_store::TrueNorthOf_deg(storm, time_index);
   }
   return metadata;
 }

@@ -261,6 +261,7 @@ std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& sc
   const bool by_land_use = look.cover == scene::GroundCover::kLandUse;
   const float contrast = physics::FieldContrast(by_land_use ? fields.land.mean_reflectance : plain);
   const glm::dvec2 middle_m = scene::RingMiddle_m(fields);
+  const glm::vec2 north(scene::TrueNorth(fields));
   const double height_px = scene.output.height_px;
   const double ground_m = volume::LowestTerrain_m(fields);
   return [=, land = by_land_use ? fields.land : volume::LandSurface{},
@@ -294,7 +295,7 @@ std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& sc
     }
     if (look.rings) {
       paint(physics::glsl::ring_reflectance(),
-            physics::glsl::ring_paint(glm::vec2(place_m - middle_m), point, across_m));
+            physics::glsl::ring_paint(glm::vec2(place_m - middle_m), north, point, across_m));
     }
     return seen;
   };

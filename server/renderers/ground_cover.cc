@@ -26,6 +26,7 @@ void GroundCover::SetLand(const volume::HydrometeorFields& fields) {
 void GroundCover::Prepare(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
   drawn_ = scene::DrawnGround(scene, fields);
   ring_middle_m_ = scene::RingMiddle_m(fields);
+  ring_north_ = scene::TrueNorth(fields);
   PrepareBorders(fields);
   if (drawn_.cover == scene::GroundCover::kPlain) return;
   if (fields_.Get() == 0) {
@@ -70,6 +71,7 @@ void GroundCover::Bind(const gl::Program& program, const scene::Scene& scene,
               glm::vec2(2.0 * glm::dvec2(view.half_height_m, view.tan_half_height) /
                         static_cast<double>(height_px)));
   program.Set(uniform::ring_middle_m, glm::vec2(ring_middle_m_ - glm::dvec2(view.eye_m)));
+  program.Set(uniform::ring_north, glm::vec2(ring_north_));
   if (border_map_ != nullptr) {
     const volume::BorderGrid& grid = border_map_->grid;
     const glm::dvec2 size_m = glm::dvec2(grid.texels) * grid.texel_m;

@@ -48,6 +48,7 @@ class GroundCover {
 
   scene::Ground drawn_;
   glm::dvec2 ring_middle_m_{0.0};
+  glm::dvec2 ring_north_{0.0, 1.0};
   gl::Texture2D fields_;  // the pattern of crop fields (physics::FieldPattern)
   bool land_is_new_ = false;
   gl::Texture2D land_;

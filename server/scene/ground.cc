@@ -33,4 +33,8 @@ glm::dvec2 RingMiddle_m(const volume::HydrometeorFields& fields) {
   return SiteOf(fields, glm::dvec2(0.0)).storm_middle_m;
 }
 
+glm::dvec2 TrueNorth(const volume::HydrometeorFields& fields) {
+  return glm::dvec2(Direction(fields.true_north_deg, 0.0));
+}
+
 }  // namespace thunderhead::scene

@@ -25,4 +25,8 @@ glm::vec3 PlainReflectance(const Scene& scene);
 // Returns the centre of the distance rings, which is the middle of the storm's condensate.
 glm::dvec2 RingMiddle_m(const volume::HydrometeorFields& fields);
 
+// Returns the unit vector to true north in the middle of the domain. The arrow of the distance
+// rings points there.
+glm::dvec2 TrueNorth(const volume::HydrometeorFields& fields);
+
 }  // namespace thunderhead::scene

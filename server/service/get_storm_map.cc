@@ -93,7 +93,11 @@ absl::Status Map(Engine& engine, const storm_store::StormInfo& storm,
     response.add_fields(ToMessage(fields->fields[index].hydrometeor));
   }
   response.set_projection(storm.projection);
-  ToMessage(map, StormPlaces(storm, time_index, *fields), response);
+  const StormPlaces places(storm, time_index, *fields);
+  ToMessage(map, places, response);
+  if (request.with_places()) {
+    if (auto table = places.Table()) *response.mutable_places() = *std::move(table);
+  }
   return absl::OkStatus();
 }
 

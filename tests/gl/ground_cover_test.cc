@@ -226,6 +226,14 @@ TEST_F(GroundCoverTest, RingsAreOrangeAndVanishWhenOff) {
   }
   EXPECT_EQ(red_at(with, 10.0, -5e3), red_at(without, 10.0, -5e3));
   EXPECT_EQ(red_at(with, 15e3, 10.0), red_at(without, 15e3, 10.0));
+  // On a grid that is turned against true north, the arrow points to true north, here to the left.
+  auto turned = std::make_shared<volume::HydrometeorFields>(*fields_);
+  turned->true_north_deg = -90.0;
+  fields_ = turned;
+  const std::vector<float> left = Pixels(scene::GroundCover::kPlain, true);
+  EXPECT_GT(red_at(left, -15e3, 10.0), 1.5F * red_at(without, -15e3, 10.0));
+  EXPECT_EQ(red_at(left, 10.0, 5e3), red_at(without, 10.0, 5e3));
+  EXPECT_GT(red_at(left, 10.0, -10e3), 1.5F * red_at(without, 10.0, -10e3));
 }
 
 // Views are from above and from the side, near and far, where a pixel is wider than the line. A

@@ -15,6 +15,8 @@ from PIL import Image
 
 ATTRIBUTES = {"MAP_PROJ": 1, "TRUELAT1": 30.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0}
 LAMBERT = "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000 +no_defs"
+# Lambert's cone constant of the two standard parallels (Snyder 1987, equation 15-3).
+CONE = math.log(math.cos(math.radians(30)) / math.cos(math.radians(60))) / math.log(math.tan(math.radians(75)) / math.tan(math.radians(60)))
 SCENE = """{"camera": {"orbit": {"target": {"xM": 1000, "yM": 2000, "zM": 4000}, "azimuthDeg": 270, "elevationDeg": 10,
             "distanceM": 90000, "fieldOfViewDeg": 40}}, "sun": {"azimuthDeg": 120, "elevationDeg": 35}}"""
 SIZE = ("--size", "160x100", "--quality", "fast")
@@ -69,6 +71,8 @@ class MetadataTest(ProductTest):
         self.assertAlmostEqual(latitude, self.places["lat"][19:21, 19:21].mean(), places=3)
         self.assertAlmostEqual(longitude, self.places["lon"][19:21, 19:21].mean(), places=3)
         self.assertIn("+proj=lcc", texts["thunderhead.projection"])
+        # The middle is 7 degrees east of the grid's central meridian, and true north is therefore to the left.
+        self.assertAlmostEqual(float(texts["thunderhead.true_north_deg"]), CONE * (-97.0 - longitude), places=2)
 
     def test_a_png_tells_what_it_shows_and_can_be_drawn_again(self) -> None:
         version = run(PROGRAM, "--version").stdout.split()[-1]

@@ -363,6 +363,31 @@ TEST(StormMapTest, TheMapIsNumbersWithItsLegend) {
   EXPECT_FALSE(map.maxima(1).has_position());
 }
 
+TEST(StormMapTest, PlacesAreSentAsATableIfAsked) {
+  FakeService service;
+  GiveAPlace(service);
+  v1::GetStormMapRequest request;
+  EXPECT_FALSE(Mapped(service, request).has_places());
+  request.set_with_places(true);
+  const v1::PlaceTable table = Mapped(service, request).places();
+  const auto nodes = static_cast<int>(table.nodes());
+  ASSERT_EQ(table.x_m_size(), nodes * nodes);
+  ASSERT_EQ(table.y_m_size(), nodes * nodes);
+  // The middle, and the middle of the northern side, where Mercator's y follows from the latitude.
+  const int middle = nodes / 2 * nodes + nodes / 2;
+  EXPECT_NEAR(table.x_m(middle), 0.0F, 0.1F);
+  EXPECT_NEAR(table.y_m(middle), 0.0F, 0.1F);
+  const auto stretched = [](double degrees) {
+    return std::log(std::tan((45.0 + degrees / 2.0) * 3.14159265358979 / 180.0));
+  };
+  const double y_m = 6370000.0 * std::cos(40.0 * 3.14159265358979 / 180.0) *
+                     (stretched(40.0 + table.reach_deg()) - stretched(40.0));
+  EXPECT_NEAR(table.y_m((nodes - 1) * nodes + nodes / 2), y_m, 0.1);
+  EXPECT_GT(y_m, 1.8 * 20'000.0) << "the domain is 20 km wide";
+  service.store->Become("anvil", [](storm_store::StormInfo& storm) { storm.projection.clear(); });
+  EXPECT_FALSE(Mapped(service, request).has_places());
+}
+
 TEST(StormMapTest, SizeAndFieldsAreChosen) {
   FakeService service;
   v1::GetStormMapRequest request;

@@ -236,6 +236,26 @@ TEST(SunMessages, ARealStormsSunFollowsItsTimeAndPlace) {
   EXPECT_EQ(held.elevation_deg(), 10.0F);
 }
 
+// On a grid that is turned against true north, the azimuth of the sun counts from the grid's north.
+// Here true north is 30 degrees to the left of it, as on a polar stereographic grid.
+TEST(SunMessages, TheSunOfATurnedGridCountsFromTheGridsNorth) {
+  storm_store::StormInfo storm;
+  storm.times = {{"2013-05-20T20:00:00Z", 0.0}};
+  storm.latitude_deg = 60.0;
+  storm.longitude_deg = 40.0;
+  storm.projection = "+proj=stere +lat_0=90 +lat_ts=60 +lon_0=10 +R=6370000";
+  storm.true_north_deg = -30.0;
+  v1::Sun sun;
+  service::FillSunDefaults(sun, storm, 0);
+  const physics::SunPosition expected = physics::SunPositionAt(1369080000.0, 60.0, 40.0);
+  EXPECT_NEAR(sun.azimuth_deg(), expected.azimuth_deg - 30.0, 1e-3);
+  EXPECT_NEAR(sun.elevation_deg(), expected.elevation_deg, 1e-3);
+  // An azimuth stays within the schema's limits.
+  storm.true_north_deg = 170.0;
+  service::FillSunDefaults(sun, storm, 0);
+  EXPECT_NEAR(sun.azimuth_deg(), std::fmod(expected.azimuth_deg + 170.0, 360.0), 1e-3);
+}
+
 TEST(SessionsTest, UnknownStormsAndTimesAreRefused) {
   FakeService service;
   v1::CreateSessionRequest request;

@@ -39,6 +39,8 @@ PictureTexts TextsOf(const v1::RenderImageResponse& picture, const storm_store::
     const volume::EarthPlace middle =
         storm_store::MiddleOf(storm, time_index).value_or(volume::EarthPlace());
     texts[kMiddleText] = absl::StrFormat("%.7f %.7f", middle.latitude_deg, middle.longitude_deg);
+    texts[kTrueNorthText] =
+        absl::StrFormat("%.7f", storm_store::TrueNorthOf_deg(storm, time_index));
   }
   if (picture.has_accuracy()) {
     texts[kErrorText] = absl::StrCat(picture.accuracy().estimated_error());

@@ -14,12 +14,14 @@ namespace thunderhead::service {
 inline constexpr char kSceneText[] = "thunderhead.scene";
 
 // The keywords of facts about the storm: its valid time and the start of the run (ISO 8601, UTC),
-// and its map projection in PROJ's notation. The last keyword is for the latitude and longitude of
-// the middle of its domain. A fact that the storm does not have is omitted.
+// and its map projection in PROJ's notation. The last two keywords are for the latitude and
+// longitude of the middle of its domain, and for the direction of true north there. That direction
+// is in degrees clockwise from the grid's north. A fact that the storm does not have is omitted.
 inline constexpr char kValidText[] = "thunderhead.valid";
 inline constexpr char kRunText[] = "thunderhead.run";
 inline constexpr char kProjectionText[] = "thunderhead.projection";
 inline constexpr char kMiddleText[] = "thunderhead.middle_deg";
+inline constexpr char kTrueNorthText[] = "thunderhead.true_north_deg";
 
 // The keyword of the View as JSON: the mapping from the picture's pixels to the world.
 inline constexpr char kViewText[] = "thunderhead.view";

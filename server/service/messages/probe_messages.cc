@@ -4,13 +4,23 @@
 #include <string>
 
 #include "base/utf8.h"
+#include "glm/trigonometric.hpp"
 #include "service/messages/camera_messages.h"
 #include "service/messages/scene_messages.h"
 #include "volume/field_values.h"
+#include "volume/place_table.h"
 #include "volume/terrain.h"
 
 namespace thunderhead::service {
 namespace {
+
+// The table of places has this many nodes along each side, and reaches this many times the length
+// of the domain's longer side. It then contains the page's map, which also shows a camera outside
+// the domain. For a domain of 500 km, coordinates between nodes are accurate to 20 m.
+constexpr int kNodes = 65;
+constexpr double kReach = 1.9;
+constexpr double kFarthest_deg = 175.0;
+constexpr double kEarth_m = 6.371e6;
 
 v1::EarthPlace PlaceMessage(const volume::EarthPlace& place) {
   v1::EarthPlace message;
@@ -92,6 +102,21 @@ std::optional<v1::EarthPlace> StormPlaces::OnEarth(const glm::dvec2& place_m) co
 std::optional<v1::EarthPlace> StormPlaces::Middle() const {
   if (!middle_.has_value()) return std::nullopt;
   return PlaceMessage(*middle_);
+}
+
+std::optional<v1::PlaceTable> StormPlaces::Table() const {
+  if (!projection_.has_value()) return std::nullopt;
+  const glm::dvec2 size_m = glm::dvec2(fields_.grid.cells) * glm::dvec2(fields_.grid.spacing_m);
+  const double reach_deg =
+      std::min(glm::degrees(kReach * std::max(size_m.x, size_m.y) / kEarth_m), kFarthest_deg);
+  const volume::PlaceTable table =
+      volume::MakePlaceTable(*projection_, *middle_, kNodes, reach_deg);
+  v1::PlaceTable message;
+  message.set_nodes(static_cast<std::uint32_t>(table.nodes));
+  message.set_reach_deg(table.reach_deg);
+  message.mutable_x_m()->Assign(table.x_m.begin(), table.x_m.end());
+  message.mutable_y_m()->Assign(table.y_m.begin(), table.y_m.end());
+  return message;
 }
 
 v1::RayPlace StormPlaces::Of(const scene::StormRay& ray, double along_m) const {

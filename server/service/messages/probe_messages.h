@@ -28,6 +28,8 @@ class StormPlaces {
   std::optional<v1::EarthPlace> OnEarth(const glm::dvec2& place_m) const;
   // Returns the middle of the domain on Earth, or nothing for an idealised run.
   std::optional<v1::EarthPlace> Middle() const;
+  // Returns the table of places around the domain, or nothing if the storm has no projection.
+  std::optional<v1::PlaceTable> Table() const;
   // Returns a place in the air.
   v1::RayPlace Of(const scene::StormRay& ray, double along_m) const;
   // Returns a place where the ray meets the ground. Its height is the terrain's, unaffected by the

@@ -395,6 +395,10 @@ void ToMessage(const storm_store::StormInfo& storm, const volume::HydrometeorFie
     message.set_longitude_deg(middle->longitude_deg);
   }
   message.set_projection(storm.projection);
+  if (!storm.projection.empty()) {
+    message.set_true_north_deg(
+        storm_store::TrueNorthOf_deg(storm, static_cast<std::size_t>(time_index)));
+  }
   for (const std::string& assumption : storm.assumptions) message.add_assumptions(assumption);
   FillClockDefaults(*message.mutable_sun_clock(), storm, time_index);
   message.set_bytes_per_time(fields.Bytes());

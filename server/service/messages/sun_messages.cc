@@ -1,5 +1,6 @@
 #include "service/messages/sun_messages.h"
 
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -57,7 +58,11 @@ void FillSunDefaults(v1::Sun& sun, const storm_store::StormInfo& storm, int time
                         storm.times[static_cast<std::size_t>(time_index)].elapsed_s;
   const physics::SunPosition position =
       physics::SunPositionAt(unix_s, clock.latitude_deg(), clock.longitude_deg());
-  sun.set_azimuth_deg(static_cast<float>(position.azimuth_deg));
+  // The sun's position counts from true north, and the scene's azimuths from the grid's north.
+  const double north_deg =
+      storm_store::TrueNorthOf_deg(storm, static_cast<std::size_t>(time_index));
+  const double azimuth_deg = std::fmod(position.azimuth_deg + north_deg + 360.0, 360.0);
+  sun.set_azimuth_deg(static_cast<float>(azimuth_deg));
   sun.set_elevation_deg(static_cast<float>(position.elevation_deg));
 }
 

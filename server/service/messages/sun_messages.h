@@ -13,7 +13,8 @@ namespace thunderhead::service {
 absl::Status CheckSun(const v1::Sun& sun);
 
 // Fills in the source of the direction. If the sun follows the clock, also fills in the clock's
-// time and place. The sun's direction at `time_index` then replaces the message's direction.
+// time and place. The sun's direction at `time_index` then replaces the message's direction. Its
+// azimuth counts from the grid's north, as all azimuths of a scene do.
 void FillSunDefaults(v1::Sun& sun, const storm_store::StormInfo& storm, int time_index);
 
 // Fills in the storm's time and place if they are absent.

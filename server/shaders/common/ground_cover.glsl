@@ -41,6 +41,7 @@ uniform float borders_texel_m;
 
 #if RINGS
 uniform vec2 ring_middle_m;
+uniform vec2 ring_north;  // unit vector to true north
 #endif
 
 struct Cover {
@@ -123,7 +124,7 @@ Cover ground_cover(vec3 point_m, vec3 ray, float distance_m) {
   paint(cover, border_reflectance(), border_paint(nearest, borders_texel_m, footprint_m, across_m));
 #endif
 #if RINGS
-  paint(cover, ring_reflectance(), ring_paint(point_m.xy - ring_middle_m, footprint_m, across_m));
+  paint(cover, ring_reflectance(), ring_paint(point_m.xy - ring_middle_m, ring_north, footprint_m, across_m));
 #endif
   return cover;
 }

@@ -144,20 +144,24 @@ const float kRing_m = 10000.0f;
 const float kLastRing_m = 200000.0f;
 const float kArrow = 0.25f;  // length of an arrowhead relative to the distance between rings
 
-// Returns the share of the footprint that rings and arrow cover. `place` is relative to the centre.
-PHYSICS_FUNCTION float ring_paint(vec2 place, vec2 footprint, float across_m) {
+// Returns the share of the footprint that rings and arrow cover. `place` is relative to the centre. `north` is the unit
+// vector to true north.
+PHYSICS_FUNCTION float ring_paint(vec2 place, vec2 north, vec2 footprint, float across_m) {
   float radius = max(length(place), 1.0f);
   float line = line_width(across_m);
   float width = max(dot(abs(place), footprint) / radius, 0.01f);
   float nearest = clamp(floor(radius / kRing_m + 0.5f), 1.0f, kLastRing_m / kRing_m);
   float ring = line_share(abs(radius - nearest * kRing_m), width, line);
-  float north = place.y > 0.0f && place.y < kLastRing_m ? 1.0f : 0.0f;
-  float shaft = line_share(abs(place.x), max(footprint.x, 0.01f), line);
-  float up = place.y / kRing_m - max(floor(place.y / kRing_m), 1.0f);
+  vec2 east = vec2(north.y, -north.x);
+  float along = dot(place, north);
+  float beside = abs(dot(place, east));
+  float breadth = max(dot(abs(east), footprint), 0.01f);
+  float northern = along > 0.0f && along < kLastRing_m ? 1.0f : 0.0f;
+  float shaft = line_share(beside, breadth, line);
+  float up = along / kRing_m - max(floor(along / kRing_m), 1.0f);
   float half_width = 0.09f * kRing_m * (1.0f - up / kArrow);
-  float head =
-      up > 0.0f && up < kArrow ? clamp((half_width - abs(place.x)) / max(footprint.x, 0.01f) + 0.5f, 0.0f, 1.0f) : 0.0f;
-  return max(ring, north * max(shaft, head));
+  float head = up > 0.0f && up < kArrow ? clamp((half_width - beside) / breadth + 0.5f, 0.0f, 1.0f) : 0.0f;
+  return max(ring, northern * max(shaft, head));
 }
 
 // Returns the colour of the rings: orange, which differs from crops, water and snow.
