@@ -1,6 +1,7 @@
 // Camera motions: how a drag in pixels moves and turns each kind of camera. The world axes are
-// those of thunderhead/v1/scene.proto. The x axis points east, y north and z up; the azimuth is
-// clockwise from north. Pixel distances are positive to the right and down.
+// those of thunderhead/v1/scene.proto. The x axis points to the grid's east, y to its north and z
+// up; the azimuth is clockwise from the grid's north. Pixel distances are positive to the right and
+// down.
 #pragma once
 
 #include <array>

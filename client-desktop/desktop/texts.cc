@@ -156,28 +156,33 @@ std::string CompassPoint(double azimuth_deg) {
   return kPoints.at(at % kPoints.size());
 }
 
-std::string DescribePose(const client::Pose& pose) {
+std::string DescribePose(const client::Pose& pose, double true_north_deg) {
   const auto whole = [](double degrees) {
     return static_cast<int>(std::lround(client::WrapDegrees(degrees))) % 360;
   };
   if (const auto* orbit = std::get_if<client::OrbitPose>(&pose)) {
     return absl::StrFormat("Seen from %s (%d°), %.0f° high, %s away",
-                           CompassPoint(orbit->azimuth_deg), whole(orbit->azimuth_deg),
-                           orbit->elevation_deg, FormatLength(orbit->distance_m));
+                           CompassPoint(orbit->azimuth_deg - true_north_deg),
+                           whole(orbit->azimuth_deg - true_north_deg), orbit->elevation_deg,
+                           FormatLength(orbit->distance_m));
   }
   if (const auto* spotter = std::get_if<client::SpotterPose>(&pose)) {
     return absl::StrFormat("Looks to %s (%d°), %.0f° up, through a lens of %s mm",
-                           CompassPoint(spotter->azimuth_deg), whole(spotter->azimuth_deg),
-                           spotter->elevation_deg, FormatNumber(spotter->focal_length_mm));
+                           CompassPoint(spotter->azimuth_deg - true_north_deg),
+                           whole(spotter->azimuth_deg - true_north_deg), spotter->elevation_deg,
+                           FormatNumber(spotter->focal_length_mm));
   }
+  // True north is not exactly up on most maps, so only a clear difference is worth a word.
+  const bool turned = std::abs(std::remainder(true_north_deg, 360.0)) >= 0.5;
   return FormatLength(std::get<client::TopDownPose>(pose).width_m) +
-         " from left to right, north up";
+         (turned ? " from left to right, the grid's north up" : " from left to right, north up");
 }
 
-std::string DescribeSun(const v1::Sun& sun) {
+std::string DescribeSun(const v1::Sun& sun, double true_north_deg) {
   const double height_deg = sun.elevation_deg();
-  return absl::StrFormat("The sun is in %s, %.0f° %s", CompassPoint(sun.azimuth_deg()),
-                         std::abs(height_deg), height_deg < 0.0 ? "below the horizon" : "high");
+  return absl::StrFormat("The sun is in %s, %.0f° %s",
+                         CompassPoint(sun.azimuth_deg() - true_north_deg), std::abs(height_deg),
+                         height_deg < 0.0 ? "below the horizon" : "high");
 }
 
 std::string NameOf(v1::Hydrometeor hydrometeor) {

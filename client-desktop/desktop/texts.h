@@ -37,8 +37,10 @@ std::string NameOfRun(const v1::StormDescription& storm);
 // from the storm's first time.
 double LeadSeconds(const v1::StormDescription& storm, const v1::StormTime& time);
 std::string CompassPoint(double azimuth_deg);  // "NNE"
-std::string DescribePose(const client::Pose& pose);
-std::string DescribeSun(const v1::Sun& sun);
+// Describe a camera and the sun. Their azimuths count from the grid's north, and the texts' from
+// true north, which is in the scene's azimuth `true_north_deg`.
+std::string DescribePose(const client::Pose& pose, double true_north_deg);
+std::string DescribeSun(const v1::Sun& sun, double true_north_deg);
 std::string NameOf(v1::Hydrometeor hydrometeor);  // "Cloud"
 std::string NameOf(v1::Preset preset);            // "Uniform phase, low albedo"
 // Returns true if the field contains extinction instead of a mass of water or ice. Particle sizes

@@ -81,6 +81,10 @@ int Ui::time_count() const {
   return storms.storm.id() == state.scene.storm_id() ? storms.storm.times_size() : 0;
 }
 
+double Ui::true_north_deg() const {
+  return storms.storm.id() == state.scene.storm_id() ? storms.storm.true_north_deg() : 0.0;
+}
+
 int Ui::time_index() const {
   if (!state.scene.has_time_index()) return std::max(0, time_count() - 1);
   return static_cast<int>(state.scene.time_index());

@@ -69,6 +69,9 @@ struct Ui {
   // until the server has described the storm.
   int time_count() const;
   int time_index() const;
+  // The direction of true north in the scene, in degrees clockwise from the grid's north. It is 0
+  // until the server has described the storm.
+  double true_north_deg() const;
   // Returns true once the picture of the newest scene is on the screen.
   bool IsShown() const;
   // Copies the state of the session and the catalogue if it has changed. Returns true if anything

@@ -336,8 +336,20 @@ TEST(Texts, AreThePages) {
   time.set_elapsed_s(30.0);
   EXPECT_EQ(FormatValidTime(time), "+30 s");
   EXPECT_EQ(CompassPoint(22.0), "NNE");
-  EXPECT_EQ(DescribePose(OrbitPose{{}, 200.0, 4.0, 61'000.0, 35.0}),
+  EXPECT_EQ(DescribePose(OrbitPose{{}, 200.0, 4.0, 61'000.0, 35.0}, 0.0),
             "Seen from SSW (200°), 4° high, 61 km away");
+}
+
+TEST(Texts, DirectionsCountFromTrueNorth) {
+  EXPECT_EQ(DescribePose(OrbitPose{{}, 350.0, 4.0, 61'000.0, 35.0}, -12.5),
+            "Seen from N (3°), 4° high, 61 km away");
+  const client::TopDownPose above{{}, 160'000.0};
+  EXPECT_EQ(DescribePose(above, 0.2), "160 km from left to right, north up");
+  EXPECT_EQ(DescribePose(above, -12.5), "160 km from left to right, the grid's north up");
+  v1::Sun sun;
+  sun.set_azimuth_deg(260.0F);
+  sun.set_elevation_deg(20.0F);
+  EXPECT_EQ(DescribeSun(sun, 30.0), "The sun is in SW, 20° high");
 }
 
 TEST(Texts, TheRunIsNamedByItsStartAsOnThePage) {

@@ -9,6 +9,18 @@ import {
 } from "../src/gen/thunderhead/v1/probe_pb";
 import { Hydrometeor } from "../src/gen/thunderhead/v1/scene_pb";
 import { BLOBS, type Blob3 } from "./fake_storm";
+import { tableOf } from "./place_tables";
+
+// A map whose parallels and meridians are straight, for the storm's place.
+const MIDDLE = { latitudeDeg: 29.6, longitudeDeg: -94.7 };
+const PLACES = tableOf(
+  MIDDLE,
+  (longitudeDeg, latitudeDeg) => [
+    111_000 * Math.cos((MIDDLE.latitudeDeg * Math.PI) / 180) * longitudeDeg,
+    111_000 * latitudeDeg,
+  ],
+  2,
+);
 
 const SIDE_PX = 64;
 const HALF_M = 40_000;
@@ -57,8 +69,9 @@ export function fakeStormMap(stormId: string, timeIndex: number) {
     units: "kg m-2",
     maximum: Math.max(...values),
     ...DOMAIN,
-    middle: { latitudeDeg: 29.6, longitudeDeg: -94.7 },
-    projection: "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=29.6 +lon_0=-94.7 +R=6370000",
+    middle: MIDDLE,
+    projection: "+proj=eqc +lat_ts=29.6 +lat_0=29.6 +lon_0=-94.7 +R=6371000",
+    places: PLACES,
     maxima,
   });
 }

@@ -32,6 +32,7 @@ import {
   zoneOfLongitude,
 } from "../src/core/moment";
 import { parametersOf, parameterValue, withParameter } from "../src/core/parameters";
+import { worldByTable } from "../src/core/place_table";
 import { displacementBetween } from "../src/core/probe";
 import type { Projection } from "../src/core/projection";
 import { withTechnique } from "../src/core/rendering";
@@ -49,7 +50,8 @@ import { COMMENTS } from "../src/gen/comments";
 import { RayPlaceSchema } from "../src/gen/thunderhead/v1/probe_pb";
 import { Hydrometeor, RenderingSchema, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
 import { StormDescriptionSchema } from "../src/gen/thunderhead/v1/storm_pb";
-import { gridProjection } from "../src/view/tools/map_lines";
+import { pathOf } from "../src/view/tools/map_lines";
+import { tableOf } from "./place_tables";
 
 afterEach(() => {
   lengthUnits.value = "metric";
@@ -79,11 +81,28 @@ const PICTURE: Annotated = {
   letterPx: 10,
   projection: NORTH,
   pose: SPOTTER,
+  trueNorthDeg: 0,
   groundM: 0,
   title: "A storm",
   time: "2013-05-20 20:00Z",
   legend: [{ name: "Rain", color: "#112233" }],
 };
+
+const wrapped = (deg: number) => deg - 360 * Math.round(deg / 360);
+
+// Snyder's equations 15-1 to 15-5 for standard parallels at 30 and 60 degrees, on a sphere, from 35 N
+// 97 W.
+function lambert(longitudeDeg: number, latitudeDeg: number): [number, number] {
+  const radian = Math.PI / 180;
+  const stretched = (deg: number) => Math.tan(Math.PI / 4 + (deg * radian) / 2);
+  const n =
+    Math.log(Math.cos(30 * radian) / Math.cos(60 * radian)) /
+    Math.log(stretched(60) / stretched(30));
+  const scale = (6_370_000 * Math.cos(30 * radian) * stretched(30) ** n) / n;
+  const radius = scale / stretched(latitudeDeg) ** n;
+  const turn = n * wrapped(longitudeDeg + 97) * radian;
+  return [radius * Math.sin(turn), scale / stretched(35) ** n - radius * Math.cos(turn)];
+}
 
 const texts = (shapes: readonly Shape[]) =>
   shapes.flatMap((shape) => (shape.kind === "text" ? [shape] : []));
@@ -193,6 +212,18 @@ test("degrees stand above a horizon that is too low for them and the time", () =
   const [line] = shapes.flatMap((shape) => (shape.kind === "line" ? [shape.points] : []));
   const north = texts(shapes).find(({ text }) => text === "N");
   expect(north?.y).toBeLessThan(line?.[0]?.[1] ?? 0);
+});
+
+// The camera looks along the grid's north. With true north 10 degrees to the left of it, it looks to
+// 10 degrees, and N stands to the left of the picture's middle.
+test("degrees on the horizon count from true north", () => {
+  const at = (trueNorthDeg: number, name: string) =>
+    texts(annotationsOf({ ...PICTURE, trueNorthDeg }, FIRST_ANNOTATIONS)).find(
+      ({ text }) => text === name,
+    )?.x;
+  expect(at(0, "N")).toBeCloseTo(400, 6);
+  expect(at(-10, "010°")).toBeCloseTo(400, 6);
+  expect(at(-10, "N")).toBeCloseTo(at(0, "350°") ?? 0, 6);
 });
 
 test("the scale bar is as long as it says", () => {
@@ -310,28 +341,47 @@ test("the map shows the domain and a camera near it, and leads back to the world
 });
 
 // The expected places are by PROJ (`echo LON LAT | proj STRING`), minus the result for the domain's
-// middle.
-test("places of the map are those of the model's projection", () => {
-  const check = (
-    projection: string,
-    middle: readonly [number, number],
-    place: [number, number],
-    [xM, yM]: readonly [number, number],
-  ) => {
-    const [longitudeDeg, latitudeDeg] = middle;
-    const [x, y] = gridProjection({ projection, latitudeDeg, longitudeDeg })(place) ?? [0, 0];
-    expect(Math.hypot(x - xM, -y - yM), projection).toBeLessThan(5);
+// middle. The table is made with another projection's formulas of this test.
+test("places on the map are found by the server's table", () => {
+  const middle = { longitudeDeg: -97, latitudeDeg: 35 };
+  const world = worldByTable(middle, tableOf(middle, lambert, 10));
+  const check = (longitudeDeg: number, latitudeDeg: number, xM: number, yM: number) => {
+    const [x, y] = world(longitudeDeg, latitudeDeg) ?? [Number.NaN, Number.NaN];
+    expect(Math.hypot(x - xM, y - yM), `${longitudeDeg} ${latitudeDeg}`).toBeLessThan(40);
   };
-  const lambert = "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=35 +lon_0=-97 +R=6370000";
-  check(lambert, [-97, 35], [-97, 36], [0, 108_986]);
-  check(lambert, [-97, 35], [-96, 35], [89_405, 558]);
-  check(lambert, [-97, 35], [-90, 40], [577_712, 567_502]);
-  const mercator = "+proj=merc +lat_ts=20 +lon_0=0 +R=6370000";
-  check(mercator, [10, 52], [12, 55], [1_253_671.82 - 1_044_726.51, 6_909_065.66 - 6_381_875.54]);
-  const polar = "+proj=stere +lat_0=90 +lat_ts=60 +lon_0=10 +R=6370000";
-  const plain = "+proj=eqc +lat_ts=45 +lat_0=0 +lon_0=5 +R=6370000";
-  check(plain, [10, 45], [11, 46], [78_614, 111_177]);
-  check(polar, [10, 70], [15, 72], [164_084, 2_095_925.08 - 1_875_485.56]);
+  check(-97, 35, 0, 0);
+  check(-97, 36, 0, 108_986);
+  check(-96, 35, 89_405, 558);
+  check(-90, 40, 577_712, 567_502);
+  check(-90 + 360, 40, 577_712, 567_502);
+  expect(world(-97, 46)).toBeUndefined();
+  expect(world(83, -35)).toBeUndefined();
+});
+
+test("lines on the map are interrupted beyond it and at its cuts", () => {
+  const middle = { longitudeDeg: 170, latitudeDeg: 0 };
+  // A map that ends at 5 degrees north and is cut at the date line.
+  const plain = (longitudeDeg: number, latitudeDeg: number): [number, number] =>
+    latitudeDeg > 5 ? [Number.NaN, Number.NaN] : [longitudeDeg * 111_000, latitudeDeg * 111_000];
+  const world = worldByTable(middle, tableOf(middle, plain, 20));
+  const parts = (line: readonly (readonly number[])[]) => pathOf([line], world).split("M").slice(1);
+  const across = parts([
+    [178, 0],
+    [182, 0],
+  ]);
+  expect(across).toHaveLength(2);
+  const [before, after] = across.map((part) =>
+    part.split("L").map((at) => Number(at.split(",")[0])),
+  );
+  expect(Math.max(...(before ?? []))).toBeLessThan(10.01 * 111_000);
+  expect(Math.max(...(after ?? []))).toBeLessThan(-340 * 111_000);
+  const [north] = parts([
+    [170, 0],
+    [170, 9],
+  ]);
+  const ys = (north ?? "").split("L").map((at) => -Number(at.split(",")[1]));
+  expect(Math.max(...ys)).toBeGreaterThan(4 * 111_000);
+  expect(Math.max(...ys)).toBeLessThan(5.01 * 111_000);
 });
 
 test("a displacement has distance, height and direction", () => {

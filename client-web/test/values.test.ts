@@ -25,8 +25,10 @@ import {
   compassPoint,
   dateTimeOfInput,
   domePointOfSun,
+  gridAzimuthDeg,
   inputOfDateTime,
   sunOfDomePoint,
+  trueAzimuthDeg,
 } from "../src/core/sun";
 import {
   displayUnitOf,
@@ -36,7 +38,7 @@ import {
   formatQuantity,
   formatValidTime,
 } from "../src/core/units";
-import { describePose } from "../src/core/words";
+import { describePose, describeSun } from "../src/core/words";
 import { AccuracyReportSchema } from "../src/gen/thunderhead/v1/frame_pb";
 import {
   DirectionalLightSchema,
@@ -273,8 +275,41 @@ it("says where a spotter stands", () => {
     focalLengthMm: 24,
     eyeHeightM: 1.7,
   } as const;
-  expect(describePose({ ...pose, placeM: [14_142, -14_142] })).toBe(
+  expect(describePose({ ...pose, placeM: [14_142, -14_142] }, 0)).toBe(
     "Looks to NW (315°), 5° up, through a lens of 24 mm, from 20 km SE of the middle",
   );
-  expect(describePose({ ...pose, placeM: [10, -20] })).toMatch(/ from the middle$/);
+  expect(describePose({ ...pose, placeM: [10, -20] }, 0)).toMatch(/ from the middle$/);
+});
+
+// East of a Lambert grid's central meridian, true north is to the left of the grid's north.
+it("counts directions from true north", () => {
+  const west = -12.5;
+  const pose = {
+    kind: "spotter",
+    azimuthDeg: 315,
+    elevationDeg: 5,
+    focalLengthMm: 24,
+    eyeHeightM: 1.7,
+  } as const;
+  expect(describePose({ ...pose, placeM: [14_142, -14_142] }, west)).toBe(
+    "Looks to NNW (328°), 5° up, through a lens of 24 mm, from 20 km SSE of the middle",
+  );
+  const orbit = {
+    kind: "orbit",
+    targetM: [0, 0, 0],
+    azimuthDeg: 350,
+    elevationDeg: 4,
+    distanceM: 61_000,
+    fieldOfViewDeg: 35,
+  } as const;
+  expect(describePose(orbit, west)).toMatch(/^Seen from N \(3°\)/);
+  const above = { kind: "topDown", centerM: [0, 0], widthM: 160_000 } as const;
+  expect(describePose(above, west)).toBe("160 km from left to right, the grid's north up");
+  expect(describePose(above, 0.2)).toBe("160 km from left to right, north up");
+  const sun = { azimuthDeg: 260, elevationDeg: 20 };
+  expect(describeSun(sun, 0)).toBe("The sun is in W, 20° high");
+  expect(describeSun(sun, west)).toBe("The sun is in W, 20° high");
+  expect(describeSun(sun, 30)).toBe("The sun is in SW, 20° high");
+  expect(gridAzimuthDeg(trueAzimuthDeg(350, west), west)).toBeCloseTo(350, 9);
+  expect(trueAzimuthDeg(350, west)).toBeCloseTo(2.5, 9);
 });

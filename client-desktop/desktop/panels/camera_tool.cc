@@ -10,8 +10,19 @@ namespace {
 
 using client::LimitsOf;
 
+// Controls of an azimuth. It is shown from true north, and `azimuth_deg` counts from the grid's
+// north.
+bool Azimuth(const Ui& ui, bool (*control)(const char*, const client::Limits&, double&),
+             const char* label, const client::Limits& limits, double& azimuth_deg) {
+  double shown_deg = client::WrapDegrees(azimuth_deg - ui.true_north_deg());
+  if (!control(label, limits, shown_deg)) return false;
+  azimuth_deg = client::WrapDegrees(shown_deg + ui.true_north_deg());
+  return true;
+}
+
 void OrbitControls(Ui& ui, client::OrbitPose pose) {
-  bool changed = Slider("Seen from", LimitsOf<v1::OrbitCamera>("azimuth_deg"), pose.azimuth_deg);
+  bool changed =
+      Azimuth(ui, Slider, "Seen from", LimitsOf<v1::OrbitCamera>("azimuth_deg"), pose.azimuth_deg);
   changed |= Slider("Height", LimitsOf<v1::OrbitCamera>("elevation_deg"), pose.elevation_deg);
   changed |= Slider("Distance", LimitsOf<v1::OrbitCamera>("distance_m"), pose.distance_m);
   changed |= Slider("Angle of view", LimitsOf<v1::OrbitCamera>("field_of_view_deg"),
@@ -23,7 +34,8 @@ void SpotterControls(Ui& ui, client::SpotterPose pose) {
   using Camera = v1::SpotterCamera;
   bool changed = NumberField("East of the middle", LimitsOf<Camera>("x_m"), pose.place_m[0]);
   changed |= NumberField("North of the middle", LimitsOf<Camera>("y_m"), pose.place_m[1]);
-  changed |= NumberField("Looks to", LimitsOf<Camera>("azimuth_deg"), pose.azimuth_deg);
+  changed |=
+      Azimuth(ui, NumberField, "Looks to", LimitsOf<Camera>("azimuth_deg"), pose.azimuth_deg);
   changed |= NumberField("Looks up", LimitsOf<Camera>("elevation_deg"), pose.elevation_deg);
   changed |= Slider("Lens", LimitsOf<Camera>("focal_length_mm"), pose.focal_length_mm);
   changed |= Slider("Height of the eye", LimitsOf<Camera>("eye_height_m"), pose.eye_height_m);
@@ -53,7 +65,7 @@ void CameraTool(Ui& ui) {
   if (!pose) {
     Quiet("Waiting for the first picture …");
   } else {
-    Quiet(DescribePose(*pose));
+    Quiet(DescribePose(*pose, ui.true_north_deg()));
     ImGui::Spacing();
     if (const auto* orbit = std::get_if<client::OrbitPose>(&*pose)) OrbitControls(ui, *orbit);
     if (const auto* spotter = std::get_if<client::SpotterPose>(&*pose))

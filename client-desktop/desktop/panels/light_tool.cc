@@ -23,14 +23,14 @@ void LightTool(Ui& ui) {
       sun.set_elevation_deg(shown.elevation_deg());
     });
   }
-  Quiet(DescribeSun(ui.state.shown_sun));
+  Quiet(DescribeSun(ui.state.shown_sun, ui.true_north_deg()));
   ImGui::Spacing();
   if (by_time) {
     Setting(ui, "sun.clock.date_time", "Date and time at the first time, UTC");
     Setting(ui, "sun.clock.latitude_deg", "Degrees north");
     Setting(ui, "sun.clock.longitude_deg", "Degrees east");
   } else {
-    Setting(ui, "sun.azimuth_deg", "Stands in");
+    Setting(ui, "sun.azimuth_deg", "Stands in, from the grid's north");
     Setting(ui, "sun.elevation_deg", "Height");
   }
   ImGui::Spacing();

@@ -3,7 +3,7 @@
 // the frame's own camera. The window and saved files draw the same shapes.
 import { type Pose, wrapDegrees } from "./camera";
 import { type PicturePoint, type Projection, project, projectLine, type Vec3 } from "./projection";
-import { compassPoint } from "./sun";
+import { compassPoint, trueAzimuthDeg } from "./sun";
 import { formatLength, roundLength } from "./units";
 
 export interface AnnotationChoice {
@@ -42,6 +42,9 @@ export interface Annotated {
   readonly letterPx: number;
   readonly projection: Projection;
   readonly pose: Pose | undefined;
+  // The direction of true north in the scene, clockwise from the grid's north. The horizon's degrees
+  // count from true north.
+  readonly trueNorthDeg: number;
   // Height of the ground above sea level.
   readonly groundM: number;
   readonly title: string;
@@ -208,16 +211,16 @@ function azimuthName(deg: number): string {
 // Returns a line along the horizon with a tick every few degrees, for a camera on the ground. The
 // names of the ticks are below the line, unless they would overlap the valid time there.
 function horizon(picture: Annotated): Shape[] {
-  const { projection, pose, widthPx, heightPx, inset, letterPx } = picture;
+  const { projection, pose, trueNorthDeg, widthPx, heightPx, inset, letterPx } = picture;
   if (pose?.kind !== "spotter") return [];
   const viewDeg = (2 * Math.atan(Math.hypot(...projection.right)) * 180) / Math.PI;
   const step = tickStepDeg(viewDeg);
-  const middle = Math.round(pose.azimuthDeg / step) * step;
+  const middle = Math.round(trueAzimuthDeg(pose.azimuthDeg, trueNorthDeg) / step) * step;
   const lowest = heightPx - inset.bottom - 3 * letterPx;
   const ticks: { readonly x: number; readonly y: number; readonly name: string }[] = [];
   for (let away = -Math.ceil(viewDeg / step); away <= Math.ceil(viewDeg / step); away += 1) {
     const deg = middle + away * step;
-    const place = project(projection, add(projection.eyeM, far(deg)));
+    const place = project(projection, add(projection.eyeM, far(deg + trueNorthDeg)));
     if (place === undefined) continue;
     const [x, natural] = at(picture, place);
     if (x < 0 || x > widthPx) continue;

@@ -1,5 +1,5 @@
-// The area that the inset map shows, and the conversion between its pixels and world metres. North
-// is up.
+// The area that the inset map shows, and the conversion between its pixels and world metres. The
+// grid's north is up, and azimuths here count from it.
 import type { Pose } from "./camera";
 
 export interface Extent {
@@ -85,7 +85,7 @@ export function placeFrom(
   ];
 }
 
-// Returns the azimuth in degrees clockwise from north.
+// Returns the azimuth in degrees clockwise from the grid's north.
 export function azimuthTo(
   [fromX, fromY]: readonly [number, number],
   [toX, toY]: readonly [number, number],

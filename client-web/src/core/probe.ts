@@ -16,7 +16,7 @@ export interface Displacement {
   // Horizontal distance.
   readonly distanceM: number;
   readonly heightM: number;
-  // Azimuth clockwise from north.
+  // Azimuth clockwise from the grid's north.
   readonly azimuthDeg: number;
 }
 

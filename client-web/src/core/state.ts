@@ -238,6 +238,8 @@ export class PageState {
   });
   // The domain that is shown; empty until its storm is described.
   readonly domain = computed(() => domainOf(this.#describedStorm.value));
+  // The direction of true north in the scene, in degrees clockwise from the grid's north.
+  readonly trueNorthDeg = computed(() => this.#describedStorm.value?.trueNorthDeg ?? 0);
   readonly timeCount = computed(() => this.#describedStorm.value?.times.length ?? 0);
   // The camera of the frame on the screen.
   readonly shownCamera = computed(() => {
@@ -307,8 +309,8 @@ export class PageState {
     const when = `${date} ${clock}`.trim();
     return [
       `${this.title.value}${when === "" ? "" : `, ${when}`}`,
-      describePose(this.viewPose.value),
-      describeSun(this.sunDirection.value),
+      describePose(this.viewPose.value, this.trueNorthDeg.value),
+      describeSun(this.sunDirection.value, this.trueNorthDeg.value),
     ].join(". ");
   });
 

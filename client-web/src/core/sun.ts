@@ -1,5 +1,6 @@
 // The sky dome: the sun's direction as a point in a disc with the zenith at its centre and north at
 // its top.
+import { wrapDegrees } from "./camera";
 
 export interface SunDirection {
   readonly azimuthDeg: number;
@@ -38,6 +39,16 @@ export function sunOfDomePoint(right: number, down: number): SunDirection {
     azimuthDeg: azimuth < 0 ? azimuth + 360 : azimuth,
     elevationDeg: 90 - radius * (90 - DOME_LOWEST_DEG),
   };
+}
+
+// Converts an azimuth of the scene, which counts from the grid's north, to one from true north.
+// `trueNorthDeg` is the direction of true north in the scene. The next function converts back.
+export function trueAzimuthDeg(azimuthDeg: number, trueNorthDeg: number): number {
+  return trueNorthDeg === 0 ? azimuthDeg : wrapDegrees(azimuthDeg - trueNorthDeg);
+}
+
+export function gridAzimuthDeg(azimuthDeg: number, trueNorthDeg: number): number {
+  return trueAzimuthDeg(azimuthDeg, -trueNorthDeg);
 }
 
 const COMPASS = "N NNE NE ENE E ESE SE SSE S SSW SW WSW W WNW NW NNW".split(" ");

@@ -41,7 +41,8 @@ export class ServerCalls {
   }
 
   stormMap(stormId: string, timeIndex: number): Promise<GetStormMapResponse> {
-    return this.#client.getStormMap({ stormId, timeIndex }, this.#options(SCENE_TIMEOUT_MS));
+    const request = { stormId, timeIndex, withPlaces: true };
+    return this.#client.getStormMap(request, this.#options(SCENE_TIMEOUT_MS));
   }
 
   probeRay(request: MessageInitShape<typeof ProbeRayRequestSchema>): Promise<ProbeRayResponse> {

@@ -132,6 +132,7 @@ type Content = Omit<Annotated, "widthPx" | "heightPx" | "inset" | "letterPx">;
 export interface Labels {
   readonly title: string;
   readonly times: readonly StormTime[];
+  readonly trueNorthDeg: number;
   // Height of the ground above sea level.
   readonly groundM: number;
   readonly legend: readonly LegendEntry[];
@@ -143,6 +144,7 @@ export function labelsOf(state: PageState): Labels {
   return {
     title: [state.title.value, state.run.value].filter((part) => part !== "").join(" · "),
     times: state.storm.value?.times ?? [],
+    trueNorthDeg: state.trueNorthDeg.value,
     groundM: state.storm.value?.grid?.low?.zM ?? 0,
     legend: state.falseColorsShown.value ? legendOf(state) : [],
   };
@@ -150,12 +152,12 @@ export function labelsOf(state: PageState): Labels {
 
 // Returns the annotations of a picture with that camera and time; undefined without a camera.
 export function annotated(
-  { title, groundM, legend }: Labels,
+  { title, trueNorthDeg, groundM, legend }: Labels,
   { projection, pose }: { readonly projection?: Projection; readonly pose?: Pose },
   time: StormTime | undefined,
 ): Content | undefined {
   if (projection === undefined) return undefined;
-  return { projection, pose, groundM, title, time: timeInWords(time), legend };
+  return { projection, pose, trueNorthDeg, groundM, title, time: timeInWords(time), legend };
 }
 
 function legendOf(state: PageState): LegendEntry[] {

@@ -7,6 +7,7 @@ import {
   TOP_DOWN_LIMITS,
   type TopDownPose,
 } from "../core/camera";
+import { gridAzimuthDeg, trueAzimuthDeg } from "../core/sun";
 import { describePose } from "../core/words";
 import { Segments, Slider } from "./controls";
 import type { Page } from "./page";
@@ -20,6 +21,7 @@ const KINDS: readonly (readonly [CameraKind, string, string])[] = [
 export function CameraControls({ page }: { page: Page }) {
   const { state } = page;
   const pose = state.viewPose.value;
+  const trueNorthDeg = state.trueNorthDeg.value;
   const kind = pose?.kind ?? state.cameraKind.value;
   const change = (part: Partial<SpotterPose> | Partial<TopDownPose>) =>
     page.move((now) => ({ ...now, ...part }) as Pose);
@@ -34,9 +36,11 @@ export function CameraControls({ page }: { page: Page }) {
         onChange={(chosen) => page.showCamera(chosen)}
       />
       <p class="quiet" data-testid="camera">
-        {describePose(pose)}
+        {describePose(pose, trueNorthDeg)}
       </p>
-      {pose?.kind === "spotter" && <SpotterControls pose={pose} onChange={change} />}
+      {pose?.kind === "spotter" && (
+        <SpotterControls pose={pose} trueNorthDeg={trueNorthDeg} onChange={change} />
+      )}
       {pose?.kind === "topDown" && <TopDownControls pose={pose} onChange={change} />}
       <div class="buttons">
         <button type="button" data-testid="home" onClick={() => page.home()}>
@@ -52,7 +56,11 @@ interface ControlsProps<P> {
   readonly onChange: (change: Partial<P>) => void;
 }
 
-function SpotterControls({ pose, onChange }: ControlsProps<SpotterPose>) {
+interface SpotterProps extends ControlsProps<SpotterPose> {
+  readonly trueNorthDeg: number;
+}
+
+function SpotterControls({ pose, trueNorthDeg, onChange }: SpotterProps) {
   const [x, y] = pose.placeM;
   return (
     <>
@@ -80,9 +88,9 @@ function SpotterControls({ pose, onChange }: ControlsProps<SpotterPose>) {
       <Slider
         label="Looks to"
         limits={SPOTTER_LIMITS.azimuth}
-        value={pose.azimuthDeg}
+        value={trueAzimuthDeg(pose.azimuthDeg, trueNorthDeg)}
         testId="spotter-azimuth"
-        onChange={(azimuthDeg) => onChange({ azimuthDeg })}
+        onChange={(deg) => onChange({ azimuthDeg: gridAzimuthDeg(deg, trueNorthDeg) })}
       />
       <Slider
         label="Looks up"

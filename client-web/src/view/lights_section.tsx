@@ -4,6 +4,7 @@ import { colorOfHex, hexOfColor } from "../core/color";
 import { nameOfTechnique } from "../core/names";
 import { LIMITS, MAX_LIGHTS, withLight, withLights } from "../core/scene";
 import type { PageState } from "../core/state";
+import { gridAzimuthDeg, trueAzimuthDeg } from "../core/sun";
 import {
   ColorSchema,
   type DirectionalLight,
@@ -69,6 +70,7 @@ interface LightProps {
 function LightSettings({ state, light, index }: LightProps) {
   const name = `Light ${index + 1}`;
   const id = `light-${index + 1}`;
+  const trueNorthDeg = state.trueNorthDeg.value;
   const edit = (change: Parameters<typeof withLight>[2]) =>
     state.edit((scene) => withLight(scene, index, change));
   return (
@@ -107,9 +109,12 @@ function LightSettings({ state, light, index }: LightProps) {
       <Slider
         label="Azimuth"
         limits={LIMITS.lightAzimuth}
-        value={light.azimuthDeg ?? LIMITS.lightAzimuth.defaultValue}
+        value={trueAzimuthDeg(
+          light.azimuthDeg ?? LIMITS.lightAzimuth.defaultValue ?? 0,
+          trueNorthDeg,
+        )}
         testId={`${id}-azimuth`}
-        onChange={(azimuthDeg) => edit({ azimuthDeg })}
+        onChange={(deg) => edit({ azimuthDeg: gridAzimuthDeg(deg, trueNorthDeg) })}
       />
       <Slider
         label="Elevation"

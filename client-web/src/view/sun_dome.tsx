@@ -1,5 +1,6 @@
 // The sky dome: a disc with a sun that can be dragged. The disc's centre is the zenith, and the
-// ring is the horizon. The wedge shows the camera's direction.
+// ring is the horizon. The wedge shows the camera's direction. The grid's north is up, as on the map,
+// and the letters show the true directions.
 
 import { wrapDegrees } from "../core/camera";
 import { clampToLimits } from "../core/limits";
@@ -10,10 +11,13 @@ import {
   domePointOfSun,
   type SunDirection,
   sunOfDomePoint,
+  trueAzimuthDeg,
 } from "../core/sun";
 
 interface SunDomeProps {
   readonly sun: SunDirection;
+  // The direction of true north, clockwise from the grid's north.
+  readonly trueNorthDeg: number;
   // Azimuth of the camera's position, seen from the storm.
   readonly cameraAzimuthDeg: number | undefined;
   readonly disabled: boolean;
@@ -25,11 +29,13 @@ const CENTER = 70;
 const STEP_DEG = 5;
 const FINE_STEP_DEG = 1;
 
-export function SunDome({ sun, cameraAzimuthDeg, disabled, onChange }: SunDomeProps) {
+export function SunDome(props: SunDomeProps) {
+  const { sun, trueNorthDeg, cameraAzimuthDeg, disabled, onChange } = props;
   const point = domePointOfSun(sun);
   const x = CENTER + point.right * RADIUS;
   const y = CENTER + point.down * RADIUS;
-  const text = `${Math.round(wrapDegrees(sun.azimuthDeg))}° ${compassPoint(sun.azimuthDeg)}, ${Math.round(sun.elevationDeg)}° above the horizon`;
+  const trueDeg = trueAzimuthDeg(sun.azimuthDeg, trueNorthDeg);
+  const text = `${Math.round(wrapDegrees(trueDeg))}° ${compassPoint(trueDeg)}, ${Math.round(sun.elevationDeg)}° above the horizon`;
 
   const drag = (event: PointerEvent & { currentTarget: HTMLDivElement }) => {
     if (disabled) return;
@@ -94,8 +100,8 @@ export function SunDome({ sun, cameraAzimuthDeg, disabled, onChange }: SunDomePr
           <text
             key={name}
             class="dome-name"
-            x={CENTER + Math.sin((quarter * Math.PI) / 2) * (RADIUS - 5)}
-            y={CENTER - Math.cos((quarter * Math.PI) / 2) * (RADIUS - 5)}
+            x={CENTER + Math.sin(radians(90 * quarter + trueNorthDeg)) * (RADIUS - 5)}
+            y={CENTER - Math.cos(radians(90 * quarter + trueNorthDeg)) * (RADIUS - 5)}
           >
             {name}
           </text>
@@ -105,6 +111,10 @@ export function SunDome({ sun, cameraAzimuthDeg, disabled, onChange }: SunDomePr
       </svg>
     </div>
   );
+}
+
+function radians(degrees: number): number {
+  return (degrees * Math.PI) / 180;
 }
 
 function roundedToTenths(sun: SunDirection): SunDirection {

@@ -4,7 +4,7 @@ import { standingAzimuthDeg } from "../core/camera";
 import { localClock } from "../core/moment";
 import { LIMITS, withSky, withSun, withSunClock } from "../core/scene";
 import type { PageState } from "../core/state";
-import { dateTimeOfInput, inputOfDateTime } from "../core/sun";
+import { dateTimeOfInput, gridAzimuthDeg, inputOfDateTime, trueAzimuthDeg } from "../core/sun";
 import {
   atMinute,
   type ClockHere,
@@ -29,6 +29,7 @@ export function SunControls({ state }: { state: PageState }) {
   const sun = state.sun.value;
   const byTime = sun?.source === Sun_Source.BY_TIME;
   const direction = state.sunDirection.value;
+  const trueNorthDeg = state.trueNorthDeg.value;
   // Moving the sun by hand stops the clock. An angle that the change does not set stays the same.
   const point = (change: { azimuthDeg?: number; elevationDeg?: number }) =>
     state.edit((scene) => withSun(scene, { ...direction, ...change, source: Sun_Source.BY_HAND }));
@@ -47,21 +48,22 @@ export function SunControls({ state }: { state: PageState }) {
       {byTime && <ClockControls state={state} clock={sun?.clock} />}
       <SunDome
         sun={direction}
+        trueNorthDeg={trueNorthDeg}
         disabled={state.session.editBlock.value !== undefined}
         cameraAzimuthDeg={standingAzimuthDeg(state.pose.value)}
         onChange={point}
       />
       <p class="quiet" data-testid="sun-in-words">
-        {describeSun(direction)}
+        {describeSun(direction, trueNorthDeg)}
       </p>
       {!byTime && (
         <>
           <Slider
             label="Azimuth"
             limits={LIMITS.sunAzimuth}
-            value={direction.azimuthDeg}
+            value={trueAzimuthDeg(direction.azimuthDeg, trueNorthDeg)}
             testId="sun-azimuth"
-            onChange={(azimuthDeg) => point({ azimuthDeg })}
+            onChange={(deg) => point({ azimuthDeg: gridAzimuthDeg(deg, trueNorthDeg) })}
           />
           <Slider
             label="Elevation"

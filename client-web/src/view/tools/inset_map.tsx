@@ -26,7 +26,7 @@ export function InsetMap({ state, steps }: { state: PageState; steps: MapSteps }
   const map = state.stormMap.value;
   const stand = standOf(state.viewPose.value);
   const extent = extentOf(domainOf(map, state), stand?.placeM);
-  const lines = useLines(state, map, extent);
+  const lines = useLines(state, map);
   const [cursor, setCursor] = useState<{ right: number; down: number } | undefined>(undefined);
   const pointer = usePointer(extent, steps);
   const key = (event: KeyboardEvent) => {
@@ -61,9 +61,7 @@ export function InsetMap({ state, steps }: { state: PageState; steps: MapSteps }
         <CameraOnMap state={state} extent={extent} />
         <SunOnMap azimuthDeg={state.sunDirection.value.azimuthDeg} />
         {cursor !== undefined && <Cross {...cursor} />}
-        <text class="map-north" x={SIZE - 4} y={8}>
-          N
-        </text>
+        <North trueNorthDeg={state.trueNorthDeg.value} />
         <ScaleBar extent={extent} cameraM={cameraPlace(state.viewPose.value)} />
       </svg>
     </div>
@@ -93,36 +91,26 @@ function domainOf(map: GetStormMapResponse | undefined, state: PageState): Exten
   };
 }
 
-function useLines(
-  state: PageState,
-  map: GetStormMapResponse | undefined,
-  extent: Extent,
-): MapLines | undefined {
+function useLines(state: PageState, map: GetStormMapResponse | undefined): MapLines | undefined {
   const [lines, setLines] = useState<MapLines | undefined>(undefined);
-  const { westM, eastM, southM, northM } = extent;
   const middle = map?.middle;
-  const projection = map?.projection ?? "";
+  const places = map?.places;
   useEffect(() => {
-    if (middle === undefined) {
+    if (middle === undefined || places === undefined) {
       setLines(undefined);
       return undefined;
     }
     let wanted = true;
-    const { latitudeDeg, longitudeDeg } = middle;
     withPart(
       state,
       "The map's coasts and borders",
-      async () =>
-        (await import("./map_lines")).mapLines(
-          { projection, latitudeDeg, longitudeDeg },
-          { westM, eastM, southM, northM },
-        ),
+      async () => (await import("./map_lines")).mapLines(middle, places),
       (found) => wanted && setLines(found),
     );
     return () => {
       wanted = false;
     };
-  }, [state, projection, middle, westM, eastM, southM, northM]);
+  }, [state, middle, places]);
   return lines;
 }
 
@@ -318,6 +306,21 @@ function SeenFromAbove({ pose: { centerM, widthM }, state, extent }: FromAbove) 
         data-testid="map-camera"
       />
     </>
+  );
+}
+
+// Draws an arrow to true north in the corner. The map's own up direction is the grid's north.
+function North({ trueNorthDeg }: { trueNorthDeg: number }) {
+  const angle = (trueNorthDeg * Math.PI) / 180;
+  const [x, y] = [SIZE - 6, 8];
+  const [dx, dy] = [Math.sin(angle), -Math.cos(angle)];
+  return (
+    <g data-testid="map-north">
+      <line class="map-ray" x1={x - 4 * dx} y1={y - 4 * dy} x2={x + dx} y2={y + dy} />
+      <text class="map-north" x={x + 4 * dx} y={y + 4 * dy}>
+        N
+      </text>
+    </g>
   );
 }
 

@@ -4,7 +4,7 @@ import { create } from "@bufbuild/protobuf";
 import { useState } from "preact/hooks";
 import { placeFrom } from "../../core/map_frame";
 import { nameOfHydrometeor } from "../../core/names";
-import { compassPoint } from "../../core/sun";
+import { compassPoint, gridAzimuthDeg } from "../../core/sun";
 import { formatLength, lengthUnits } from "../../core/units";
 import type { FieldMaximum } from "../../gen/thunderhead/v1/probe_pb";
 import { type Camera, CameraSchema } from "../../gen/thunderhead/v1/scene_pb";
@@ -87,8 +87,9 @@ function StandOff({ page }: { page: Page }) {
         type="button"
         data-testid="stand-there"
         onClick={() => {
-          const placeM = placeFrom(from(), distance * unitM, azimuthDeg);
-          page.viewpoint.show(spotterAt(placeM, (azimuthDeg + 180) % 360));
+          const towardsDeg = gridAzimuthDeg(azimuthDeg, state.trueNorthDeg.value);
+          const placeM = placeFrom(from(), distance * unitM, towardsDeg);
+          page.viewpoint.show(spotterAt(placeM, (towardsDeg + 180) % 360));
         }}
       >
         Stand there

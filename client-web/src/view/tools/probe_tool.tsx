@@ -4,7 +4,7 @@
 import { nameOfHydrometeor } from "../../core/names";
 import { displacementBetween, type Probed, placeInWords, readable } from "../../core/probe";
 import type { PageState } from "../../core/state";
-import { compassPoint } from "../../core/sun";
+import { compassPoint, trueAzimuthDeg } from "../../core/sun";
 import { formatLength, formatNumber } from "../../core/units";
 import {
   type FieldAlongRay,
@@ -58,6 +58,7 @@ function Found({ state, last }: { state: PageState; last: Probed }) {
     first?.stormId === second?.stormId
       ? displacementBetween(first?.found.seenPlace, second?.found.seenPlace)
       : undefined;
+  const towardsDeg = trueAzimuthDeg(displacement?.azimuthDeg ?? 0, state.trueNorthDeg.value);
   return (
     <section aria-label="Found" data-testid="probe-found">
       <p class="found">
@@ -68,7 +69,7 @@ function Found({ state, last }: { state: PageState; last: Probed }) {
       {displacement !== undefined && (
         <p data-testid="probe-displacement">
           From the first click: {formatLength(displacement.distanceM, "distance")} to{" "}
-          {compassPoint(displacement.azimuthDeg)} ({Math.round(displacement.azimuthDeg)}°),{" "}
+          {compassPoint(towardsDeg)} ({Math.round(towardsDeg)}°),{" "}
           {formatLength(Math.abs(displacement.heightM), "height")}{" "}
           {displacement.heightM < 0 ? "lower" : "higher"}
         </p>
