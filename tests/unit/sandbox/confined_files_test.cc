@@ -436,7 +436,7 @@ TEST_F(ConfinedFilesTest, AMapThatNamesFilesIsNotUsed) {
   ASSERT_EQ(storm.notes.size(), 1U);
   EXPECT_THAT(storm.notes[0], HasSubstr("without a map"));
   EXPECT_THAT(storm.notes[0], HasSubstr("+nadgrids is not accepted"));
-  EXPECT_FALSE(storm_store::ProjectionOf(storm.info).has_value());
+  EXPECT_FALSE(storm_store::ProjectionOf(storm.info, 0).has_value());
 }
 
 TEST_F(ConfinedFilesTest, AReaderThatTalksNonsenseIsNotBelieved) {

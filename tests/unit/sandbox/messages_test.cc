@@ -102,19 +102,23 @@ volume::HydrometeorFields Fields() {
       volume::TurbulenceSource::kEnergy, "TKE", {14}, {15}, {16.0, 17.0}, {18.0, 19.0}, 20.0};
   fields.air = {{21, 22}, {23.0F}};
   fields.condensate = {{0, 1, 2}, {1, 2, 3}};
+  fields.true_north_deg = 24.0;
   return fields;
 }
 
 TEST(MessagesTest, EveryMemberOfTheFieldsArrives) {
   const volume::HydrometeorFields expected = Fields();
   const volume::HydrometeorFields received = Sent(expected);
-  const auto& [grid, fields, terrain_m, land, borders, motion, air, condensate] = received;
+  const auto& [grid, fields, terrain_m, land, borders, true_north_deg, motion, air, condensate] =
+      received;
   EXPECT_EQ(grid, expected.grid);
   ASSERT_EQ(fields.size(), expected.fields.size());
   for (std::size_t i = 0; i < fields.size(); ++i) ExpectEqual(fields[i], expected.fields[i]);
   EXPECT_EQ(terrain_m, expected.terrain_height_m);
   ExpectEqual(land, expected.land);
-  EXPECT_EQ(borders, nullptr) << "the storm store sets them";
+  // The storm store sets these.
+  EXPECT_EQ(borders, nullptr);
+  EXPECT_EQ(true_north_deg, 0.0);
   ExpectEqual(motion, expected.motion);
   ExpectEqual(air, expected.air);
   EXPECT_EQ(condensate, expected.condensate);
