@@ -104,12 +104,13 @@ void Visit(Archive& archive, storm_files::VerticalGrid& grid) {
 // `id`, `device` and `modified_ns`. Times are sent as seconds and nanoseconds since 1970.
 template <typename Archive>
 void Visit(Archive& archive, storm_files::StormFile& file) {
-  auto& [path, cells, dx_m, dy_m, times, fields, about, domain, run, latitude_deg, longitude_deg,
-         middles, projection, member, assumptions, part, parts, reader, version, id, device,
-         modified_ns] = file;
+  auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, latitude_deg,
+         longitude_deg, middles, projection, member, assumptions, part, parts, reader, version, id,
+         device, modified_ns] = file;
   archive(cells);
   archive(dx_m);
   archive(dy_m);
+  archive(grid);
   std::vector<std::int64_t> seconds;
   std::vector<std::int64_t> nanoseconds;
   for (const absl::Time time : times) {

@@ -12,6 +12,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "storm_files/field_scan.h"
+#include "storm_files/resampled_columns.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -31,7 +32,11 @@ struct RemappedField {
 // thread remaps the previous variable, because reading and remapping take about equally long.
 class TimeReader {
  public:
-  explicit TimeReader(LayerSource& source) : source_(source), domain_(source.Domain()) {
+  explicit TimeReader(LayerSource& source)
+      : source_(source),
+        domain_(source.Domain()),
+        resampling_(domain_.even != nullptr && domain_.even->Resampled() ? domain_.even.get()
+                                                                         : nullptr) {
     air_.levels = domain_.cells.z;
     air_.columns = domain_.Columns();
   }
@@ -54,19 +59,23 @@ class TimeReader {
   const std::vector<float>& DensityFor(const LayerField& field) const;
   absl::StatusOr<RemappedField> Remap(const LayerField& from, LayerAmounts amounts) const;
   volume::ParticleSizes OriginOf(const LayerField& from) const;
-  void RemapSizes(const std::vector<float>& concentration, std::vector<float> radii,
+  void RemapSizes(const std::vector<float>& concentration, std::vector<float> radii, double factor,
                   volume::HydrometeorField& field) const;
   volume::AirDensity MeanDensity(const std::vector<float>& density_kg_per_m3) const;
-  std::vector<float> OntoGrid(const std::vector<float>& values) const;
+  void SetGrid();
+  std::vector<float> OntoHeights(const std::vector<float>& values) const;
+  double OntoColumns(std::vector<float>& values) const;
   std::vector<std::uint8_t> BytesOntoGrid(const std::vector<float>& values) const;
   absl::Status ReadMotion(volume::HydrometeorFields& result);
   void TakeWind(const ModelWind& wind, volume::HydrometeorFields& result) const;
+  glm::dvec2 AlongAxes(const ModelWind& wind, const glm::dvec2& mean_m_per_s) const;
   bool NeedsAir() const;
   bool NeedsWholeAir() const;
   bool NeedsTemperature() const;
 
   LayerSource& source_;
   const LayerDomain& domain_;
+  const EvenColumns* const resampling_;  // null if the source's columns stay as they are
   LayerAir air_;
   VerticalGrid own_grid_;
   VerticalGrid grid_;
@@ -132,14 +141,21 @@ absl::Status TimeReader::ReadTerrain(volume::HydrometeorFields& result) {
     terrain[i] = domain_.on_terrain ? air_.interface_height_m[i] : std::min(0.0F, bottom_m);
     if (std::isnan(terrain[i])) terrain[i] = bottom_m;
   }
+  if (resampling_ != nullptr) terrain = Resampled(*resampling_, terrain, Beyond::kNearest);
   result.terrain_height_m = std::move(terrain);
   return absl::OkStatus();
 }
 
 absl::Status TimeReader::ReadLand(volume::HydrometeorFields& result) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const volume::LandColumns columns, source_.Land());
+  THUNDERHEAD_ASSIGN_OR_RETURN(volume::LandColumns columns, source_.Land());
   if (columns.land_use.empty()) return absl::OkStatus();
-  result.land = volume::MakeLandSurface(columns, glm::ivec2(domain_.cells));
+  if (resampling_ != nullptr) {
+    for (std::vector<float>* values : {&columns.land_use, &columns.water, &columns.albedo,
+                                       &columns.green_percent, &columns.snow_share}) {
+      *values = NearestOf(*resampling_, *values);
+    }
+  }
+  result.land = volume::MakeLandSurface(columns, glm::ivec2(regular_.cells));
   return absl::OkStatus();
 }
 
@@ -231,14 +247,16 @@ absl::StatusOr<RemappedField> TimeReader::Remap(const LayerField& from, LayerAmo
                      ", more than air can hold; if it is in g (g/kg, g m-3), convert it or set its "
                      "units attribute"));
   }
+  double factor = 1.0;
   if (field.statistics.maximum_water_path_kg_per_m2 > 0.0) {
-    field.concentration_kg_per_m3 = OntoGrid(values);
+    field.concentration_kg_per_m3 = OntoHeights(values);
+    factor = OntoColumns(field.concentration_kg_per_m3);
     remapped.condensate = FlushAndBound(regular_, field.concentration_kg_per_m3);
     if (remapped.condensate.Empty()) field.concentration_kg_per_m3 = {};
   }
   if (field.sizes.origin != volume::SizeOrigin::kObserved &&
       !field.concentration_kg_per_m3.empty()) {
-    RemapSizes(values, std::move(sizes), field);
+    RemapSizes(values, std::move(sizes), factor, field);
   }
   return remapped;
 }
@@ -258,13 +276,19 @@ volume::ParticleSizes TimeReader::OriginOf(const LayerField& from) const {
 }
 
 // Remaps sizes. Extinction is proportional to concentration over radius, so that ratio is remapped,
-// and each column keeps its optical depth. `radii` is empty if the file has none.
+// and each column keeps its optical depth. `radii` is empty if the file has none. The concentration
+// was multiplied by `factor` when its columns were resampled.
 void TimeReader::RemapSizes(const std::vector<float>& concentration, std::vector<float> radii,
-                            volume::HydrometeorField& field) const {
+                            double factor, volume::HydrometeorField& field) const {
   radii.resize(concentration.size(), std::nanf(""));
   volume::ToConcentrationPerRadius(field.hydrometeor, domain_.microphysics, concentration,
                                    air_.temperature_K, radii);
-  field.sizes = volume::SizesOf(field.sizes, field.concentration_kg_per_m3, OntoGrid(radii));
+  std::vector<float> per_radius = OntoHeights(radii);
+  if (resampling_ != nullptr) {
+    per_radius = Resampled(*resampling_, per_radius, Beyond::kZero);
+    for (float& value : per_radius) value *= static_cast<float>(factor);
+  }
+  field.sizes = volume::SizesOf(field.sizes, field.concentration_kg_per_m3, per_radius);
 }
 
 absl::Status TimeReader::CheckAir() const {
@@ -313,9 +337,10 @@ absl::Status TimeReader::ReadFields(volume::HydrometeorFields& result) {
 volume::AirDensity TimeReader::MeanDensity(const std::vector<float>& density_kg_per_m3) const {
   volume::AirDensityMeans means(regular_);
   const glm::ivec2 stride = means.Stride();
-  for (int y = 0; y < domain_.cells.y; y += stride.y) {
-    for (int x = 0; x < domain_.cells.x; x += stride.x) {
+  for (int y = 0; y < regular_.cells.y; y += stride.y) {
+    for (int x = 0; x < regular_.cells.x; x += stride.x) {
       std::size_t at = regular_.Offset(x, y, 0);
+      if (resampling_ != nullptr) at = NearestColumn(*resampling_, at);
       for (int level = 0; level < air_.levels; ++level, at += air_.columns) {
         means.Add(x, y, air_.interface_height_m[at], air_.interface_height_m[at + air_.columns],
                   density_kg_per_m3[at]);
@@ -325,15 +350,27 @@ volume::AirDensity TimeReader::MeanDensity(const std::vector<float>& density_kg_
   return means.Means();
 }
 
-// Returns values, none below 0 and none NaN, on the regular grid.
-std::vector<float> TimeReader::OntoGrid(const std::vector<float>& values) const {
+// Returns values, none below 0 and none NaN, at the heights of the regular grid.
+std::vector<float> TimeReader::OntoHeights(const std::vector<float>& values) const {
   if (layers_are_cells_) return values;
   return RemapColumns(air_.interface_height_m, values, air_.levels, air_.columns, grid_);
 }
 
+// Resamples values at the heights of the regular grid to its columns, in place. The sum over the
+// domain is kept. Returns the factor that this needed.
+double TimeReader::OntoColumns(std::vector<float>& values) const {
+  if (resampling_ == nullptr) return 1.0;
+  std::vector<float> resampled = Resampled(*resampling_, values, Beyond::kZero);
+  const double factor = SumFactor(*resampling_, values, resampled);
+  for (float& value : resampled) value *= static_cast<float>(factor);
+  values = std::move(resampled);
+  return factor;
+}
+
 // Returns values from 0 to 255 in layers on the regular grid. Missing values become 0.
 std::vector<std::uint8_t> TimeReader::BytesOntoGrid(const std::vector<float>& values) const {
-  const std::vector<float> remapped = OntoGrid(values);
+  std::vector<float> remapped = OntoHeights(values);
+  if (resampling_ != nullptr) remapped = Resampled(*resampling_, remapped, Beyond::kZero);
   std::vector<std::uint8_t> bytes(remapped.size());
   std::ranges::transform(remapped, bytes.begin(), [](float value) {
     return static_cast<std::uint8_t>(std::min(value + 0.5F, 255.0F));
@@ -372,6 +409,7 @@ void TimeReader::TakeWind(const ModelWind& wind, volume::HydrometeorFields& resu
   std::ranges::transform(ascent, ascent.begin(), volume::AscentByte);
   motion.ascent = BytesOntoGrid(ascent);
   std::vector<glm::dvec2> winds = MeanWinds(wind.u_m_per_s, wind.v_m_per_s, wind.cells.z);
+  for (glm::dvec2& mean : winds) mean = AlongAxes(wind, mean);
   std::vector<double> height_m = LevelMeans(air_.interface_height_m, air_.levels + 1);
   std::vector<double> first_column_m;
   for (std::size_t i = 0; i < air_.interface_height_m.size(); i += air_.columns) {
@@ -389,6 +427,13 @@ void TimeReader::TakeWind(const ModelWind& wind, volume::HydrometeorFields& resu
   motion.steering_m_per_s = SteeringWind_m_per_s(winds, height_m);
   motion.time_s = absl::ToDoubleSeconds(domain_.time - absl::UnixEpoch());
   motion.shear_m_per_s = Shear_m_per_s(result, winds, first_column_m);
+}
+
+// Returns a mean wind along the axes of the regular grid.
+glm::dvec2 TimeReader::AlongAxes(const ModelWind& wind, const glm::dvec2& mean_m_per_s) const {
+  if (domain_.even == nullptr) return mean_m_per_s;
+  return wind.east_and_north ? EastNorthAlongEvenAxes(*domain_.even, mean_m_per_s)
+                             : AlongEvenAxes(*domain_.even, mean_m_per_s);
 }
 
 // Removes those cells above the storm's grid that hold no condensate.
@@ -412,16 +457,24 @@ void TrimTop(const VerticalGrid& storm_grid, volume::HydrometeorFields& fields) 
   }
 }
 
+// Sets the regular grid, whose middle is that of the domain.
+void TimeReader::SetGrid() {
+  const glm::ivec2 columns =
+      resampling_ != nullptr ? resampling_->columns : glm::ivec2(domain_.cells);
+  const double dx_m = resampling_ != nullptr ? resampling_->dx_m : domain_.dx_m;
+  const double dy_m = resampling_ != nullptr ? resampling_->dy_m : domain_.dy_m;
+  regular_.cells = {columns.x, columns.y, grid_.cells};
+  regular_.spacing_m = {dx_m, dy_m, grid_.spacing_m};
+  regular_.low_corner_m = {-0.5 * dx_m * columns.x, -0.5 * dy_m * columns.y, grid_.low_m};
+}
+
 absl::StatusOr<volume::HydrometeorFields> TimeReader::Read(const std::optional<VerticalGrid>& grid,
                                                            const ReadCheckpoint& checkpoint) {
   checkpoint_ = checkpoint;
   THUNDERHEAD_RETURN_IF_ERROR(ReadHeights().status());
   THUNDERHEAD_ASSIGN_OR_RETURN(grid_, GridFor(grid));
   layers_are_cells_ = LayersAreCells(air_.interface_height_m, air_.levels, air_.columns, grid_);
-  regular_.cells = {domain_.cells.x, domain_.cells.y, grid_.cells};
-  regular_.spacing_m = {domain_.dx_m, domain_.dy_m, grid_.spacing_m};
-  regular_.low_corner_m = {-0.5 * domain_.dx_m * domain_.cells.x,
-                           -0.5 * domain_.dy_m * domain_.cells.y, grid_.low_m};
+  SetGrid();
   volume::HydrometeorFields result;
   result.grid = regular_;
   THUNDERHEAD_RETURN_IF_ERROR(Advance());

@@ -8,12 +8,14 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "physics/size_distributions.h"
+#include "storm_files/even_columns.h"
 #include "storm_files/layer_air.h"
 #include "storm_files/wind_motion.h"
 #include "volume/hydrometeor_fields.h"
@@ -38,12 +40,15 @@ struct LayerField {
 };
 
 struct LayerDomain {
-  std::string path;            // the file's path, for errors
-  std::size_t record = 0;      // the record's index in the file, for errors
-  absl::Time time;             // the valid time
-  glm::ivec3 cells{0};         // columns west-east and south-north, and layers
-  double dx_m = 0.0;           // true distance between neighbouring columns from west to east
-  double dy_m = 0.0;           // and from south to north
+  std::string path;        // the file's path, for errors
+  std::size_t record = 0;  // the record's index in the file, for errors
+  absl::Time time;         // the valid time
+  glm::ivec3 cells{0};     // columns west-east and south-north, and layers
+  double dx_m = 0.0;       // mean true distance between neighbouring columns along x
+  double dy_m = 0.0;       // and along y
+  // The columns that ReadOnHeights gives the storm. If it is null, the source's own columns are
+  // even, and dx_m and dy_m are their distances.
+  std::shared_ptr<const EvenColumns> even;
   bool on_terrain = false;     // true if the lowest interface is the ground
   bool fixed_heights = false;  // true if the heights are the same at all times
   std::string heights_from;    // the variables of the heights, for errors
@@ -97,7 +102,8 @@ class LayerSource {
 
   virtual absl::StatusOr<LayerEnergy> TurbulentEnergy() { return LayerEnergy(); }
 
-  // Returns the wind along the grid's axes. Its arrays are empty if the file has none.
+  // Returns the wind along the source's own axes, or to the east and north if the wind says so. Its
+  // arrays are empty if the file has none.
   virtual absl::StatusOr<ModelWind> Wind() { return ModelWind(); }
 };
 

@@ -62,6 +62,9 @@ struct StormFile {
   glm::ivec3 cells{0};  // west-east, south-north, bottom-top
   double dx_m = 0.0;
   double dy_m = 0.0;
+  // A text that is equal for all files whose columns belong to one grid, even if that grid moves.
+  // If it is empty, the columns' number and distances decide.
+  std::string grid;
   std::vector<absl::Time> times;             // one for each record, in the file's order
   std::vector<physics::Hydrometeor> fields;  // in the order of physics::kHydrometeors
   std::string about;                         // short description for users, e.g. "WRF V4.7.1,

@@ -20,6 +20,9 @@ struct ModelWind {
   // eastern faces), and v one more along y (southern and northern). W has one more along z (lower
   // and upper). Otherwise all values are at the cells' centres.
   bool on_faces = true;
+  // True if u is the wind to the east and v to the north, false if they are along the x and y axes
+  // of the model's columns.
+  bool east_and_north = false;
   std::vector<float> u_m_per_s;
   std::vector<float> v_m_per_s;
   std::vector<float> w_m_per_s;

@@ -3,13 +3,38 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "base/status.h"
+#include "storm_files/even_columns.h"
 #include "storm_files/fields_on_heights.h"
 #include "storm_files/wrf_metadata.h"
 #include "storm_files/wrf_reader.h"
 
 namespace thunderhead::storm_files {
 namespace {
+
+// Describes the columns that ReadOnHeights gives the storm.
+void DescribeColumns(const WrfMetadata& metadata, StormFile& file) {
+  file.cells = metadata.cells;
+  file.dx_m = metadata.dx_m;
+  file.dy_m = metadata.dy_m;
+  if (metadata.even == nullptr) return;
+  const EvenColumns& even = *metadata.even;
+  const glm::dvec2& nominal_m = metadata.nominal_m;
+  file.grid = absl::StrCat(metadata.cells.x, " x ", metadata.cells.y, " columns, DX ", nominal_m.x,
+                           ", DY ", nominal_m.y);
+  if (even.Resampled()) {
+    file.cells = {even.columns.x, even.columns.y, metadata.cells.z};
+    file.dx_m = even.dx_m;
+    file.dy_m = even.dy_m;
+    file.assumptions.push_back(AssumptionOf(even));
+  } else if (glm::dvec2(file.dx_m, file.dy_m) != nominal_m) {
+    file.assumptions.push_back(absl::StrFormat(
+        "The columns are %.0f m by %.0f m apart, as their latitudes and longitudes say; DX and DY, "
+        "which are lengths on the model's map, are %.0f m and %.0f m.",
+        file.dx_m, file.dy_m, nominal_m.x, nominal_m.y));
+  }
+}
 
 class WrfFormat final : public StormFormat {
  public:
@@ -34,9 +59,7 @@ class WrfFormat final : public StormFormat {
     THUNDERHEAD_ASSIGN_OR_RETURN(WrfMetadata metadata, ReadWrfMetadata(*unknown.Netcdf()));
     StormFile file;
     file.path = metadata.path;
-    file.cells = metadata.cells;
-    file.dx_m = metadata.dx_m;
-    file.dy_m = metadata.dy_m;
+    DescribeColumns(metadata, file);
     file.times = metadata.times;
     file.fields = metadata.fields;
     file.about = metadata.model;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
@@ -133,6 +135,7 @@ absl::Status ReadGrid(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
                        " (metres, above zero) is missing or wrong; add it"));
     }
   }
+  metadata.nominal_m = {metadata.dx_m, metadata.dy_m};
   return absl::OkStatus();
 }
 
@@ -385,6 +388,27 @@ absl::Status ReadPlace(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
   return absl::OkStatus();
 }
 
+// Measures the true distances between columns, and finds columns that are even.
+absl::Status MeasureColumns(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
+  if (!metadata.latitude_deg.has_value()) return absl::OkStatus();
+  metadata.columns.projection = metadata.projection;
+  const glm::ivec2 columns(metadata.cells);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<ColumnPlaces> places,
+                               ReadWrfColumns(file, metadata.columns, columns, 0));
+  if (!places.has_value()) return absl::OkStatus();
+  absl::StatusOr<EvenColumns> even = MakeEven(*places);
+  if (!even.ok()) return base::Annotate(even.status(), file.Path());
+  metadata.places = *places;
+  metadata.projection = even->projection;
+  // Places are stored as floats. They do not give lengths more accurately than this.
+  constexpr double kAccuracy = 1e-3;
+  const glm::dvec2 factor = metadata.nominal_m / even->mean_m;
+  if (std::abs(factor.x - 1.0) > kAccuracy) metadata.dx_m = even->mean_m.x;
+  if (std::abs(factor.y - 1.0) > kAccuracy) metadata.dy_m = even->mean_m.y;
+  metadata.even = std::make_shared<const EvenColumns>(*std::move(even));
+  return absl::OkStatus();
+}
+
 // Returns the land-use scheme by the name of its table of classes, or else by the number of
 // classes.
 std::optional<physics::LandUseScheme> LandUseSchemeOf(const netcdf::NetcdfFile& file) {
@@ -478,6 +502,7 @@ absl::StatusOr<WrfMetadata> ReadWrfMetadata(const netcdf::NetcdfFile& file) {
   THUNDERHEAD_ASSIGN_OR_RETURN(metadata.times, ReadWrfTimes(file));
   THUNDERHEAD_RETURN_IF_ERROR(CheckVariables(file, metadata));
   THUNDERHEAD_RETURN_IF_ERROR(ReadPlace(file, metadata));
+  THUNDERHEAD_RETURN_IF_ERROR(MeasureColumns(file, metadata));
   metadata.land = FindLand(file, metadata);
   metadata.model = ModelName(file);
   metadata.microphysics = MicrophysicsOf(file);

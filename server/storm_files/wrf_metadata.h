@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -15,6 +16,8 @@
 #include "physics/hydrometeors.h"
 #include "physics/land_use.h"
 #include "physics/size_distributions.h"
+#include "storm_files/even_columns.h"
+#include "storm_files/wrf_columns.h"
 #include "volume/grid.h"
 #include "volume/particle_sizes.h"
 
@@ -34,8 +37,12 @@ struct WrfLand {
 struct WrfMetadata {
   std::string path;
   glm::ivec3 cells{0};  // west-east, south-north, bottom-top
-  double dx_m = 0.0;
-  double dy_m = 0.0;
+  double dx_m = 0.0;  // mean true distances between neighbouring columns; the attributes DX and DY
+  double dy_m = 0.0;  // if the columns have no place on Earth
+  glm::dvec2 nominal_m{0.0};  // the attributes DX and DY, which are lengths on the model's map
+  WrfColumnNames columns;
+  ColumnPlaces places;                       // at the first record
+  std::shared_ptr<const EvenColumns> even;   // at the first record; null without a place on Earth
   std::vector<absl::Time> times;             // one for each record, in the file's order
   std::vector<physics::Hydrometeor> fields;  // in the order of physics::kHydrometeors
   // The variable of each field's particle sizes, indexed by physics::IndexOf. Its name is empty if

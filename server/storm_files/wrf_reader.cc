@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -9,7 +11,9 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "netcdf/netcdf_file.h"
+#include "storm_files/even_columns.h"
 #include "storm_files/fields_on_heights.h"
+#include "storm_files/wrf_columns.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -23,7 +27,7 @@ constexpr float kCoveringSnow_m = 0.1F;
 class WrfSource final : public LayerSource {
  public:
   WrfSource(std::shared_ptr<const WrfMetadata> metadata, std::size_t record,
-            netcdf::NetcdfFile file)
+            netcdf::NetcdfFile file, std::shared_ptr<const EvenColumns> even)
       : shared_metadata_(std::move(metadata)), file_(std::move(file)) {
     domain_.path = metadata_.path;
     domain_.record = record;
@@ -31,6 +35,7 @@ class WrfSource final : public LayerSource {
     domain_.cells = metadata_.cells;
     domain_.dx_m = metadata_.dx_m;
     domain_.dy_m = metadata_.dy_m;
+    domain_.even = std::move(even);
     domain_.on_terrain = true;
     domain_.heights_from = "PH + PHB";
     domain_.microphysics = metadata_.microphysics;
@@ -179,12 +184,30 @@ absl::StatusOr<ModelWind> WrfSource::Wind() {
   return wind;
 }
 
+// Returns the even columns at a record. They change with time if the domain moves (a moving nest).
+absl::StatusOr<std::shared_ptr<const EvenColumns>> EvenColumnsAt(const WrfMetadata& metadata,
+                                                                 const netcdf::NetcdfFile& file,
+                                                                 std::size_t record) {
+  if (metadata.even == nullptr || record == 0) return metadata.even;
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::optional<ColumnPlaces> places,
+      ReadWrfColumns(file, metadata.columns, glm::ivec2(metadata.cells), record));
+  if (!places.has_value() || *places == metadata.places) return metadata.even;
+  absl::StatusOr<EvenColumns> even = MakeEven(*places, {.like = metadata.even.get()});
+  if (!even.ok()) {
+    return base::Annotate(even.status(), absl::StrCat(metadata.path, ": record ", record));
+  }
+  return std::make_shared<const EvenColumns>(*std::move(even));
+}
+
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<LayerSource>> OpenWrfTime(
     std::shared_ptr<const WrfMetadata> metadata, std::size_t record) {
   THUNDERHEAD_ASSIGN_OR_RETURN(netcdf::NetcdfFile file, netcdf::NetcdfFile::Open(metadata->path));
-  return std::make_unique<WrfSource>(std::move(metadata), record, std::move(file));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<const EvenColumns> even,
+                               EvenColumnsAt(*metadata, file, record));
+  return std::make_unique<WrfSource>(std::move(metadata), record, std::move(file), std::move(even));
 }
 
 absl::StatusOr<volume::HydrometeorFields> ReadWrfTime(const WrfMetadata& metadata,

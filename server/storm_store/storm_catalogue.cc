@@ -15,6 +15,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
 #include "base/file_stamp.h"
 #include "base/slow_calls.h"
@@ -73,8 +74,12 @@ std::string NameOfFolder(const fs::path& path) {
 
 // Returns a key that is equal for files that may be parts of one run.
 auto RunKey(const storm_files::StormFile& file) {
-  return std::make_tuple(file.domain, file.cells.x, file.cells.y, file.cells.z, file.dx_m,
-                         file.dy_m, file.run, file.member);
+  // The distances between columns change a little with a moving nest.
+  const std::string grid = !file.grid.empty()
+                               ? file.grid
+                               : absl::StrFormat("%d x %d, %.17g x %.17g", file.cells.x,
+                                                 file.cells.y, file.dx_m, file.dy_m);
+  return std::make_tuple(file.domain, grid, file.cells.z, file.run, file.member);
 }
 
 // Returns whether the files belong to one run. The times of such files overlap at most at their

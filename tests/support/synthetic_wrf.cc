@@ -7,6 +7,8 @@
 #include <limits>
 
 #include "base/status.h"
+#include "glm/trigonometric.hpp"
+#include "tests/support/earth_formulas.h"
 
 namespace thunderhead::testing {
 namespace {
@@ -223,10 +225,16 @@ void WriteWrf(const SyntheticWrf& file, const std::string& path) {
   writer.Field("HGT", "", "m", [&](const WrfCell& cell) {
     return file.terrain_m ? file.terrain_m(cell.x, cell.y) : 0.0;
   });
-  writer.Field("XLAT", "", "degree_north",
-               [&](const WrfCell& cell) { return file.latitude_deg + 0.1 * cell.y; });
-  writer.Field("XLONG", "", "degree_east",
-               [&](const WrfCell& cell) { return file.longitude_deg + 0.1 * cell.x; });
+  const double per_row_deg = glm::degrees(file.dy_m / kEarth_m);
+  const double middle_deg = file.latitude_deg + 0.5 * (file.ny - 1) * per_row_deg;
+  const double per_column_deg =
+      glm::degrees(file.dx_m / (kEarth_m * std::cos(glm::radians(middle_deg))));
+  if (!file.columns.contains("XLAT"))
+    writer.Field("XLAT", "", "degree_north",
+                 [&](const WrfCell& cell) { return file.latitude_deg + per_row_deg * cell.y; });
+  if (!file.columns.contains("XLONG"))
+    writer.Field("XLONG", "", "degree_east",
+                 [&](const WrfCell& cell) { return file.longitude_deg + per_column_deg * cell.x; });
   for (const auto& [name, value] : file.columns) writer.Field(name, "", "", value);
   for (const auto& [name, value] : file.mixing_ratios) {
     writer.Field(name, "bottom_top", "kg kg-1", value);

@@ -53,15 +53,14 @@ struct SyntheticWrf {
   // Mixing ratios by variable name. Other mixing ratios are not in the file.
   std::map<std::string, std::function<double(const WrfCell&)>> mixing_ratios;
 
-  // Two-dimensional fields in addition to HGT, XLAT and XLONG, by variable name. An example is
-  // LU_INDEX.
+  // Two-dimensional fields in addition to HGT, by variable name. An example is LU_INDEX. XLAT and
+  // XLONG replace the places that follow from `latitude_deg` and `longitude_deg`.
   std::map<std::string, std::function<double(const WrfCell&)>> columns;
   std::string land_use_table;  // attribute MMINLU; empty: the file does not have it
   int land_use_classes = 0;    // attribute NUM_LAND_CAT; 0: the file does not have it
 
-  double latitude_deg =
-      35.0;  // latitude of the south-west cell; it increases by 0.1 degrees per cell
-  double longitude_deg = -97.0;
+  double latitude_deg = 35.0;    // latitude and longitude of the south-west cell. They increase by
+  double longitude_deg = -97.0;  // equal steps, whose lengths at the middle are dx_m and dy_m.
   int map_projection = 1;
   std::map<std::string, double> numbers;  // additional global attributes, such as TRUELAT1
   int domain = 1;

@@ -322,19 +322,22 @@ TEST_F(WrfReader, FindsTheMiddleOfTheDomain) {
   testing::WriteWrf(Uniform(1e-3), path);
   auto metadata = ReadWrfMetadata(path);
   ASSERT_TRUE(metadata.ok()) << metadata.status();
-  EXPECT_NEAR(metadata->latitude_deg.value_or(0), 35.1, 1e-4);
-  EXPECT_NEAR(metadata->longitude_deg.value_or(0), -96.85, 1e-4);
+  // One row of 2 km north of the first, and one and a half columns of 1 km east of it.
+  EXPECT_NEAR(metadata->latitude_deg.value_or(0), 35.01799, 1e-4);
+  EXPECT_NEAR(metadata->longitude_deg.value_or(0), -96.98352, 1e-4);
   EXPECT_FALSE(metadata->idealised);
 
   SyntheticWrf at_date_line = Uniform(1e-3);
-  at_date_line.longitude_deg = 179.88;  // the middle columns: 179.98 and -179.92
+  at_date_line.longitude_deg = 179.98;  // the middle columns: 179.991 and, in the file, -179.998
   for (int y = 0; y < 3; ++y) {
-    at_date_line.stored_values.push_back({"XLONG", {2, y, 0, 0}, -179.92});
+    at_date_line.stored_values.push_back({"XLONG", {2, y, 0, 0}, -179.99803});
+    at_date_line.stored_values.push_back({"XLONG", {3, y, 0, 0}, -179.98705});
   }
   testing::WriteWrf(at_date_line, path);
   metadata = ReadWrfMetadata(path);
   ASSERT_TRUE(metadata.ok()) << metadata.status();
-  EXPECT_NEAR(metadata->longitude_deg.value_or(0), -179.97, 1e-3);
+  EXPECT_NEAR(metadata->longitude_deg.value_or(0), 179.99648, 1e-4);
+  EXPECT_EQ(metadata->dx_m, 1000.0);
 }
 
 TEST_F(WrfReader, GivesIdealisedRunsNoPlace) {

@@ -183,7 +183,7 @@ TEST_F(BorderDataTest, WithoutAMapProjectionOrWithDamagedDataThereIsNone) {
 
 // The store adds a border map to a storm, but only if the storm has geographical coordinates.
 TEST_F(BorderDataTest, TimesOfAStormShareItsMap) {
-  Write({Through({-96.85, 35.1})}, {});
+  Write({Through({-96.98352, 35.01799})}, {});
   testing::SyntheticWrf file;
   file.mixing_ratios["QCLOUD"] = [](const testing::WrfCell&) { return 1e-3; };
   file.times = {"2013-05-20_20:00:00", "2013-05-20_21:00:00"};

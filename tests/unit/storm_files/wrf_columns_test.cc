@@ -1,0 +1,195 @@
+// Tests of the true distances between the columns of WRF files.
+#include "storm_files/wrf_columns.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "glm/geometric.hpp"
+#include "storm_files/storm_format.h"
+#include "storm_store/storm_catalogue.h"
+#include "tests/support/earth_formulas.h"
+#include "tests/support/synthetic_wrf.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::storm_files {
+namespace {
+
+using testing::Distance_m;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::SyntheticWrf;
+using testing::WrfCell;
+using volume::EarthPlace;
+
+// A moving nest of 48 by 40 columns in a Mercator projection whose scale is true at the equator.
+// The map factor is about 1.1. At each record the nest is 100 km farther west and north on the map.
+// Its middle column has cloud.
+SyntheticWrf Nest() {
+  SyntheticWrf file;
+  file.nx = 48;
+  file.ny = 40;
+  file.levels = 3;
+  file.dx_m = file.dy_m = 10'000.0;
+  file.times = {"2013-05-20_20:00:00", "2013-05-20_21:00:00"};
+  file.map_projection = 3;
+  file.numbers = {{"TRUELAT1", 0.0}, {"STAND_LON", -89.0}};
+  const auto place = [](const WrfCell& cell) {
+    return testing::FromMercator(
+        {1e4 * cell.x - 1e5 * cell.record - 290e3, 1e4 * cell.y + 1e5 * cell.record + 2.49e6}, 0.0,
+        -89.0);
+  };
+  file.columns["XLAT"] = [=](const WrfCell& cell) { return place(cell).latitude_deg; };
+  file.columns["XLONG"] = [=](const WrfCell& cell) { return place(cell).longitude_deg; };
+  file.mixing_ratios["QCLOUD"] = [](const WrfCell& cell) {
+    return std::abs(cell.x - 24) < 4 && std::abs(cell.y - 30) < 4 ? 1e-3 : 0.0;
+  };
+  return file;
+}
+
+class WrfColumns : public ::testing::Test {
+ protected:
+  StormFile Describe(const SyntheticWrf& file) {
+    const std::string path = folder_.File("wrfout");
+    testing::WriteWrf(file, path);
+    auto described = StormFormats::BuiltIn().Describe(path);
+    EXPECT_TRUE(described.ok()) << described.status();
+    return *std::move(described);
+  }
+
+  testing::TemporaryFolder folder_;
+};
+
+// Returns the place of the middle of the cloud.
+EarthPlace CloudPlace(const StormFile& file, const volume::HydrometeorFields& fields,
+                      const EarthPlace& middle) {
+  glm::dvec2 moment(0.0);
+  double sum = 0.0;
+  for (int y = 0; y < file.cells.y; ++y) {
+    for (int x = 0; x < file.cells.x; ++x) {
+      const double value = fields.fields[0].concentration_kg_per_m3[fields.grid.Offset(x, y, 1)];
+      moment += value * glm::dvec2(x, y);
+      sum += value;
+    }
+  }
+  const glm::dvec2 column = moment / sum - 0.5 * glm::dvec2(glm::ivec2(file.cells) - 1);
+  return testing::FromStereographic(column * glm::dvec2(file.dx_m, file.dy_m), middle);
+}
+
+TEST_F(WrfColumns, AProjectedLengthIsNoTrueLength) {
+  const SyntheticWrf wrf = Nest();
+  const StormFile file = Describe(wrf);
+  const auto place = [&](int x, int y) {
+    return EarthPlace{wrf.columns.at("XLAT")({x, y}), wrf.columns.at("XLONG")({x, y})};
+  };
+  const double across_m = Distance_m(place(0, 20), place(47, 20)) / 47.0;
+  EXPECT_NEAR(across_m, 9100.0, 100.0);
+  EXPECT_NEAR(file.dx_m / across_m, 1.0, 0.01);
+  EXPECT_NEAR(file.dy_m / across_m, 1.0, 0.01);
+  EXPECT_THAT(file.projection, HasSubstr("+proj=stere"));
+  EXPECT_THAT(file.assumptions, ElementsAre(HasSubstr("resampled to even distances of 91")));
+  EXPECT_GE(file.cells.x, 47);
+  EXPECT_LE(file.cells.x, 50);
+
+  const auto fields = file.reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ(glm::ivec2(fields->grid.cells), glm::ivec2(file.cells));
+  EXPECT_EQ(fields->grid.spacing_m.x, file.dx_m);
+  const EarthPlace middle{*file.latitude_deg, *file.longitude_deg};
+  EXPECT_LT(Distance_m(CloudPlace(file, *fields, middle), place(24, 30)), 0.25 * file.dx_m);
+}
+
+TEST_F(WrfColumns, EachTimeOfAMovingNestIsAtItsPlace) {
+  const SyntheticWrf wrf = Nest();
+  const StormFile file = Describe(wrf);
+  const auto first = file.reader->Read(0, std::nullopt, {});
+  const auto second = file.reader->Read(1, std::nullopt, {});
+  ASSERT_TRUE(first.ok() && second.ok()) << second.status();
+  EXPECT_EQ(first->grid, second->grid);
+  const auto place = [&](int x, int y) {
+    return EarthPlace{wrf.columns.at("XLAT")({x, y, 0, 1}), wrf.columns.at("XLONG")({x, y, 0, 1})};
+  };
+  // The nest's middle is between four columns. The even grid's axes are those of the first time,
+  // which differ by less than a degree from north at the second.
+  EarthPlace middle{0.25 * (place(23, 19).latitude_deg + place(24, 19).latitude_deg +
+                            place(23, 20).latitude_deg + place(24, 20).latitude_deg),
+                    0.5 * (place(23, 19).longitude_deg + place(24, 19).longitude_deg)};
+  EXPECT_LT(Distance_m(CloudPlace(file, *second, middle), place(24, 30)), 0.25 * file.dx_m);
+  EXPECT_NE(first->fields[0].concentration_kg_per_m3, second->fields[0].concentration_kg_per_m3);
+}
+
+TEST_F(WrfColumns, FilesOfAMovingNestAreOneStorm) {
+  SyntheticWrf later = Nest();
+  SyntheticWrf first = later;
+  first.times.resize(1);
+  later.times = {"2013-05-20_21:00:00"};
+  for (const char* const name : {"XLAT", "XLONG"}) {
+    later.columns[name] = [value = later.columns[name]](WrfCell cell) {
+      cell.record = 1;
+      return value(cell);
+    };
+  }
+  std::filesystem::create_directory(folder_.File("run"));
+  testing::WriteWrf(first, folder_.File("run/wrfout_a"));
+  testing::WriteWrf(later, folder_.File("run/wrfout_b"));
+  const auto storms = storm_store::FindStorms({folder_.File("run")}, StormFormats::BuiltIn(), {});
+  ASSERT_TRUE(storms.ok()) << storms.status();
+  ASSERT_EQ(storms->size(), 1U);
+  EXPECT_EQ(storms->front().info.times.size(), 2U);
+}
+
+// A program that keeps every second column leaves DX as it was.
+TEST_F(WrfColumns, PlacesGiveTheDistanceInsteadOfDx) {
+  SyntheticWrf wrf = Nest();
+  wrf.columns.clear();
+  wrf.map_projection = 1;
+  wrf.numbers = {{"TRUELAT1", 30.0}, {"TRUELAT2", 60.0}, {"STAND_LON", -97.0}};
+  const testing::LambertFormulas lambert(30.0, 60.0, -97.0);
+  const auto place = [=](const WrfCell& cell) {
+    return lambert.PlaceOf({2000.0 * cell.x, 2000.0 * cell.y - lambert.FromTip_m(45.0)});
+  };
+  wrf.dx_m = wrf.dy_m = 1000.0;
+  wrf.columns["XLAT"] = [=](const WrfCell& cell) { return place(cell).latitude_deg; };
+  wrf.columns["XLONG"] = [=](const WrfCell& cell) { return place(cell).longitude_deg; };
+  const StormFile file = Describe(wrf);
+  EXPECT_EQ(file.cells, glm::ivec3(48, 40, 3));
+  EXPECT_NEAR(file.dx_m, Distance_m(place({20, 20}), place({21, 20})), 6.0);
+  EXPECT_NEAR(file.dx_m, 2000.0 / lambert.Scale(45.0), 6.0);
+  EXPECT_THAT(file.projection, HasSubstr("+proj=lcc"));
+  EXPECT_THAT(file.assumptions, ElementsAre(HasSubstr("DX and DY")));
+}
+
+TEST_F(WrfColumns, IdealisedRunsAndShortDomainsKeepDx) {
+  SyntheticWrf idealised = Nest();
+  idealised.map_projection = 0;
+  SyntheticWrf of_one_row = Nest();
+  of_one_row.ny = 1;
+  SyntheticWrf short_domain = Nest();
+  short_domain.columns.clear();
+  short_domain.dx_m = short_domain.dy_m = 10.0;
+  for (const SyntheticWrf& wrf : {idealised, of_one_row, short_domain}) {
+    const StormFile file = Describe(wrf);
+    EXPECT_EQ(file.dx_m, wrf.dx_m);
+    EXPECT_EQ(file.dy_m, wrf.dy_m);
+    EXPECT_EQ(file.cells, glm::ivec3(wrf.nx, wrf.ny, wrf.levels));
+    EXPECT_THAT(file.assumptions, IsEmpty());
+  }
+}
+
+TEST_F(WrfColumns, RefusesADomainThatIsTooLarge) {
+  SyntheticWrf wrf = Nest();
+  wrf.nx = wrf.ny = 20;
+  wrf.columns["XLAT"] = [](const WrfCell& cell) { return 20.0 + 2.0 * cell.y; };
+  wrf.columns["XLONG"] = [](const WrfCell& cell) { return -100.0 + 2.0 * cell.x; };
+  const std::string path = folder_.File("wrfout");
+  testing::WriteWrf(wrf, path);
+  const auto described = StormFormats::BuiltIn().Describe(path);
+  EXPECT_THAT(std::string(described.status().message()), HasSubstr("wrfout: the domain reaches"));
+  EXPECT_THAT(std::string(described.status().message()), HasSubstr("cut a region"));
+}
+
+}  // namespace
+}  // namespace thunderhead::storm_files
