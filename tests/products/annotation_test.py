@@ -15,8 +15,8 @@ from PIL import Image
 SIZE = ("--size", "480x270")
 # No error is measured, because within a time limit it would differ from run to run.
 FAST = ("--quality", "fast", "--error-seconds", "0")
-LAMBERT = ({"MAP_PROJ": 1, "TRUELAT1": 30.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0},
-           "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000 +no_defs", (-90.0, 41.0))
+LAMBERT = ({"MAP_PROJ": 1, "TRUELAT1": 41.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0},
+           "+proj=lcc +lat_1=41 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000 +no_defs", (-90.0, 41.0))
 
 
 def pixels(file: pathlib.Path) -> numpy.ndarray:

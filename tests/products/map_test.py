@@ -12,17 +12,17 @@ import numpy
 from PIL import Image
 
 # For each WRF MAP_PROJ: the attributes, the same projection in PROJ's notation, the domain's middle, and the name in
-# CF.
+# CF. The scale is true at the middle, so the product's projection is that of the model.
 PROJECTIONS = {
     "lambert": (
-        {"MAP_PROJ": 1, "TRUELAT1": 30.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0},
-        "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000 +no_defs", (-90.0, 41.0), "lambert_conformal_conic"),
+        {"MAP_PROJ": 1, "TRUELAT1": 41.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0},
+        "+proj=lcc +lat_1=41 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000 +no_defs", (-90.0, 41.0), "lambert_conformal_conic"),
     "polar": (
-        {"MAP_PROJ": 2, "TRUELAT1": -60.0, "STAND_LON": 20.0},
-        "+proj=stere +lat_0=-90 +lat_ts=-60 +lon_0=20 +R=6370000 +no_defs", (35.0, -70.0), "polar_stereographic"),
+        {"MAP_PROJ": 2, "TRUELAT1": -70.0, "STAND_LON": 20.0},
+        "+proj=stere +lat_0=-90 +lat_ts=-70 +lon_0=20 +R=6370000 +no_defs", (35.0, -70.0), "polar_stereographic"),
     "mercator": (
-        {"MAP_PROJ": 3, "TRUELAT1": 15.0, "STAND_LON": 120.0},
-        "+proj=merc +lat_ts=15 +lon_0=120 +R=6370000 +no_defs", (122.0, 14.0), "mercator"),
+        {"MAP_PROJ": 3, "TRUELAT1": 14.0, "STAND_LON": 120.0},
+        "+proj=merc +lat_ts=14 +lon_0=120 +R=6370000 +no_defs", (122.0, 14.0), "mercator"),
 }
 # The view is neither centred on the domain, nor as wide, nor square, so that no two mistakes cancel. It is lit from
 # above and has no turbulent detail, so that clouds are brightest in their middles.

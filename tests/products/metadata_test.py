@@ -13,10 +13,10 @@ from product_test import PROGRAM, ProductTest, run, write_wrf
 import numpy
 from PIL import Image
 
-ATTRIBUTES = {"MAP_PROJ": 1, "TRUELAT1": 30.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0}
-LAMBERT = "+proj=lcc +lat_1=30 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000 +no_defs"
+ATTRIBUTES = {"MAP_PROJ": 1, "TRUELAT1": 41.0, "TRUELAT2": 60.0, "MOAD_CEN_LAT": 38.5, "STAND_LON": -97.0}
+LAMBERT = "+proj=lcc +lat_1=41 +lat_2=60 +lat_0=38.5 +lon_0=-97 +R=6370000 +no_defs"
 # Lambert's cone constant of the two standard parallels (Snyder 1987, equation 15-3).
-CONE = math.log(math.cos(math.radians(30)) / math.cos(math.radians(60))) / math.log(math.tan(math.radians(75)) / math.tan(math.radians(60)))
+CONE = math.log(math.cos(math.radians(41)) / math.cos(math.radians(60))) / math.log(math.tan(math.radians(75)) / math.tan(math.radians(65.5)))
 SCENE = """{"camera": {"orbit": {"target": {"xM": 1000, "yM": 2000, "zM": 4000}, "azimuthDeg": 270, "elevationDeg": 10,
             "distanceM": 90000, "fieldOfViewDeg": 40}}, "sun": {"azimuthDeg": 120, "elevationDeg": 35}}"""
 SIZE = ("--size", "160x100", "--quality", "fast")
