@@ -135,6 +135,7 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   expected.about = "about";
   expected.domain = 7;
   expected.run = "run";
+  expected.grid = "grid";
   expected.latitude_deg = 8.0;
   expected.longitude_deg = 9.0;
   expected.middles = {{11.0, 12.0}, {13.0, 14.0}};
@@ -146,7 +147,7 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   expected.version = expected.id = expected.device = 10;
   expected.modified_ns = 15;
   const storm_files::StormFile received = Sent(expected);
-  const auto& [path, cells, dx_m, dy_m, times, fields, about, domain, run, latitude_deg,
+  const auto& [path, cells, dx_m, dy_m, times, fields, about, domain, run, grid, latitude_deg,
                longitude_deg, middles, projection, member, assumptions, part, parts, reader,
                version, id, device, modified_ns] = received;
   EXPECT_EQ(cells, expected.cells);
@@ -157,6 +158,7 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   EXPECT_EQ(about, expected.about);
   EXPECT_EQ(domain, expected.domain);
   EXPECT_EQ(run, expected.run);
+  EXPECT_EQ(grid, expected.grid);
   EXPECT_EQ(latitude_deg, expected.latitude_deg);
   EXPECT_EQ(longitude_deg, expected.longitude_deg);
   EXPECT_EQ(middles, expected.middles);
