@@ -94,7 +94,7 @@ std::string Table(const v1::StormDescription& storm) {
                           storm.longitude_deg());
     absl::StrAppend(&text, "map     ", MapOf(storm), "\n");
   } else {
-    absl::StrAppend(&text, "middle  no place on Earth (idealised)\n");
+    absl::StrAppend(&text, "middle  no place on Earth\n");
   }
   for (const std::string& assumption : storm.assumptions()) {
     absl::StrAppend(&text, "assumed ", assumption, "\n");

@@ -404,15 +404,16 @@ std::string NetcdfFile::TextOrEmpty(const std::string& variable,
 }
 
 absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string& variable) const {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, Shape(variable));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<std::size_t> shape, Shape(variable));
   const NetcdfLock lock;
   int id = 0;
   nc_type type = NC_NAT;
   nc_inq_varid(handle_, variable.c_str(), &id);
   nc_inq_vartype(handle_, id, &type);
+  if (shape.size() == 1) shape.insert(shape.begin(), 1);
   if (shape.size() != 2 || type != NC_CHAR) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(path_, ": ", variable, " is not a two-dimensional character variable"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        path_, ": ", variable, " is not a character variable of one or two dimensions"));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, CountThatFits(variable, shape, 1));
   std::vector<char> text(total);

@@ -56,7 +56,8 @@ class NetcdfFile {
   // returned as "(not text)". Readers refuse that text like any other text that they do not know.
   std::string TextOrEmpty(const std::string& variable, const std::string& attribute) const;
 
-  // Returns the rows of a two-dimensional character variable, each up to its first NUL.
+  // Returns the rows of a character variable, each up to its first NUL. A variable of one dimension
+  // is one row.
   absl::StatusOr<std::vector<std::string>> ReadRows(const std::string& variable) const;
 
   // Returns how many values a record of the variable has, computed from its dimensions without

@@ -51,6 +51,33 @@ void GeopotentialToHeight(const std::vector<float>& base, std::vector<float>& ge
   }
 }
 
+std::vector<float> InterfacesBetween(const std::vector<float>& middles_m,
+                                     const std::vector<float>& ground_m, int levels,
+                                     std::size_t columns) {
+  std::vector<float> interfaces((static_cast<std::size_t>(levels) + 1) * columns, kMissing);
+  const auto middle = [&](int level, std::size_t column) {
+    const bool exists = level >= 0 && level < levels;
+    return exists ? middles_m[static_cast<std::size_t>(level) * columns + column] : kMissing;
+  };
+  for (int face = 0; face <= levels; ++face) {
+    for (std::size_t column = 0; column < columns; ++column) {
+      const float below = middle(face - 1, column);
+      const float above = middle(face, column);
+      float& height_m = interfaces[static_cast<std::size_t>(face) * columns + column];
+      if (!std::isnan(below) && !std::isnan(above)) {
+        height_m = 0.5F * (below + above);
+      } else if (!std::isnan(above)) {
+        height_m = above - 0.5F * (middle(face + 1, column) - above);
+        const float ground = ground_m.empty() ? kMissing : ground_m[column];
+        if (ground < above) height_m = ground;
+      } else if (!std::isnan(below)) {
+        height_m = below + 0.5F * (below - middle(face - 2, column));
+      }
+    }
+  }
+  return interfaces;
+}
+
 std::vector<float> Temperature(const LayerState& state) {
   if (!state.temperature_K.empty() || state.potential_temperature_K.empty()) {
     return state.temperature_K;

@@ -21,6 +21,14 @@ struct LayerAir {
 // Implausible heights become NaN.
 void GeopotentialToHeight(const std::vector<float>& base, std::vector<float>& geopotential);
 
+// Returns the heights of the interfaces between layers whose middles are known. An interface is
+// half-way between two middles. The lowest is the ground if `ground_m` is not empty, and otherwise
+// as far below the lowest middle as the next interface is above it. So is the highest. Missing
+// middles give missing interfaces. The first present middle above missing ones is the lowest.
+std::vector<float> InterfacesBetween(const std::vector<float>& middles_m,
+                                     const std::vector<float>& ground_m, int levels,
+                                     std::size_t columns);
+
 // The state of the air in each layer, as the file gives it. Missing values are NaN. A file has
 // pressure and either temperature, or the density instead of all three.
 struct LayerState {

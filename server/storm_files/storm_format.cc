@@ -100,7 +100,8 @@ absl::StatusOr<const StormFormat*> StormFormats::FormatOf(const UnknownFile& fil
     fitting.push_back(format.get());
   }
   if (fitting.empty()) return NoneFits(file);
-  if (fitting.size() == 1) return fitting.front();
+  // The nearest format gives the reason why a file of no format cannot be read.
+  if (fitting.size() == 1 || best == FormatFit::kRelated) return fitting.front();
   const auto append_name = [](std::string* out, const StormFormat* format) {
     out->append(format->Name());
   };

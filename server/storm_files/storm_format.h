@@ -48,6 +48,8 @@ class UnknownFile {
 // wins over a convention, because the model's files may also follow the convention.
 enum class FormatFit {
   kNone,
+  // The file resembles the format but lacks something that it needs. Describe returns the reason.
+  kRelated,
   kConvention,   // the file follows a convention that many programs share
   kModelLayout,  // the file has the layout of one model's files
 };

@@ -1,5 +1,7 @@
 #include "storm_files/wrf_format.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -9,6 +11,7 @@
 #include "storm_files/fields_on_heights.h"
 #include "storm_files/wrf_metadata.h"
 #include "storm_files/wrf_reader.h"
+#include "storm_files/wrf_relatives.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -49,9 +52,12 @@ class WrfFormat final : public StormFormat {
     const auto has = [&file](const char* name) {
       return file.Netcdf()->DimensionLength(name).has_value();
     };
-    const bool fits =
+    const bool dimensions =
         has("bottom_top") || has("bottom_top_stag") || (has("west_east") && has("south_north"));
-    return fits ? FormatFit::kModelLayout : FormatFit::kNone;
+    // Programs such as CDO rename the dimensions and keep the variables.
+    const bool variables = file.Netcdf()->HasVariable("PHB") && file.Netcdf()->HasVariable("PB");
+    if (dimensions || variables || IsOnEta(*file.Netcdf())) return FormatFit::kModelLayout;
+    return HasWrfTitle(*file.Netcdf()) ? FormatFit::kRelated : FormatFit::kNone;
   }
 
   absl::StatusOr<StormFile> Describe(const UnknownFile& unknown) const override {
@@ -63,14 +69,18 @@ class WrfFormat final : public StormFormat {
     file.times = metadata.times;
     file.fields = metadata.fields;
     file.about = metadata.model;
-    if (metadata.idealised) {
+    if (metadata.place.idealised) {
       absl::StrAppend(&file.about, file.about.empty() ? "" : ", ", "idealised");
     }
     file.domain = metadata.domain;
     file.run = metadata.simulation_start;
-    file.latitude_deg = metadata.latitude_deg;
-    file.longitude_deg = metadata.longitude_deg;
-    file.projection = metadata.projection;
+    if (metadata.place.middle.has_value()) {
+      file.latitude_deg = metadata.place.middle->latitude_deg;
+      file.longitude_deg = metadata.place.middle->longitude_deg;
+    }
+    file.middles = metadata.place.middles;
+    file.projection = metadata.place.projection;
+    std::ranges::copy(metadata.assumptions, std::back_inserter(file.assumptions));
     file.reader =
         MakeRecordReader([metadata = std::make_shared<const WrfMetadata>(std::move(metadata))](
                              std::size_t record) { return OpenWrfTime(metadata, record); });

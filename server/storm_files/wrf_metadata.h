@@ -5,7 +5,6 @@
 
 #include <array>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,28 +13,48 @@
 #include "absl/time/time.h"
 #include "netcdf/netcdf_file.h"
 #include "physics/hydrometeors.h"
-#include "physics/land_use.h"
 #include "physics/size_distributions.h"
 #include "storm_files/even_columns.h"
 #include "storm_files/wrf_columns.h"
+#include "storm_files/wrf_land.h"
+#include "storm_files/wrf_layout.h"
+#include "storm_files/wrf_phases.h"
+#include "storm_files/wrf_place.h"
 #include "volume/grid.h"
 #include "volume/particle_sizes.h"
 
 namespace thunderhead::storm_files {
 
-// The names of the land-cover variables. A name is empty if the file lacks the variable.
-struct WrfLand {
-  physics::LandUseScheme scheme = physics::LandUseScheme::kUsgs;
-  std::string land_use;
-  std::string mask;  // XLAND (2 is water) or LANDMASK (0 is water)
-  std::string albedo;
-  std::string green;       // variable in percent
-  std::string snow_share;  // variable with the snow-covered share of a cell
-  std::string snow_depth;  // variable with the depth in m, used if there is no share
+// A variable that gives a quantity in SI units: its values times `scale`, plus `offset`.
+struct WrfTerm {
+  std::string variable;  // empty if the file has none
+  double scale = 1.0;
+  double offset = 0.0;
+  bool per_level = false;  // true if the variable has one value for each level
+};
+
+// The variables of the layers' heights.
+struct WrfHeights {
+  // Perturbation and base of the geopotential at the interfaces (m2/s2). Their names are empty if
+  // the file has heights of the layers' middles instead.
+  std::string perturbation;
+  std::string base;
+  WrfTerm middles;  // height above sea level (m)
+};
+
+// The variables of the air's state. The pressure (Pa) is the sum of its terms.
+struct WrfAir {
+  std::vector<WrfTerm> pressure;
+  WrfTerm temperature;     // (K)
+  bool potential = false;  // true if `temperature` is the potential temperature
+  // True if the potential temperature is that of moist air: theta (1 + Rv / Rd q_v).
+  bool moist = false;
+  bool has_vapour = false;
 };
 
 struct WrfMetadata {
   std::string path;
+  WrfLayout layout;
   glm::ivec3 cells{0};  // west-east, south-north, bottom-top
   double dx_m = 0.0;  // mean true distances between neighbouring columns; the attributes DX and DY
   double dy_m = 0.0;  // if the columns have no place on Earth
@@ -45,10 +64,17 @@ struct WrfMetadata {
   std::shared_ptr<const EvenColumns> even;   // at the first record; null without a place on Earth
   std::vector<absl::Time> times;             // one for each record, in the file's order
   std::vector<physics::Hydrometeor> fields;  // in the order of physics::kHydrometeors
-  // The variable of each field's particle sizes, indexed by physics::IndexOf. Its name is empty if
-  // the file has no such variable.
+  // The variable of each field, and the variable of its particles' sizes, indexed by
+  // physics::IndexOf. A name is empty if the file has no such variable.
+  std::array<std::string, physics::kHydrometeorCount> variables;
   std::array<volume::SizeVariable, physics::kHydrometeorCount> sizes;
+  // Further categories of cloud ice, which are added to the first.
+  std::vector<std::string> more_ice;
+  // How the variables that two fields share are split.
+  PhaseSplit split = PhaseSplit::kNone;
   physics::Microphysics microphysics = physics::Microphysics::kUnknown;
+  WrfHeights heights;
+  WrfAir air;
   // The variable of turbulent kinetic energy, without a name if there is none. Boundary layer
   // schemes may write it on interfaces or doubled.
   struct Energy {
@@ -57,17 +83,18 @@ struct WrfMetadata {
     bool doubled = false;
   };
   Energy energy;
-  bool has_wind = false;  // true if the file has U, V and W
-  bool has_vapour = false;
+  std::array<std::string, 3> wind;  // the variables of the wind; the names are empty if one is
+                                    // missing
   bool has_terrain = false;
-  WrfLand land;                        // all names are empty for an idealised run
-  std::string model;                   // "WRF V4.7.1"
-  bool idealised = false;              // true if the run has no place on Earth
-  int domain = 1;                      // GRID_ID, counted from 1
-  std::string simulation_start;        // SIMULATION_START_DATE as in the file; differs between runs
-  std::optional<double> latitude_deg;  // latitude of the middle of the domain
-  std::optional<double> longitude_deg;
-  std::string projection;  // as a PROJ string; empty if the grid has no projection
+  WrfLand land;                  // all names are empty for an idealised run
+  std::string model;             // "WRF V4.7.1"
+  int domain = 1;                // GRID_ID, counted from 1
+  std::string simulation_start;  // SIMULATION_START_DATE as in the file; differs between runs
+  WrfPlace place;
+  std::vector<std::string> assumptions;  // a sentence each, for users
+
+  // Returns whether another field comes from the same variable.
+  bool IsShared(physics::Hydrometeor hydrometeor) const;
 };
 
 // Returns WRF's name of a hydrometeor's mixing ratio, e.g. "QCLOUD".

@@ -18,8 +18,7 @@
 namespace thunderhead::storm_files {
 namespace {
 
-constexpr float kBaseTheta_K = 300.0F;  // WRF's variable T is the potential temperature minus this
-                                        // value
+constexpr float kVapourToDryGas = 461.6F / 287.0F;  // Rv / Rd, as in WRF
 
 // Snow of this depth hides short plants.
 constexpr float kCoveringSnow_m = 0.1F;
@@ -36,13 +35,13 @@ class WrfSource final : public LayerSource {
     domain_.dx_m = metadata_.dx_m;
     domain_.dy_m = metadata_.dy_m;
     domain_.even = std::move(even);
-    domain_.on_terrain = true;
-    domain_.heights_from = "PH + PHB";
+    domain_.on_terrain = !metadata_.heights.middles.per_level;
+    domain_.heights_from = HeightsFrom();
     domain_.microphysics = metadata_.microphysics;
     for (const physics::Hydrometeor hydrometeor : metadata_.fields) {
       LayerField& field = domain_.fields.emplace_back();
       field.hydrometeor = hydrometeor;
-      field.variable = std::string(WrfVariableOf(hydrometeor));
+      field.variable = metadata_.variables[physics::IndexOf(hydrometeor)];
       field.sizes = metadata_.sizes[physics::IndexOf(hydrometeor)];
     }
   }
@@ -59,73 +58,174 @@ class WrfSource final : public LayerSource {
  private:
   std::size_t Cells() const { return static_cast<std::size_t>(domain_.cells.z) * Columns(); }
   std::size_t Columns() const { return domain_.Columns(); }
+  std::string HeightsFrom() const;
   absl::Status ReadVariable(const std::string& variable, std::size_t values_expected,
-                            std::vector<float>& values);
+                            Changes changes, std::vector<float>& values);
+  absl::Status ReadTerm(const WrfTerm& term, Changes changes, std::vector<float>& values);
   absl::Status ReadColumns(const std::string& variable, std::vector<float>& values);
+  absl::StatusOr<std::vector<float>> HeightsFromMiddles_m();
+  absl::Status AddMoreIce(std::vector<float>& amounts);
+  absl::Status SplitPhases(physics::Hydrometeor hydrometeor, std::vector<float>& amounts);
+  void DryPotentialTemperature(LayerState& state) const;
 
   const std::shared_ptr<const WrfMetadata> shared_metadata_;
   const WrfMetadata& metadata_ = *shared_metadata_;
   LayerDomain domain_;
   netcdf::NetcdfFile file_;
+  std::vector<float> ice_share_;  // in each cell, if variables hold both phases
 };
 
+std::string WrfSource::HeightsFrom() const {
+  const WrfHeights& heights = metadata_.heights;
+  return heights.perturbation.empty() ? heights.middles.variable
+                                      : absl::StrCat(heights.perturbation, " + ", heights.base);
+}
+
 absl::Status WrfSource::ReadVariable(const std::string& variable, std::size_t values_expected,
-                                     std::vector<float>& values) {
+                                     Changes changes, std::vector<float>& values) {
   // The length is checked before memory is allocated for it.
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t length, file_.RecordLength(variable));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t length,
+                               ValuesOfTime(file_, variable, kRankOfLayers));
   if (length != values_expected) {
     return absl::DataLossError(absl::StrCat(file_.Path(), ": ", variable, " now has ", length,
                                             " values a time where it had ", values_expected,
                                             "; the file was replaced: restart to read it anew"));
   }
-  THUNDERHEAD_RETURN_IF_ERROR(file_.ReadRecord(variable, domain_.record, values));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      ReadTime(file_, variable, kRankOfLayers, domain_.record, changes, values));
   if (std::ranges::all_of(values, [](float value) { return std::isnan(value); })) {
-    return absl::DataLossError(absl::StrCat(
-        file_.Path(), ": ", variable, " of record ", domain_.record,
-        " holds nothing but fill values; the model may still be writing the file: try again when "
-        "it has finished"));
+    return absl::DataLossError(absl::StrCat(file_.Path(), ": ", variable, " of record ",
+                                            domain_.record, " holds nothing but fill values; ",
+                                            "write the file again, with this variable"));
   }
+  return absl::OkStatus();
+}
+
+// Reads a quantity in layers in SI units.
+absl::Status WrfSource::ReadTerm(const WrfTerm& term, Changes changes, std::vector<float>& values) {
+  if (term.per_level) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> levels,
+                                 file_.ReadDoubles(term.variable));
+    if (levels.size() * Columns() != Cells()) {
+      return absl::DataLossError(
+          absl::StrCat(file_.Path(), ": ", term.variable, " now has ", levels.size(),
+                       " values; the file was replaced: ", "restart to read it anew"));
+    }
+    values.clear();
+    for (const double level : levels) {
+      values.insert(values.end(), Columns(), static_cast<float>(level));
+    }
+  } else {
+    THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(term.variable, Cells(), changes, values));
+  }
+  if (term.scale == 1.0 && term.offset == 0.0) return absl::OkStatus();
+  const auto scale = static_cast<float>(term.scale);
+  const auto offset = static_cast<float>(term.offset);
+  for (float& value : values) value = value * scale + offset;
   return absl::OkStatus();
 }
 
 // Reads a variable with one value for each column. Nothing is read if the name is empty.
 absl::Status WrfSource::ReadColumns(const std::string& variable, std::vector<float>& values) {
   if (variable.empty()) return absl::OkStatus();
-  THUNDERHEAD_RETURN_IF_ERROR(file_.ReadRecord(variable, domain_.record, values));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      ReadTime(file_, variable, kRankOfColumns, domain_.record, Changes::kNever, values));
   values.resize(Columns(), std::nanf(""));
   return absl::OkStatus();
 }
 
 absl::StatusOr<std::vector<float>> WrfSource::InterfaceHeights_m() {
+  const WrfHeights& names = metadata_.heights;
+  if (names.perturbation.empty()) return HeightsFromMiddles_m();
   std::vector<float> heights_m;
   std::vector<float> base;
   const std::size_t values = Cells() + Columns();
-  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("PH", values, heights_m));
-  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("PHB", values, base));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      ReadVariable(names.perturbation, values, Changes::kAtEachTime, heights_m));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(names.base, values, Changes::kNever, base));
   GeopotentialToHeight(base, heights_m);
   return heights_m;
 }
 
+absl::StatusOr<std::vector<float>> WrfSource::HeightsFromMiddles_m() {
+  std::vector<float> middles_m;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadTerm(metadata_.heights.middles, Changes::kAtEachTime, middles_m));
+  std::vector<float> ground_m;
+  if (domain_.on_terrain) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(ground_m, Terrain_m());
+  }
+  return InterfacesBetween(middles_m, ground_m, domain_.cells.z, Columns());
+}
+
+// Turns the potential temperature of moist air into that of dry air.
+void WrfSource::DryPotentialTemperature(LayerState& state) const {
+  if (!metadata_.air.moist || state.vapour_kg_per_kg.empty()) return;
+  for (std::size_t i = 0; i < state.vapour_kg_per_kg.size(); ++i) {
+    const float vapour = std::max(state.vapour_kg_per_kg[i], 0.0F);
+    state.potential_temperature_K[i] /= 1.0F + kVapourToDryGas * vapour;
+  }
+}
+
 absl::StatusOr<LayerState> WrfSource::Air() {
+  const WrfAir& air = metadata_.air;
   LayerState state;
-  std::vector<float> base_Pa;
-  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("P", Cells(), state.pressure_Pa));
-  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("PB", Cells(), base_Pa));
-  for (std::size_t i = 0; i < base_Pa.size(); ++i) state.pressure_Pa[i] += base_Pa[i];
-  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("T", Cells(), state.potential_temperature_K));
-  for (float& theta_K : state.potential_temperature_K) theta_K += kBaseTheta_K;
-  if (metadata_.has_vapour) {
-    THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("QVAPOR", Cells(), state.vapour_kg_per_kg));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      ReadTerm(air.pressure.front(), Changes::kAtEachTime, state.pressure_Pa));
+  if (air.pressure.size() > 1) {
+    std::vector<float> base_Pa;
+    THUNDERHEAD_RETURN_IF_ERROR(ReadTerm(air.pressure.back(), Changes::kNever, base_Pa));
+    for (std::size_t i = 0; i < base_Pa.size(); ++i) state.pressure_Pa[i] += base_Pa[i];
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(
+      ReadTerm(air.temperature, Changes::kAtEachTime,
+               air.potential ? state.potential_temperature_K : state.temperature_K));
+  if (air.has_vapour) {
+    THUNDERHEAD_RETURN_IF_ERROR(
+        ReadVariable("QVAPOR", Cells(), Changes::kAtEachTime, state.vapour_kg_per_kg));
+  }
+  DryPotentialTemperature(state);
+  if (metadata_.split != PhaseSplit::kNone) {
+    ice_share_ = Temperature(state);
+    for (float& each : ice_share_) each = IceShare(metadata_.split, each);
   }
   return state;
+}
+
+// Keeps the phase `hydrometeor` of amounts of both phases.
+absl::Status WrfSource::SplitPhases(physics::Hydrometeor hydrometeor, std::vector<float>& amounts) {
+  if (!metadata_.IsShared(hydrometeor)) return absl::OkStatus();
+  if (ice_share_.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(Air().status());
+  }
+  const bool frozen =
+      hydrometeor == physics::Hydrometeor::kIce || hydrometeor == physics::Hydrometeor::kSnow;
+  for (std::size_t i = 0; i < amounts.size(); ++i) {
+    amounts[i] *= frozen ? ice_share_[i] : 1.0F - ice_share_[i];
+  }
+  return absl::OkStatus();
+}
+
+absl::Status WrfSource::AddMoreIce(std::vector<float>& amounts) {
+  for (const std::string& variable : metadata_.more_ice) {
+    std::vector<float> more;
+    THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(variable, Cells(), Changes::kAtEachTime, more));
+    for (std::size_t i = 0; i < amounts.size(); ++i) amounts[i] += more[i];
+  }
+  return absl::OkStatus();
 }
 
 absl::StatusOr<LayerAmounts> WrfSource::Amounts(std::size_t field) {
   const LayerField& from = domain_.fields[field];
   LayerAmounts read;
-  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(from.variable, Cells(), read.amounts));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      ReadVariable(from.variable, Cells(), Changes::kAtEachTime, read.amounts));
+  if (from.hydrometeor == physics::Hydrometeor::kIce) {
+    THUNDERHEAD_RETURN_IF_ERROR(AddMoreIce(read.amounts));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(SplitPhases(from.hydrometeor, read.amounts));
   if (!from.sizes.name.empty()) {
-    THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(from.sizes.name, Cells(), read.sizes));
+    THUNDERHEAD_RETURN_IF_ERROR(
+        ReadVariable(from.sizes.name, Cells(), Changes::kAtEachTime, read.sizes));
   }
   return read;
 }
@@ -161,7 +261,7 @@ absl::StatusOr<LayerEnergy> WrfSource::TurbulentEnergy() {
   if (variable.name.empty()) return read;
   std::vector<float>& energy = read.energy_m2_per_s2;
   const std::size_t values = Cells() + (variable.at_interfaces ? Columns() : 0);
-  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(variable.name, values, energy));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(variable.name, values, Changes::kAtEachTime, energy));
   if (variable.at_interfaces) energy = LayerMeans(energy, domain_.cells.z, Columns());
   if (variable.doubled) {
     for (float& value : energy) value *= 0.5F;
@@ -171,16 +271,20 @@ absl::StatusOr<LayerEnergy> WrfSource::TurbulentEnergy() {
 
 absl::StatusOr<ModelWind> WrfSource::Wind() {
   ModelWind wind;
-  if (!metadata_.has_wind) return wind;
+  const auto& [u, v, w] = metadata_.wind;
+  if (u.empty()) return wind;
   wind.cells = domain_.cells;
   wind.dx_m = domain_.dx_m;
   wind.dy_m = domain_.dy_m;
   const auto walls = static_cast<std::size_t>(domain_.cells.z);
   const std::size_t more_u = walls * static_cast<std::size_t>(domain_.cells.y);
   const std::size_t more_v = walls * static_cast<std::size_t>(domain_.cells.x);
-  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("U", Cells() + more_u, wind.u_m_per_s));
-  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("V", Cells() + more_v, wind.v_m_per_s));
-  THUNDERHEAD_RETURN_IF_ERROR(ReadVariable("W", Cells() + Columns(), wind.w_m_per_s));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      ReadVariable(u, Cells() + more_u, Changes::kAtEachTime, wind.u_m_per_s));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      ReadVariable(v, Cells() + more_v, Changes::kAtEachTime, wind.v_m_per_s));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      ReadVariable(w, Cells() + Columns(), Changes::kAtEachTime, wind.w_m_per_s));
   return wind;
 }
 

@@ -349,6 +349,19 @@ std::string TitleOf(const std::string& name, const storm_files::StormFile& file)
   return base::Printable(file.about.empty() ? name : absl::StrCat(name, " (", file.about, ")"));
 }
 
+// Returns the middle of the domain at a record if it differs from that of the storm's first file,
+// because the domain moves.
+std::optional<volume::EarthPlace> MiddleAt(const storm_files::StormFile& file, std::size_t record,
+                                           const storm_files::StormFile& first) {
+  if (!file.middles.empty()) return file.middles[record];
+  const bool stays =
+      file.latitude_deg == first.latitude_deg && file.longitude_deg == first.longitude_deg;
+  if (stays || !file.latitude_deg.has_value() || !file.longitude_deg.has_value()) {
+    return std::nullopt;
+  }
+  return volume::EarthPlace{*file.latitude_deg, *file.longitude_deg};
+}
+
 // Drops files that were found before under another path or through a link.
 void DropRepeated(std::vector<NamedStorm>& storms) {
   std::set<std::string> seen;
@@ -541,7 +554,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
                           .elapsed_s = absl::ToDoubleSeconds(time - sources.begin()->first),
                           .file = file.path,
                           .version = file.version});
-    if (!file.middles.empty()) info.times.back().middle = file.middles[source.record];
+    info.times.back().middle = MiddleAt(file, source.record, files[sources.begin()->second.file]);
     storm.sources.push_back(source);
   }
   for (const storm_files::StormFile& file : files) info.files.push_back(file.path);

@@ -50,13 +50,33 @@ class Writer {
     if (file_.omitted.contains("Times")) return;
     int variable = 0;
     const int dimensions[] = {dimensions_.at("Time"), dimensions_.at("DateStrLen")};
-    Define([&] { Succeed(nc_def_var(id_, "Times", NC_CHAR, 2, dimensions, &variable)); });
+    const bool once = file_.without_time.contains("Times");
+    Define([&] {
+      Succeed(
+          nc_def_var(id_, "Times", NC_CHAR, once ? 1 : 2, dimensions + (once ? 1 : 0), &variable));
+    });
+    if (once) {
+      Succeed(nc_put_var_text(id_, variable, file_.times.front().c_str()));
+      return;
+    }
     const std::size_t written = file_.times.size() - file_.times_left_blank;
     for (std::size_t record = 0; record < written; ++record) {
       const std::size_t start[] = {record, 0};
       const std::size_t count[] = {1, kDateLength};
       Succeed(nc_put_vara_text(id_, variable, start, count, file_.times[record].c_str()));
     }
+  }
+
+  void LevelCoordinate() {
+    if (file_.level_coordinate.empty()) return;
+    int variable = 0;
+    const int dimension = dimensions_.at("bottom_top");
+    const std::string name = DimensionName("bottom_top");
+    Define([&] {
+      Succeed(nc_def_var(id_, name.c_str(), NC_DOUBLE, 1, &dimension, &variable));
+      Texts(variable, name);
+    });
+    Succeed(nc_put_var_double(id_, variable, file_.level_coordinate.data()));
   }
 
   void Minutes() {
@@ -67,6 +87,7 @@ class Writer {
     Define([&] {
       Succeed(nc_def_var(id_, "XTIME", NC_FLOAT, 1, &dimension, &variable));
       Text(variable, "units", units == file_.units.end() ? "" : units->second);
+      Texts(variable, "XTIME");
     });
     const std::size_t start = 0;
     const std::size_t count = file_.minutes.size();
@@ -81,19 +102,27 @@ class Writer {
     std::vector<std::string> names = {"Time", level_dimension, "south_north", "west_east"};
     if (level_dimension.empty()) names.erase(names.begin() + 1);
     if (file_.one_level_short.contains(name)) names[1] = "one_level_short";
+    const bool once = file_.without_time.contains(name);
+    if (once) names.erase(names.begin());
     const Packing packing = PackingOf(name);
     const int variable = DeclareField(name, names, units, packing);
     if (file_.unwritten.contains(name)) return;
     std::size_t levels = 1;
-    if (!level_dimension.empty()) Succeed(nc_inq_dimlen(id_, dimensions_.at(names[1]), &levels));
-    for (int record = 0; record < static_cast<int>(file_.times.size()); ++record) {
+    if (!level_dimension.empty())
+      Succeed(nc_inq_dimlen(id_, dimensions_.at(names[once ? 0 : 1]), &levels));
+    const int records = once ? 1 : static_cast<int>(file_.times.size());
+    for (int record = 0; record < records; ++record) {
       const std::vector<double> values =
           Record(name, static_cast<int>(levels), record, packing, value);
       std::vector<std::size_t> start(names.size(), 0);
       std::vector<std::size_t> count = {1, levels, static_cast<std::size_t>(file_.ny),
                                         static_cast<std::size_t>(file_.nx)};
       if (level_dimension.empty()) count.erase(count.begin() + 1);
-      start[0] = record;
+      if (once) {
+        count.erase(count.begin());
+      } else {
+        start[0] = record;
+      }
       // The values are converted to float here, because netCDF refuses to convert infinities.
       const std::vector<float> narrow(values.begin(), values.end());
       Succeed(nc_put_vara_float(id_, variable, start.data(), count.data(), narrow.data()));
@@ -101,8 +130,20 @@ class Writer {
   }
 
  private:
+  std::string DimensionName(const std::string& name) const {
+    const auto renamed = file_.renamed_dimensions.find(name);
+    return renamed == file_.renamed_dimensions.end() ? name : renamed->second;
+  }
+
   void Dimension(const std::string& name, std::size_t length) {
-    Succeed(nc_def_dim(id_, name.c_str(), length, &dimensions_[name]));
+    Succeed(nc_def_dim(id_, DimensionName(name).c_str(), length, &dimensions_[name]));
+  }
+
+  // Writes the text attributes of a variable.
+  void Texts(int variable, const std::string& name) {
+    const auto texts = file_.texts.find(name);
+    if (texts == file_.texts.end()) return;
+    for (const auto& [attribute, text] : texts->second) Text(variable, attribute.c_str(), text);
   }
 
   void Text(int variable, const char* name, const std::string& text) {
@@ -123,6 +164,7 @@ class Writer {
     Number("MAP_PROJ", file_.map_projection);
     for (const auto& [name, number] : file_.numbers) Number(name.c_str(), number);
     Number("GRID_ID", file_.domain);
+    Texts(NC_GLOBAL, "");
     if (file_.microphysics != 0) Number("MP_PHYSICS", file_.microphysics);
     if (file_.hail_option != 0) Number("HAIL_OPT", file_.hail_option);
     if (!file_.land_use_table.empty()) Text(NC_GLOBAL, "MMINLU", file_.land_use_table);
@@ -151,11 +193,14 @@ class Writer {
     const bool packed = file_.packed.contains(name);
     const nc_type type = packed ? NC_SHORT : NC_FLOAT;
     const auto other_units = file_.units.find(name);
+    const auto renamed = file_.renamed.find(name);
+    const std::string written = renamed == file_.renamed.end() ? name : renamed->second;
     int variable = 0;
     Define([&] {
-      Succeed(nc_def_var(id_, name.c_str(), type, static_cast<int>(dimensions.size()),
+      Succeed(nc_def_var(id_, written.c_str(), type, static_cast<int>(dimensions.size()),
                          dimensions.data(), &variable));
       Text(variable, "units", other_units == file_.units.end() ? units : other_units->second);
+      Texts(variable, name);
       if (packed) {
         Succeed(nc_put_att_double(id_, variable, "scale_factor", NC_DOUBLE, 1, &packing.scale));
         Succeed(nc_put_att_double(id_, variable, "add_offset", NC_DOUBLE, 1, &packing.offset));
@@ -204,6 +249,7 @@ void WriteWrf(const SyntheticWrf& file, const std::string& path) {
   Writer writer(file, path);
   writer.Times();
   writer.Minutes();
+  writer.LevelCoordinate();
   // As in WRF, the state is the sum of a base that is constant in time and a perturbation.
   const auto base_geopotential = [&](const WrfCell& cell) {
     WrfCell first = cell;
@@ -218,8 +264,11 @@ void WriteWrf(const SyntheticWrf& file, const std::string& path) {
   writer.Field("PB", "bottom_top", "Pa", [&](const WrfCell&) { return base_pressure_Pa; });
   writer.Field("P", "bottom_top", "Pa",
                [&](const WrfCell&) { return file.pressure_Pa - base_pressure_Pa; });
-  writer.Field("T", "bottom_top", "K",
-               [&](const WrfCell&) { return file.potential_temperature_K - 300.0; });
+  writer.Field("T", "bottom_top", "K", [&](const WrfCell& cell) {
+    const double theta_K = file.potential_temperature_at_K ? file.potential_temperature_at_K(cell)
+                                                           : file.potential_temperature_K;
+    return theta_K - 300.0;
+  });
   writer.Field("QVAPOR", "bottom_top", "kg kg-1",
                [&](const WrfCell&) { return file.vapour_kg_per_kg; });
   writer.Field("HGT", "", "m", [&](const WrfCell& cell) {
@@ -231,10 +280,12 @@ void WriteWrf(const SyntheticWrf& file, const std::string& path) {
       glm::degrees(file.dx_m / (kEarth_m * std::cos(glm::radians(middle_deg))));
   if (!file.columns.contains("XLAT"))
     writer.Field("XLAT", "", "degree_north",
-                 [&](const WrfCell& cell) { return file.latitude_deg + per_row_deg * cell.y; });
+                 [&](const WrfCell& cell) { return file.latitude_deg + per_row_deg * cell.y +
+                        file.north_per_record_deg * cell.record; });
   if (!file.columns.contains("XLONG"))
     writer.Field("XLONG", "", "degree_east",
-                 [&](const WrfCell& cell) { return file.longitude_deg + per_column_deg * cell.x; });
+                 [&](const WrfCell& cell) { return file.longitude_deg + per_column_deg * cell.x +
+                        file.east_per_record_deg * cell.record; });
   for (const auto& [name, value] : file.columns) writer.Field(name, "", "", value);
   for (const auto& [name, value] : file.mixing_ratios) {
     writer.Field(name, "bottom_top", "kg kg-1", value);

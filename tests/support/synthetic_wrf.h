@@ -48,6 +48,8 @@ struct SyntheticWrf {
 
   double pressure_Pa = 80'000.0;
   double potential_temperature_K = 310.0;
+  // Potential temperature of each cell (K). Empty: potential_temperature_K everywhere.
+  std::function<double(const WrfCell&)> potential_temperature_at_K;
   double vapour_kg_per_kg = 0.01;
 
   // Mixing ratios by variable name. Other mixing ratios are not in the file.
@@ -79,7 +81,17 @@ struct SyntheticWrf {
   std::vector<StoredValue> stored_values;
   std::vector<double> minutes;  // variable XTIME (minutes since the start of the run); empty: the
                                 // file does not have it
-  int times_left_blank = 0;     // number of records at the end whose Times are not written yet
+  // The file as programs that process WRF output leave it.
+  std::set<std::string> without_time;                     // variables without the dimension Time
+  std::map<std::string, std::string> renamed_dimensions;  // new names by WRF's names
+  std::map<std::string, std::string> renamed;             // new names of variables by WRF's names
+  // Text attributes by variable and attribute. The global attributes have the variable "".
+  std::map<std::string, std::map<std::string, std::string>> texts;
+  // Values of a coordinate variable of the levels. It has the name of their dimension.
+  std::vector<double> level_coordinate;
+  double north_per_record_deg = 0.0;  // how far a moving nest moves between two records
+  double east_per_record_deg = 0.0;
+  int times_left_blank = 0;  // number of records at the end whose Times are not written yet
 };
 
 // Returns the height of an interface between two layers of `file`; `cell.level` counts interfaces.

@@ -147,7 +147,7 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   expected.version = expected.id = expected.device = 10;
   expected.modified_ns = 15;
   const storm_files::StormFile received = Sent(expected);
-  const auto& [path, cells, dx_m, dy_m, times, fields, about, domain, run, grid, latitude_deg,
+  const auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, latitude_deg,
                longitude_deg, middles, projection, member, assumptions, part, parts, reader,
                version, id, device, modified_ns] = received;
   EXPECT_EQ(cells, expected.cells);

@@ -133,7 +133,7 @@ TEST_F(BrokenFiles, StillGrowing) {
     unwritten.unwritten = {name};
     const absl::Status status = Read(unwritten);
     ExpectError(status, name);
-    ExpectError(status, "still be writing");
+    ExpectError(status, "holds nothing but fill values");
   }
 }
 

@@ -230,9 +230,23 @@ TEST_F(StormFormatTest, AFileOfNoFormatIsToldWhatEachWouldNeed) {
   EXPECT_EQ(message(With(std::make_shared<ToyFormat>())), built_in + toy + advice);
 }
 
+TEST_F(StormFormatTest, TheNearestFormatSaysWhyAFileIsRefused) {
+  testing::SyntheticCf file =
+      testing::ExtinctionFile(2, 2, 2, 1.0, 1.0, 1.0, [](auto, auto, auto) { return 1.0; });
+  file.variables[0].name = "temperature";
+  file.variables[0].attributes = {};
+  const std::string path = folder_.File("none.nc");
+  testing::WriteCf(file, path);
+  const StormFormats formats = With(std::make_shared<Greedy>(FormatFit::kRelated));
+  EXPECT_EQ(formats.Describe(path).status().message(), "described as any netCDF");
+  EXPECT_TRUE(formats.Describe(WriteCf()).ok());
+  EXPECT_TRUE(formats.Describe(WriteWrf()).ok());
+}
+
 TEST_F(StormFormatTest, MessagesSayWhichFilesToGive) {
   EXPECT_EQ(StormFormats::BuiltIn().Examples(), "wrfout_..., CF netCDF, or GRIB2");
-  EXPECT_EQ(With(std::make_shared<ToyFormat>()).Examples(), "wrfout_..., CF netCDF, GRIB2, or *.toy");
+  EXPECT_EQ(With(std::make_shared<ToyFormat>()).Examples(),
+            "wrfout_..., CF netCDF, GRIB2, or *.toy");
   const auto nothing =
       storm_store::FindStorms({folder_.Path().string()}, With(std::make_shared<ToyFormat>()));
   EXPECT_THAT(std::string(nothing.status().message()), HasSubstr("GRIB2, or *.toy"));

@@ -90,7 +90,8 @@ TEST_F(WrfColumns, AProjectedLengthIsNoTrueLength) {
   EXPECT_NEAR(file.dx_m / across_m, 1.0, 0.01);
   EXPECT_NEAR(file.dy_m / across_m, 1.0, 0.01);
   EXPECT_THAT(file.projection, HasSubstr("+proj=stere"));
-  EXPECT_THAT(file.assumptions, ElementsAre(HasSubstr("resampled to even distances of 91")));
+  EXPECT_THAT(file.assumptions,
+              ::testing::Contains(HasSubstr("resampled to even distances of 91")));
   EXPECT_GE(file.cells.x, 47);
   EXPECT_LE(file.cells.x, 50);
 
@@ -175,7 +176,7 @@ TEST_F(WrfColumns, IdealisedRunsAndShortDomainsKeepDx) {
     EXPECT_EQ(file.dx_m, wrf.dx_m);
     EXPECT_EQ(file.dy_m, wrf.dy_m);
     EXPECT_EQ(file.cells, glm::ivec3(wrf.nx, wrf.ny, wrf.levels));
-    EXPECT_THAT(file.assumptions, IsEmpty());
+    EXPECT_THAT(file.assumptions, ::testing::Each(::testing::Not(HasSubstr("columns"))));
   }
 }
 

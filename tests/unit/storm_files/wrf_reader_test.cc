@@ -313,48 +313,8 @@ TEST_F(WrfReader, LeavesOutWhatIsInOtherUnits) {
   testing::WriteWrf(file, path);
   const auto metadata = ReadWrfMetadata(path);
   ASSERT_TRUE(metadata.ok()) << metadata.status();
-  EXPECT_FALSE(metadata->latitude_deg.has_value());
+  EXPECT_FALSE(metadata->place.middle.has_value());
   EXPECT_THAT(log.Text(), ::testing::HasSubstr("XLAT has units 'radian'"));
-}
-
-TEST_F(WrfReader, FindsTheMiddleOfTheDomain) {
-  const std::string path = folder_.File("wrfout");
-  testing::WriteWrf(Uniform(1e-3), path);
-  auto metadata = ReadWrfMetadata(path);
-  ASSERT_TRUE(metadata.ok()) << metadata.status();
-  // One row of 2 km north of the first, and one and a half columns of 1 km east of it.
-  EXPECT_NEAR(metadata->latitude_deg.value_or(0), 35.01799, 1e-4);
-  EXPECT_NEAR(metadata->longitude_deg.value_or(0), -96.98352, 1e-4);
-  EXPECT_FALSE(metadata->idealised);
-
-  SyntheticWrf at_date_line = Uniform(1e-3);
-  at_date_line.longitude_deg = 179.98;  // the middle columns: 179.991 and, in the file, -179.998
-  for (int y = 0; y < 3; ++y) {
-    at_date_line.stored_values.push_back({"XLONG", {2, y, 0, 0}, -179.99803});
-    at_date_line.stored_values.push_back({"XLONG", {3, y, 0, 0}, -179.98705});
-  }
-  testing::WriteWrf(at_date_line, path);
-  metadata = ReadWrfMetadata(path);
-  ASSERT_TRUE(metadata.ok()) << metadata.status();
-  EXPECT_NEAR(metadata->longitude_deg.value_or(0), 179.99648, 1e-4);
-  EXPECT_EQ(metadata->dx_m, 1000.0);
-}
-
-TEST_F(WrfReader, GivesIdealisedRunsNoPlace) {
-  SyntheticWrf without_projection = Uniform(1e-3);
-  without_projection.map_projection = 0;
-  SyntheticWrf at_zero = Uniform(1e-3);
-  at_zero.nx = at_zero.ny = 1;
-  at_zero.latitude_deg = at_zero.longitude_deg = 0.0;
-  const std::string path = folder_.File("wrfout");
-  for (const SyntheticWrf& file : {without_projection, at_zero}) {
-    testing::WriteWrf(file, path);
-    const auto metadata = ReadWrfMetadata(path);
-    ASSERT_TRUE(metadata.ok()) << metadata.status();
-    EXPECT_TRUE(metadata->idealised);
-    EXPECT_FALSE(metadata->latitude_deg.has_value());
-    EXPECT_FALSE(metadata->longitude_deg.has_value());
-  }
 }
 
 }  // namespace

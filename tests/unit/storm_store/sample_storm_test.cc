@@ -415,7 +415,7 @@ TEST(FinerSampleStorm, TellsTheMotionOfItsAir) {
       std::string(THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc"));
   ASSERT_TRUE(metadata.ok()) << metadata.status();
   EXPECT_EQ(metadata->energy.name, "TKE");
-  EXPECT_TRUE(metadata->has_wind);
+  EXPECT_EQ(metadata->wind[0], "U");
   const auto fields = storm_files::ReadWrfTime(*metadata, 1, std::nullopt, {});
   ASSERT_TRUE(fields.ok()) << fields.status();
   const volume::AirMotion& motion = fields->motion;

@@ -1,0 +1,82 @@
+// Finds how the variables of a WRF output file are laid out: their dimensions and whether they have
+// time. Programs that process WRF output rename dimensions and drop time. So a dimension without
+// WRF's name is found by its position in WRF's variables.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "netcdf/netcdf_file.h"
+#include "volume/grid.h"
+
+namespace thunderhead::storm_files {
+
+// The accepted spellings of a unit, without blanks, stars, carets, dots and brackets.
+struct WrfUnit {
+  std::string_view name;
+  std::array<std::string_view, 4> spellings;
+};
+
+inline constexpr WrfUnit kWrfLength = {"m", {"m", "meter", "meters", "metres"}};
+
+// The number of dimensions without time of a variable in layers, and of one with a value for each
+// column.
+inline constexpr std::size_t kRankOfLayers = 3;
+inline constexpr std::size_t kRankOfColumns = 2;
+
+// Returns whether the variable's unit is `unit` or absent.
+bool HasUnits(const netcdf::NetcdfFile& file, const std::string& variable, const WrfUnit& unit);
+
+// Returns INVALID_ARGUMENT, naming the variable and both units, if the variable has another unit.
+absl::Status CheckUnits(const netcdf::NetcdfFile& file, const std::string& variable,
+                        const WrfUnit& unit);
+
+struct WrfLayout {
+  glm::ivec3 cells{0};      // west-east, south-north, bottom-top
+  std::size_t records = 1;  // 1 if the variables have no time
+  std::string time;         // the dimension of time; empty if the variables have none
+  std::string levels;       // the dimension of the layers
+
+  // Each function returns the lengths of a variable's dimensions without time, slowest first.
+  std::vector<std::size_t> Columns() const;
+  std::vector<std::size_t> Layers() const;
+  std::vector<std::size_t> Interfaces() const;
+};
+
+// Finds the layout of an open file. INVALID_ARGUMENT names a dimension that is missing.
+absl::StatusOr<WrfLayout> FindWrfLayout(const netcdf::NetcdfFile& file);
+
+// Whether a variable may change with time.
+enum class Changes {
+  kAtEachTime,  // the variable has time if the file has several times
+  kNever,       // the variable may have no time, for example the height of the ground
+};
+
+// Checks that the file has the variable, its dimensions and its unit. `shape` are the dimensions'
+// lengths without time.
+absl::Status CheckVariable(const netcdf::NetcdfFile& file, const WrfLayout& layout,
+                           const std::string& variable, const std::vector<std::size_t>& shape,
+                           const WrfUnit& unit, Changes changes);
+
+// Returns whether the variable has these dimensions, with time or, as `changes` says, without.
+bool HasShape(const netcdf::NetcdfFile& file, const WrfLayout& layout, const std::string& variable,
+              const std::vector<std::size_t>& shape, Changes changes);
+
+// Returns the number of values that one time of the variable has. `rank` is the number of its
+// dimensions without time.
+absl::StatusOr<std::size_t> ValuesOfTime(const netcdf::NetcdfFile& file,
+                                         const std::string& variable, std::size_t rank);
+
+// Reads one time of a variable. A variable without time has the same values at all times, and so
+// has one that never changes and has one time.
+absl::Status ReadTime(const netcdf::NetcdfFile& file, const std::string& variable, std::size_t rank,
+                      std::size_t record, Changes changes, std::vector<float>& values);
+
+// Returns `shape` as text for errors.
+std::string AsText(const std::vector<std::size_t>& shape);
+
+}  // namespace thunderhead::storm_files
