@@ -6,6 +6,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
@@ -25,17 +26,15 @@
 #include "base/status.h"
 #include "netcdf/classic_file_size.h"
 #include "netcdf/classic_header.h"
+#include "netcdf/filters.h"
 #include "netcdf/hdf5_layout.h"
 #include "netcdf/netcdf_lock.h"
+#include "netcdf/packing.h"
 
 namespace thunderhead::netcdf {
 namespace {
 
 constexpr int kNoHandle = -1;
-
-// Models write fill values from 1e30 (a common choice) to 9.969e36 (netCDF's own). No quantity in a
-// storm is that large.
-constexpr double kLargestValue = 1e30;
 
 // Maximum length in bytes of a text attribute. No attribute that a reader needs is longer.
 constexpr std::size_t kLongestText = 1 << 20;
@@ -80,79 +79,21 @@ absl::Status OpenError(const std::string& path, int code) {
   }
 }
 
-// The packing attributes of a variable. The fill values are packed values, like the stored values.
-struct Packing {
-  nc_type type = NC_FLOAT;
-  double scale = 1.0;
-  double offset = 0.0;
-  double fill = std::numeric_limits<double>::quiet_NaN();
-  double missing = std::numeric_limits<double>::quiet_NaN();
+// The most groups that are looked at.
+constexpr std::size_t kMostGroups = 1000;
 
-  bool PlainFloat() const { return type == NC_FLOAT && scale == 1.0 && offset == 0.0; }
-};
-
-double NumberOr(int handle, int variable, const char* name, double otherwise) {
-  nc_type type;
-  std::size_t length = 0;
-  double value = otherwise;
-  if (nc_inq_att(handle, variable, name, &type, &length) != NC_NOERR || length != 1 ||
-      type == NC_CHAR || type == NC_STRING ||
-      nc_get_att_double(handle, variable, name, &value) != NC_NOERR) {
-    return otherwise;
-  }
-  return value;
-}
-
-double DefaultFill(nc_type type) {
-  switch (type) {
-    case NC_SHORT:
-      return NC_FILL_SHORT;
-    case NC_INT:
-      return NC_FILL_INT;
-    case NC_USHORT:
-      return NC_FILL_USHORT;
-    case NC_UINT:
-      return NC_FILL_UINT;
-    default:  // bytes have no default; the defaults of floating-point types exceed kLargestValue
-      return std::numeric_limits<double>::quiet_NaN();
-  }
-}
-
-Packing PackingOf(int handle, int variable) {
-  Packing packing;
-  nc_inq_vartype(handle, variable, &packing.type);
-  packing.scale = NumberOr(handle, variable, "scale_factor", 1.0);
-  packing.offset = NumberOr(handle, variable, "add_offset", 0.0);
-  packing.fill = NumberOr(handle, variable, "_FillValue", DefaultFill(packing.type));
-  packing.missing =
-      NumberOr(handle, variable, "missing_value", std::numeric_limits<double>::quiet_NaN());
-  return packing;
-}
-
-// Returns the unpacked value, or NaN if it is missing. The comparisons are written so that NaN
-// fails them. `Real` is the type in which the values were read.
-template <typename Real>
-float Clean(Real packed, const Packing& packing) {
-  constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
-  if (packed == static_cast<Real>(packing.fill) || packed == static_cast<Real>(packing.missing)) {
-    return kNotANumber;
-  }
-  const auto value = static_cast<Real>(packed * packing.scale + packing.offset);
-  const Real size = std::abs(value);
-  if (!(size < static_cast<Real>(kLargestValue))) return kNotANumber;
-  return size < static_cast<Real>(std::numeric_limits<float>::min()) ? 0.0F
-                                                                     : static_cast<float>(value);
-}
-
-void CleanPlainFloats(const Packing& packing, std::vector<float>& values) {
-  const auto fill = static_cast<float>(packing.fill);
-  const auto missing = static_cast<float>(packing.missing);
-  for (float& value : values) {
-    const float size = std::abs(value);
-    const bool present =
-        size < static_cast<float>(kLargestValue) && value != fill && value != missing;
-    const float flushed = size < std::numeric_limits<float>::min() ? 0.0F : value;
-    value = present ? flushed : std::numeric_limits<float>::quiet_NaN();
+// Appends the full names of the groups within a group.
+void AppendGroups(int group, const std::string& path, std::vector<std::string>& names) {
+  int count = 0;
+  if (nc_inq_grps(group, &count, nullptr) != NC_NOERR || count <= 0) return;
+  std::vector<int> inner(static_cast<std::size_t>(count));
+  if (nc_inq_grps(group, &count, inner.data()) != NC_NOERR) return;
+  for (const int id : inner) {
+    char name[NC_MAX_NAME + 1];
+    if (names.size() >= kMostGroups || nc_inq_grpname(id, name) != NC_NOERR) return;
+    const std::string full = absl::StrCat(path, "/", name);
+    names.push_back(full);
+    AppendGroups(id, full, names);
   }
 }
 
@@ -179,6 +120,14 @@ int OpenMemory(const std::string& path, std::span<const std::byte> bytes, int& h
 
 }  // namespace
 
+bool NetcdfFile::BeginsLikeNetcdf(std::string_view start) {
+  if (start.starts_with("CDF") || IsHdf5Signature(std::as_bytes(std::span(start)))) return true;
+  for (std::size_t at = kFirstHdf5Offset; at < start.size(); at *= 2) {
+    if (IsHdf5Signature(std::as_bytes(std::span(start.substr(at))))) return true;
+  }
+  return false;
+}
+
 absl::Status NetcdfFile::CheckStart(const std::string& path, int file) {
   if (IsHeldByWriter(file)) return HeldByWriter(path);
   std::array<char, 8> start{};
@@ -195,7 +144,20 @@ absl::Status NetcdfFile::CheckStart(const std::string& path, int file) {
   return OpenError(path, NC_ENOTNC);
 }
 
-absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path) {
+absl::StatusOr<NetcdfFile> NetcdfFile::Open(const std::string& path, const std::string& group) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(NetcdfFile file, OpenRoot(path));
+  if (group.empty()) return file;
+  bool found = false;
+  {
+    const NetcdfLock lock;
+    found = nc_inq_grp_full_ncid(file.handle_, group.c_str(), &file.group_) == NC_NOERR;
+  }
+  if (found) return file;
+  return absl::DataLossError(
+      absl::StrCat(path, ": has no group ", group, "; was the file replaced?"));
+}
+
+absl::StatusOr<NetcdfFile> NetcdfFile::OpenRoot(const std::string& path) {
   if (base::ReadsOnlyFromMemory()) {
     const std::optional<std::span<const std::byte>> bytes = base::RegisteredBytes(path);
     if (!bytes.has_value()) return OpenError(path, EACCES);
@@ -241,16 +203,20 @@ absl::StatusOr<NetcdfFile> NetcdfFile::Checked(const std::string& path, int hand
       "; it is cut short or still being written: wait for the model to finish, or copy it again"));
 }
 
-NetcdfFile::NetcdfFile(std::string path, int handle) : path_(std::move(path)), handle_(handle) {}
+NetcdfFile::NetcdfFile(std::string path, int handle)
+    : path_(std::move(path)), handle_(handle), group_(handle) {}
 
 NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
-    : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, kNoHandle)) {}
+    : path_(std::move(other.path_)),
+      handle_(std::exchange(other.handle_, kNoHandle)),
+      group_(other.group_) {}
 
 NetcdfFile& NetcdfFile::operator=(NetcdfFile&& other) noexcept {
   if (this != &other) {
     Close();
     path_ = std::move(other.path_);
     handle_ = std::exchange(other.handle_, kNoHandle);
+    group_ = other.group_;
   }
   return *this;
 }
@@ -263,18 +229,48 @@ void NetcdfFile::Close() {
   nc_close(std::exchange(handle_, kNoHandle));
 }
 
+int NetcdfFile::Find(const std::string& variable, Variable& found) const {
+  found.group = group_;
+  while (true) {
+    const int code = nc_inq_varid(found.group, variable.c_str(), &found.id);
+    if (code != NC_ENOTVAR || found.group == handle_) return code;
+    if (nc_inq_grp_parent(found.group, &found.group) != NC_NOERR) return code;
+  }
+}
+
+std::optional<NetcdfFile::Variable> NetcdfFile::FindHolder(const std::string& variable,
+                                                           const std::string& attribute) const {
+  Variable holder{group_, NC_GLOBAL};
+  if (!variable.empty()) {
+    return Find(variable, holder) == NC_NOERR ? std::optional(holder) : std::nullopt;
+  }
+  // A group without the attribute has that of the group around it.
+  while (holder.group != handle_ &&
+         nc_inq_att(holder.group, NC_GLOBAL, attribute.c_str(), nullptr, nullptr) != NC_NOERR) {
+    if (nc_inq_grp_parent(holder.group, &holder.group) != NC_NOERR) break;
+  }
+  return holder;
+}
+
 bool NetcdfFile::HasVariable(const std::string& variable) const {
   const NetcdfLock lock;
-  int id = 0;
-  return nc_inq_varid(handle_, variable.c_str(), &id) == NC_NOERR;
+  Variable found;
+  return Find(variable, found) == NC_NOERR;
+}
+
+std::vector<std::string> NetcdfFile::Groups() const {
+  const NetcdfLock lock;
+  std::vector<std::string> names;
+  AppendGroups(handle_, "", names);
+  return names;
 }
 
 std::optional<std::size_t> NetcdfFile::DimensionLength(const std::string& dimension) const {
   const NetcdfLock lock;
   int id = 0;
   std::size_t length = 0;
-  if (nc_inq_dimid(handle_, dimension.c_str(), &id) != NC_NOERR ||
-      nc_inq_dimlen(handle_, id, &length) != NC_NOERR) {
+  if (nc_inq_dimid(group_, dimension.c_str(), &id) != NC_NOERR ||
+      nc_inq_dimlen(group_, id, &length) != NC_NOERR) {
     return std::nullopt;
   }
   return length;
@@ -282,32 +278,38 @@ std::optional<std::size_t> NetcdfFile::DimensionLength(const std::string& dimens
 
 std::vector<std::string> NetcdfFile::Variables() const {
   const NetcdfLock lock;
-  int count = 0;
   std::vector<std::string> names;
-  if (nc_inq_nvars(handle_, &count) != NC_NOERR) return names;
-  for (int id = 0; id < count; ++id) {
-    char name[NC_MAX_NAME + 1];
-    if (nc_inq_varname(handle_, id, name) == NC_NOERR) names.emplace_back(name);
+  for (int group = group_;;) {
+    int count = 0;
+    nc_inq_nvars(group, &count);
+    for (int id = 0; id < count; ++id) {
+      char name[NC_MAX_NAME + 1];
+      if (nc_inq_varname(group, id, name) != NC_NOERR) continue;
+      // A variable of the inner group hides one of the same name around it.
+      if (group == group_ || std::ranges::find(names, name) == names.end()) {
+        names.emplace_back(name);
+      }
+    }
+    if (group == handle_ || nc_inq_grp_parent(group, &group) != NC_NOERR) return names;
   }
-  return names;
 }
 
 absl::StatusOr<std::vector<std::string>> NetcdfFile::Dimensions(const std::string& variable) const {
   const NetcdfLock lock;
-  int id = 0;
+  Variable found;
   int rank = 0;
   int dimensions[NC_MAX_VAR_DIMS];
-  if (nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) {
+  if (Find(variable, found) != NC_NOERR) {
     return absl::NotFoundError(absl::StrCat(path_, ": has no variable ", variable));
   }
-  if (int code = nc_inq_var(handle_, id, nullptr, nullptr, &rank, dimensions, nullptr);
+  if (int code = nc_inq_var(found.group, found.id, nullptr, nullptr, &rank, dimensions, nullptr);
       code != NC_NOERR) {
     return ReadError(variable, code);
   }
   std::vector<std::string> names;
   for (int i = 0; i < rank; ++i) {
     char name[NC_MAX_NAME + 1];
-    if (int code = nc_inq_dimname(handle_, dimensions[i], name); code != NC_NOERR) {
+    if (int code = nc_inq_dimname(found.group, dimensions[i], name); code != NC_NOERR) {
       return ReadError(variable, code);
     }
     names.emplace_back(name);
@@ -321,36 +323,30 @@ absl::StatusOr<std::vector<double>> NetcdfFile::ReadDoubles(const std::string& v
   std::vector<double> values(total);
   if (total == 0) return values;
   const NetcdfLock lock;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const int id, NumbersId(variable, shape.size()));
-  if (const int code = nc_get_var_double(handle_, id, values.data()); code != NC_NOERR) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Variable found, NumbersId(variable, shape.size()));
+  if (const int code = nc_get_var_double(found.group, found.id, values.data()); code != NC_NOERR) {
     return ReadError(variable, code);
   }
-  const Packing packing = PackingOf(handle_, id);
-  for (double& value : values) {
-    const bool missing = value == packing.fill || value == packing.missing;
-    value = value * packing.scale + packing.offset;
-    if (missing || !(std::abs(value) < kLargestValue)) {
-      value = std::numeric_limits<double>::quiet_NaN();
-    }
-  }
+  const Packing packing = PackingOf(found.group, found.id);
+  for (double& value : values) value = Unpacked(value, packing);
   return values;
 }
 
 absl::StatusOr<std::vector<std::size_t>> NetcdfFile::Shape(const std::string& variable) const {
   const NetcdfLock lock;
-  int id = 0;
+  Variable found;
   int rank = 0;
   int dimensions[NC_MAX_VAR_DIMS];
-  if (int code = nc_inq_varid(handle_, variable.c_str(), &id); code != NC_NOERR) {
+  if (Find(variable, found) != NC_NOERR) {
     return absl::NotFoundError(absl::StrCat(path_, ": has no variable ", variable));
   }
-  if (int code = nc_inq_var(handle_, id, nullptr, nullptr, &rank, dimensions, nullptr);
+  if (int code = nc_inq_var(found.group, found.id, nullptr, nullptr, &rank, dimensions, nullptr);
       code != NC_NOERR) {
     return ReadError(variable, code);
   }
   std::vector<std::size_t> shape(rank);
   for (int i = 0; i < rank; ++i) {
-    if (int code = nc_inq_dimlen(handle_, dimensions[i], &shape[i]); code != NC_NOERR) {
+    if (int code = nc_inq_dimlen(found.group, dimensions[i], &shape[i]); code != NC_NOERR) {
       return ReadError(variable, code);
     }
   }
@@ -360,35 +356,53 @@ absl::StatusOr<std::vector<std::size_t>> NetcdfFile::Shape(const std::string& va
 std::optional<std::string> NetcdfFile::TextAttribute(const std::string& variable,
                                                      const std::string& attribute) const {
   const NetcdfLock lock;
-  int id = NC_GLOBAL;
-  if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return {};
+  const std::optional<Variable> holder = FindHolder(variable, attribute);
+  if (!holder.has_value()) return {};
+  const auto [group, id] = *holder;
   nc_type type;
   std::size_t length = 0;
-  if (nc_inq_att(handle_, id, attribute.c_str(), &type, &length) != NC_NOERR) return {};
+  if (nc_inq_att(group, id, attribute.c_str(), &type, &length) != NC_NOERR) return {};
   if (type == NC_STRING && length == 1) {
     char* text = nullptr;
-    if (nc_get_att_string(handle_, id, attribute.c_str(), &text) != NC_NOERR) return {};
+    if (nc_get_att_string(group, id, attribute.c_str(), &text) != NC_NOERR) return {};
     std::string value = text != nullptr ? text : "";
     nc_free_string(1, &text);
     return value;
   }
   if (type != NC_CHAR || length > kLongestText) return {};
   std::string value(length, '\0');
-  if (nc_get_att_text(handle_, id, attribute.c_str(), value.data()) != NC_NOERR) return {};
-  value.resize(std::char_traits<char>::find(value.data(), length, '\0') != nullptr
-                   ? value.find('\0')
-                   : length);
+  if (nc_get_att_text(group, id, attribute.c_str(), value.data()) != NC_NOERR) return {};
+  value.resize(std::min(value.find('\0'), length));
   return value;
 }
 
 std::optional<double> NetcdfFile::NumberAttribute(const std::string& variable,
                                                   const std::string& attribute) const {
+  const std::vector<double> numbers = NumbersAttribute(variable, attribute);
+  if (numbers.size() != 1 || std::isnan(numbers.front())) return std::nullopt;
+  return numbers.front();
+}
+
+std::vector<double> NetcdfFile::NumbersAttribute(const std::string& variable,
+                                                 const std::string& attribute) const {
   const NetcdfLock lock;
-  int id = NC_GLOBAL;
-  if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return {};
-  const double value =
-      NumberOr(handle_, id, attribute.c_str(), std::numeric_limits<double>::quiet_NaN());
-  return std::isnan(value) ? std::nullopt : std::optional(value);
+  const std::optional<Variable> holder = FindHolder(variable, attribute);
+  if (!holder.has_value()) return {};
+  return NumbersOf(holder->group, holder->id, attribute.c_str());
+}
+
+std::vector<std::string> NetcdfFile::AttributesOf(const std::string& variable) const {
+  const NetcdfLock lock;
+  Variable found;
+  int count = 0;
+  std::vector<std::string> names;
+  if (Find(variable, found) != NC_NOERR) return names;
+  nc_inq_varnatts(found.group, found.id, &count);
+  for (int i = 0; i < count; ++i) {
+    char name[NC_MAX_NAME + 1];
+    if (nc_inq_attname(found.group, found.id, i, name) == NC_NOERR) names.emplace_back(name);
+  }
+  return names;
 }
 
 std::string NetcdfFile::TextOrEmpty(const std::string& variable,
@@ -397,19 +411,20 @@ std::string NetcdfFile::TextOrEmpty(const std::string& variable,
     return *std::move(text);
   }
   const NetcdfLock lock;
-  int id = NC_GLOBAL;
-  if (!variable.empty() && nc_inq_varid(handle_, variable.c_str(), &id) != NC_NOERR) return "";
-  const bool absent = nc_inq_att(handle_, id, attribute.c_str(), nullptr, nullptr) != NC_NOERR;
+  const std::optional<Variable> holder = FindHolder(variable, attribute);
+  const bool absent =
+      !holder.has_value() ||
+      nc_inq_att(holder->group, holder->id, attribute.c_str(), nullptr, nullptr) != NC_NOERR;
   return absent ? "" : "(not text)";
 }
 
 absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string& variable) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<std::size_t> shape, Shape(variable));
   const NetcdfLock lock;
-  int id = 0;
+  Variable found;
   nc_type type = NC_NAT;
-  nc_inq_varid(handle_, variable.c_str(), &id);
-  nc_inq_vartype(handle_, id, &type);
+  Find(variable, found);
+  nc_inq_vartype(found.group, found.id, &type);
   if (shape.size() == 1) shape.insert(shape.begin(), 1);
   if (shape.size() != 2 || type != NC_CHAR) {
     return absl::InvalidArgumentError(absl::StrCat(
@@ -418,7 +433,7 @@ absl::StatusOr<std::vector<std::string>> NetcdfFile::ReadRows(const std::string&
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, CountThatFits(variable, shape, 1));
   std::vector<char> text(total);
   if (text.empty()) return std::vector<std::string>(shape[0]);
-  if (int code = nc_get_var_text(handle_, id, text.data()); code != NC_NOERR) {
+  if (int code = nc_get_var_text(found.group, found.id, text.data()); code != NC_NOERR) {
     return ReadError(variable, code);
   }
   std::vector<std::string> rows;
@@ -466,36 +481,37 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
   std::vector<double> packed;
   {
     const NetcdfLock lock;
-    THUNDERHEAD_ASSIGN_OR_RETURN(const int id, NumbersId(variable, count.size()));
-    packing = PackingOf(handle_, id);
+    THUNDERHEAD_ASSIGN_OR_RETURN(const Variable found, NumbersId(variable, count.size()));
+    const auto [group, id] = found;
+    packing = PackingOf(group, id);
     // The chunk cache is off. Every chunk is read once, and the cache would keep a second copy of
     // each variable.
-    nc_set_var_chunk_cache(handle_, id, 0, 0, 0.0F);
+    nc_set_var_chunk_cache(group, id, 0, 0, 0.0F);
     int code = NC_NOERR;
     if (packing.PlainFloat()) {
-      code = nc_get_vara_float(handle_, id, start.data(), count.data(), values.data());
+      code = nc_get_vara_float(group, id, start.data(), count.data(), values.data());
     } else {
       packed.resize(total);
-      code = nc_get_vara_double(handle_, id, start.data(), count.data(), packed.data());
+      code = nc_get_vara_double(group, id, start.data(), count.data(), packed.data());
     }
     if (code != NC_NOERR) return ReadError(variable, code);
   }
   if (packing.PlainFloat()) {
     CleanPlainFloats(packing, values);
   } else {
-    for (std::size_t i = 0; i < total; ++i) values[i] = Clean(packed[i], packing);
+    for (std::size_t i = 0; i < total; ++i) values[i] = FlushedFloat(Unpacked(packed[i], packing));
   }
   return absl::OkStatus();
 }
 
-absl::StatusOr<int> NetcdfFile::NumbersId(const std::string& variable, std::size_t rank) const {
-  int id = 0;
+absl::StatusOr<NetcdfFile::Variable> NetcdfFile::NumbersId(const std::string& variable,
+                                                           std::size_t rank) const {
+  Variable found;
   nc_type type = NC_NAT;
   int dimensions = 0;
-  if (const int code = nc_inq_varid(handle_, variable.c_str(), &id); code != NC_NOERR) {
-    return ReadError(variable, code);
-  }
-  if (const int code = nc_inq_var(handle_, id, nullptr, &type, &dimensions, nullptr, nullptr);
+  if (const int code = Find(variable, found); code != NC_NOERR) return ReadError(variable, code);
+  if (const int code =
+          nc_inq_var(found.group, found.id, nullptr, &type, &dimensions, nullptr, nullptr);
       code != NC_NOERR) {
     return ReadError(variable, code);
   }
@@ -525,7 +541,7 @@ absl::StatusOr<int> NetcdfFile::NumbersId(const std::string& variable, std::size
     return absl::InvalidArgumentError(absl::StrCat(path_, ": ", variable, " has ", dimensions,
                                                    " dimensions where ", rank, " are needed"));
   }
-  return id;
+  return found;
 }
 
 absl::StatusOr<std::size_t> NetcdfFile::CountThatFits(const std::string& variable,
@@ -535,6 +551,15 @@ absl::StatusOr<std::size_t> NetcdfFile::CountThatFits(const std::string& variabl
 }
 
 absl::Status NetcdfFile::ReadError(const std::string& variable, int code) const {
+  Variable found;
+  const bool exists = Find(variable, found) == NC_NOERR;
+  const std::string filter = exists ? LackingFilter(found.group, found.id) : "";
+  if (!filter.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        path_, ": ", variable, " is compressed by the filter ", filter,
+        ", which is not available here; where its plug-in is installed, write the file again with "
+        "a filter that every program has, for example with nccopy -F '*,none' -d 4"));
+  }
   if (code == NC_ECHAR) {
     return absl::InvalidArgumentError(
         absl::StrCat(path_, ": ", variable, " holds text where numbers are needed"));

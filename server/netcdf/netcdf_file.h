@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -19,11 +20,17 @@ class NetcdfFile {
   // Opens `path` for reading, or its bytes if they were registered (base::ReadFromMemory). Errors:
   // NOT_FOUND; INVALID_ARGUMENT (not a netCDF file); DATA_LOSS (truncated or damaged); UNAVAILABLE
   // (another program is writing it).
-  static absl::StatusOr<NetcdfFile> Open(const std::string& path);
+  //
+  // The variables are those of the root group, or of `group` (one that Groups() returns) and the
+  // groups around it.
+  static absl::StatusOr<NetcdfFile> Open(const std::string& path, const std::string& group = "");
 
   NetcdfFile(NetcdfFile&& other) noexcept;
   NetcdfFile& operator=(NetcdfFile&& other) noexcept;
   ~NetcdfFile();
+
+  // Returns whether these are the first bytes of a netCDF file.
+  static bool BeginsLikeNetcdf(std::string_view start);
 
   // Checks an open file before anything parses it. Returns INVALID_ARGUMENT if it does not begin
   // like a netCDF file, and DATA_LOSS if it is empty. Returns UNAVAILABLE while another program
@@ -34,7 +41,10 @@ class NetcdfFile {
 
   bool HasVariable(const std::string& variable) const;
 
-  // Returns the names of all variables, in the file's order.
+  // Returns the full names of all groups in the file, "/les/fields" for example, without the root.
+  std::vector<std::string> Groups() const;
+
+  // Returns the names of all variables, in the file's order. Those of an inner group come first.
   std::vector<std::string> Variables() const;
 
   // Returns the names of the variable's dimensions, slowest first.
@@ -52,6 +62,11 @@ class NetcdfFile {
                                            const std::string& attribute) const;
   std::optional<double> NumberAttribute(const std::string& variable,
                                         const std::string& attribute) const;
+  // Returns the numbers of an attribute, or an empty array if it is absent or a text.
+  std::vector<double> NumbersAttribute(const std::string& variable,
+                                       const std::string& attribute) const;
+  // Returns the names of a variable's attributes.
+  std::vector<std::string> AttributesOf(const std::string& variable) const;
   // Returns a text attribute, or an empty text if it is absent. An attribute of another type is
   // returned as "(not text)". Readers refuse that text like any other text that they do not know.
   std::string TextOrEmpty(const std::string& variable, const std::string& attribute) const;
@@ -65,9 +80,10 @@ class NetcdfFile {
   absl::StatusOr<std::size_t> RecordLength(const std::string& variable) const;
 
   // Reads one record (an index of the slowest dimension) of a numeric variable. Unpacks values
-  // (scale_factor, add_offset). Missing values become NaN: the variable's fill values, values of
-  // magnitude 1e30 or more, NaN and infinities. Subnormal values become zero. Reuses the memory of
-  // `values`.
+  // (_Unsigned, scale_factor, add_offset). Missing values become NaN: the variable's fill values
+  // (_FillValue, missing_value), values outside its valid range (valid_min, valid_max,
+  // valid_range), values of magnitude 1e30 or more, NaN and infinities. Subnormal values become
+  // zero. Reuses the memory of `values`.
   absl::Status ReadRecord(const std::string& variable, std::size_t record,
                           std::vector<float>& values) const;
 
@@ -82,16 +98,29 @@ class NetcdfFile {
 
  private:
   NetcdfFile(std::string path, int handle);
+  static absl::StatusOr<NetcdfFile> OpenRoot(const std::string& path);
   // Checks the opened file. `bytes` is its size. The caller must hold NetcdfLock.
   static absl::StatusOr<NetcdfFile> Checked(const std::string& path, int handle,
                                             std::uintmax_t bytes);
 
   absl::Status ReadFloats(const std::string& variable, const std::vector<std::size_t>& start,
                           const std::vector<std::size_t>& count, std::vector<float>& values) const;
-  // Returns the id of a variable if its type is an allowed numeric type and it has `rank`
-  // dimensions. Otherwise returns INVALID_ARGUMENT. Every function that reads numbers calls this
-  // function first. The caller must hold NetcdfLock.
-  absl::StatusOr<int> NumbersId(const std::string& variable, std::size_t rank) const;
+  // A variable's id in netCDF-C, and that of its group.
+  struct Variable {
+    int group = -1;
+    int id = -1;
+  };
+  // Finds a variable in the group or in one around it. Returns netCDF-C's error code. The caller
+  // must hold NetcdfLock.
+  int Find(const std::string& variable, Variable& found) const;
+  // Finds the holder of attributes: a variable, or the group if `variable` is empty. The caller
+  // must hold NetcdfLock.
+  std::optional<Variable> FindHolder(const std::string& variable,
+                                     const std::string& attribute) const;
+  // Returns a variable if its type is an allowed numeric type and it has `rank` dimensions.
+  // Otherwise returns INVALID_ARGUMENT. Every function that reads numbers calls this function
+  // first. The caller must hold NetcdfLock.
+  absl::StatusOr<Variable> NumbersId(const std::string& variable, std::size_t rank) const;
   absl::StatusOr<std::size_t> CountThatFits(const std::string& variable,
                                             const std::vector<std::size_t>& lengths,
                                             std::size_t bytes_each) const;
@@ -100,6 +129,7 @@ class NetcdfFile {
 
   std::string path_;
   int handle_;
+  int group_;
 };
 
 }  // namespace thunderhead::netcdf

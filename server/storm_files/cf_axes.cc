@@ -17,49 +17,18 @@ constexpr std::size_t kMaxCells = 100'000;
 // written, or stored as floats.
 constexpr double kEvenTolerance = 1e-2;
 
-struct Coordinate {
-  std::vector<double> centres_m;  // in the file's order
-  std::vector<double> faces_m;    // one face more than centres, from the bounds; empty if the file
-                                  // has no bounds
-  std::optional<double> middle_deg;
+struct WrittenAxis {
+  std::vector<double> centres;  // in the file's order
+  std::vector<double> faces;    // one face more than centres, from the bounds; empty if the file
+                                // has no bounds
 };
 
-// Returns the faces from CF bounds, two for each cell, or an empty list if there are no bounds.
-// Bounds that are not contiguous are an error.
-absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
-                                               const std::string& dimension, std::size_t cells) {
-  const auto name = file.TextAttribute(dimension, "bounds");
-  std::vector<double> faces;
-  if (!name.has_value() || !file.HasVariable(*name)) return faces;
-  // Bounds are in the units of their coordinate. CF files usually omit the units of the bounds.
-  const std::string units = file.TextOrEmpty(*name, "units");
-  if (!units.empty() && units != file.TextOrEmpty(dimension, "units")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(file.Path(), ": ", *name, " has units '", units, "', and ", dimension,
-                     ", whose bounds they are, others; give both the same"));
+// Removes jumps of a whole period, such as that from 359.9 to 0 degrees.
+void Unwrap(std::vector<double>& values, double period) {
+  if (period == 0.0) return;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    values[i] -= period * std::round((values[i] - values[i - 1]) / period);
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape(*name));
-  if (shape != std::vector<std::size_t>{cells, 2}) {
-    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", *name, ", the bounds of ",
-                                                   dimension, ", must have dimensions (", cells,
-                                                   ", 2)"));
-  }
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<double> pairs, file.ReadDoubles(*name));
-  // The two bounds of a cell may be in descending order although the axis ascends, or in ascending
-  // order although it descends.
-  if (cells > 1 && (pairs[0] < pairs[1]) != (pairs[0] < pairs[2])) {
-    for (std::size_t i = 0; i < cells; ++i) std::swap(pairs[2 * i], pairs[2 * i + 1]);
-  }
-  for (std::size_t i = 0; i < cells; ++i) {
-    const double slack = kEvenTolerance * std::abs(pairs[2 * i + 1] - pairs[2 * i]);
-    if (i > 0 && !(std::abs(pairs[2 * i] - pairs[2 * i - 1]) <= slack)) {
-      return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", *name, ", the bounds of ",
-                                                     dimension, ", leave a gap before cell ", i));
-    }
-    faces.push_back(pairs[2 * i]);
-  }
-  faces.push_back(pairs.back());
-  return faces;
 }
 
 // Returns whether the name of a coordinate is that of a longitude or latitude. The name is used
@@ -71,26 +40,6 @@ bool IsAngle(const CfDescription& coordinate) {
          name.ends_with("latitude");
 }
 
-absl::StatusOr<double> MetresPerUnit(const netcdf::NetcdfFile& file,
-                                     const CfDescription& coordinate, CfDirection direction,
-                                     double metres_per_degree) {
-  if (IsDegrees(coordinate.units, direction)) return metres_per_degree;
-  const auto metres = MetresIn(coordinate.units);
-  const bool assumed = PlainUnits(coordinate.units).empty();
-  if (assumed && IsAngle(coordinate)) {
-    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the coordinate ",
-                                                   coordinate.name,
-                                                   " has no units; add them: degrees, m or km"));
-  }
-  if (assumed) spdlog::warn("{}: {} has no units; taken to be in m", file.Path(), coordinate.name);
-  if (metres.has_value()) return *metres;
-  return absl::InvalidArgumentError(absl::StrCat(
-      file.Path(), ": the coordinate ", coordinate.name, " has units '", coordinate.units,
-      direction == CfDirection::kZ
-          ? "'; heights in m or km are needed: interpolate to heights first"
-          : "'; m, km or degrees are needed"));
-}
-
 // Returns 1 for a coordinate that increases upwards, or -1 for a depth, which increases downwards.
 absl::StatusOr<double> UpwardSign(const netcdf::NetcdfFile& file, const CfDescription& coordinate) {
   const std::string positive = absl::AsciiStrToLower(coordinate.positive);
@@ -99,40 +48,6 @@ absl::StatusOr<double> UpwardSign(const netcdf::NetcdfFile& file, const CfDescri
   return absl::InvalidArgumentError(absl::StrCat(
       file.Path(), ": the coordinate ", coordinate.name, " has the attribute positive '",
       coordinate.positive, "'; it must be 'up' or 'down'"));
-}
-
-absl::StatusOr<Coordinate> ReadCoordinate(const netcdf::NetcdfFile& file,
-                                          const std::string& dimension, CfDirection direction,
-                                          double metres_per_degree) {
-  if (!file.HasVariable(dimension)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(file.Path(), ": the dimension ", dimension, " has no coordinate variable ",
-                     dimension, ", so its cells have no size; add one, in metres"));
-  }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> dimensions,
-                               file.Dimensions(dimension));
-  if (dimensions != std::vector<std::string>{dimension}) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(file.Path(), ": the coordinate ", dimension,
-                     " must have its own dimension only; interpolate to a rectangular grid first"));
-  }
-  const CfDescription description = DescribeCf(file, dimension);
-  THUNDERHEAD_ASSIGN_OR_RETURN(double scale,
-                               MetresPerUnit(file, description, direction, metres_per_degree));
-  Coordinate coordinate;
-  THUNDERHEAD_ASSIGN_OR_RETURN(coordinate.centres_m, file.ReadDoubles(dimension));
-  THUNDERHEAD_ASSIGN_OR_RETURN(coordinate.faces_m,
-                               ReadBounds(file, dimension, coordinate.centres_m.size()));
-  if (IsDegrees(description.units, direction)) {
-    coordinate.middle_deg = 0.5 * (coordinate.centres_m.front() + coordinate.centres_m.back());
-  }
-  if (direction == CfDirection::kZ) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const double sign, UpwardSign(file, description));
-    scale *= sign;
-  }
-  for (double& centre : coordinate.centres_m) centre *= scale;
-  for (double& face : coordinate.faces_m) face *= scale;
-  return coordinate;
 }
 
 absl::Status CheckMonotonic(const netcdf::NetcdfFile& file, const std::string& dimension,
@@ -180,9 +95,124 @@ Faces FacesFrom(double low_m, const std::vector<double>& centres_m) {
   return faces;
 }
 
-// Returns the faces of the cells around two or more `centres_m`. If possible, the cells start at
-// the ground and `centres_m` are exactly their centres. Otherwise each face is half-way between two
-// neighbouring centres.
+absl::StatusOr<std::vector<double>> FacesOfOne(const netcdf::NetcdfFile& file,
+                                               const std::string& coordinate, CfDirection direction,
+                                               double centre, double size_without_bounds) {
+  double size = 2.0 * std::abs(centre);
+  double low = std::min(0.0, 2.0 * centre);
+  if (size == 0.0 && direction != CfDirection::kZ) {
+    size = size_without_bounds;
+    low = -0.5 * size;
+  }
+  if (!(size > 0.0)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.Path(), ": ", coordinate, " has one cell at 0 and no bounds, so it has no size; add ",
+        coordinate, ":bounds"));
+  }
+  spdlog::warn("{}: {} has one cell and no bounds; taken to be {} m wide", file.Path(), coordinate,
+               size);
+  return std::vector<double>{low, low + size};
+}
+
+absl::Status CheckLength(const netcdf::NetcdfFile& file, const CfDimension& dimension) {
+  if (dimension.length >= 1 && dimension.length <= kMaxCells) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": dimension ", dimension.name,
+                                                 " is ", dimension.length, "; 1 to ", kMaxCells,
+                                                 " can be read"));
+}
+
+absl::StatusOr<WrittenAxis> ReadWritten(const netcdf::NetcdfFile& file,
+                                        const CfDimension& dimension, double scale, double period) {
+  const std::string& name = dimension.coordinate;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> dimensions, file.Dimensions(name));
+  if (dimensions != std::vector<std::string>{dimension.name}) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": the coordinate ", name,
+                     " must have its own dimension only; interpolate to a rectangular grid first"));
+  }
+  WrittenAxis axis;
+  THUNDERHEAD_ASSIGN_OR_RETURN(axis.centres, file.ReadDoubles(name));
+  Unwrap(axis.centres, period);
+  THUNDERHEAD_ASSIGN_OR_RETURN(axis.faces, ReadBounds(file, name, axis.centres.size(), period));
+  for (double& centre : axis.centres) centre *= scale;
+  for (double& face : axis.faces) face *= scale;
+  return axis;
+}
+
+// Sets the faces of the axis, in ascending order.
+absl::Status TakeFaces(const netcdf::NetcdfFile& file, WrittenAxis written, CfDirection direction,
+                       double single_cell, CfAxis& axis) {
+  std::vector<double>& centres = written.centres;
+  axis.reversed = centres.front() > centres.back();
+  if (axis.reversed) std::ranges::reverse(centres);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckMonotonic(file, axis.coordinate, centres));
+  if (!written.faces.empty()) {
+    axis.faces = std::move(written.faces);
+  } else if (centres.size() > 1) {
+    axis.faces = FacesAround(centres);
+  } else {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        axis.faces, FacesOfOne(file, axis.coordinate, direction, centres[0], single_cell));
+  }
+  if (axis.faces.front() > axis.faces.back()) std::ranges::reverse(axis.faces);
+  return CheckMonotonic(file, axis.coordinate, axis.faces);
+}
+
+absl::Status WrongLength(const netcdf::NetcdfFile& file, const CfDescription& coordinate,
+                         const char* needed) {
+  return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the coordinate ", coordinate.name,
+                                                 " has units '", coordinate.units, "'; ", needed));
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
+                                               const std::string& dimension, std::size_t cells,
+                                               double period) {
+  const auto name = file.TextAttribute(dimension, "bounds");
+  std::vector<double> faces;
+  if (!name.has_value() || !file.HasVariable(*name)) return faces;
+  // Bounds are in the units of their coordinate. CF files usually omit the units of the bounds.
+  const std::string units = file.TextOrEmpty(*name, "units");
+  if (!units.empty() && units != file.TextOrEmpty(dimension, "units")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": ", *name, " has units '", units, "', and ", dimension,
+                     ", whose bounds they are, others; give both the same"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape(*name));
+  if (shape != std::vector<std::size_t>{cells, 2}) {
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", *name, ", the bounds of ",
+                                                   dimension, ", must have dimensions (", cells,
+                                                   ", 2)"));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<double> pairs, file.ReadDoubles(*name));
+  if (period != 0.0) {
+    // Both bounds of a cell are moved next to each other, and the cells next to each other.
+    for (std::size_t i = 0; i < cells; ++i) {
+      std::vector<double> near = {i == 0 ? pairs[0] : 0.5 * (pairs[2 * i - 2] + pairs[2 * i - 1]),
+                                  pairs[2 * i], pairs[2 * i + 1]};
+      Unwrap(near, period);
+      pairs[2 * i] = near[1];
+      pairs[2 * i + 1] = near[2];
+    }
+  }
+  // The two bounds of a cell may be in descending order although the axis ascends, or in ascending
+  // order although it descends.
+  if (cells > 1 && (pairs[0] < pairs[1]) != (pairs[0] < pairs[2])) {
+    for (std::size_t i = 0; i < cells; ++i) std::swap(pairs[2 * i], pairs[2 * i + 1]);
+  }
+  for (std::size_t i = 0; i < cells; ++i) {
+    const double slack = kEvenTolerance * std::abs(pairs[2 * i + 1] - pairs[2 * i]);
+    if (i > 0 && !(std::abs(pairs[2 * i] - pairs[2 * i - 1]) <= slack)) {
+      return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", *name, ", the bounds of ",
+                                                     dimension, ", leave a gap before cell ", i));
+    }
+    faces.push_back(pairs[2 * i]);
+  }
+  faces.push_back(pairs.back());
+  return faces;
+}
+
 std::vector<double> FacesAround(const std::vector<double>& centres_m) {
   const double even_low_m = 1.5 * centres_m[0] - 0.5 * centres_m[1];
   std::vector<double> faces_m;
@@ -206,69 +236,66 @@ std::vector<double> FacesAround(const std::vector<double>& centres_m) {
   return faces_m;
 }
 
-// Returns the faces of an axis's only cell, if it has no bounds. The cell is assumed to begin at 0,
-// like a layer on the ground.
-absl::StatusOr<std::vector<double>> FacesOfOne(const netcdf::NetcdfFile& file,
-                                               const std::string& dimension, CfDirection direction,
-                                               double centre_m, double size_without_bounds_m) {
-  double size_m = 2.0 * std::abs(centre_m);
-  double low_m = std::min(0.0, 2.0 * centre_m);
-  if (size_m == 0.0 && direction != CfDirection::kZ) {
-    size_m = size_without_bounds_m;
-    low_m = -0.5 * size_m;
-  }
-  if (!(size_m > 0.0)) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        file.Path(), ": ", dimension, " has one cell at 0 and no bounds, so it has no size; add ",
-        dimension, ":bounds"));
-  }
-  spdlog::warn("{}: {} has one cell and no bounds; taken to be {} m wide", file.Path(), dimension,
-               size_m);
-  return std::vector<double>{low_m, low_m + size_m};
-}
-
-}  // namespace
-
-CfDescription DescribeCf(const netcdf::NetcdfFile& file, const std::string& variable) {
-  const auto text = [&](const char* attribute) { return file.TextOrEmpty(variable, attribute); };
-  return {variable, text("standard_name"), text("units"), text("axis"), text("positive")};
-}
-
-absl::StatusOr<CfAxis> ReadCfAxis(const netcdf::NetcdfFile& file, const std::string& dimension,
-                                  CfDirection direction, const CfSizes& sizes) {
-  const std::size_t length = file.DimensionLength(dimension).value_or(0);
-  if (length < 1 || length > kMaxCells) {
-    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": dimension ", dimension, " is ",
-                                                   length, "; 1 to ", kMaxCells, " can be read"));
-  }
-  THUNDERHEAD_ASSIGN_OR_RETURN(Coordinate coordinate,
-                               ReadCoordinate(file, dimension, direction, sizes.metres_per_degree));
+absl::StatusOr<CfAxis> ReadHorizontalAxis(const netcdf::NetcdfFile& file,
+                                          const CfDimension& dimension, CfDirection direction,
+                                          double single_cell) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLength(file, dimension));
   CfAxis axis;
-  axis.dimension = dimension;
-  axis.cells = static_cast<int>(length);
-  axis.middle_deg = coordinate.middle_deg;
-  std::vector<double>& centres_m = coordinate.centres_m;
-  std::vector<double>& faces_m = coordinate.faces_m;
-  axis.reversed = centres_m.front() > centres_m.back();
-  if (axis.reversed) std::ranges::reverse(centres_m);
-  THUNDERHEAD_RETURN_IF_ERROR(CheckMonotonic(file, dimension, centres_m));
-  if (faces_m.empty()) {
-    if (centres_m.size() > 1) {
-      faces_m = FacesAround(centres_m);
-    } else {
-      THUNDERHEAD_ASSIGN_OR_RETURN(
-          faces_m, FacesOfOne(file, dimension, direction, centres_m[0], sizes.single_cell_m));
+  axis.dimension = dimension.name;
+  axis.coordinate = dimension.coordinate;
+  axis.cells = static_cast<int>(dimension.length);
+  if (dimension.coordinate.empty()) {
+    axis.unit = CfAxisUnit::kNone;
+    for (int i = 0; i <= axis.cells; ++i) axis.faces.push_back(i);
+    return axis;
+  }
+  const CfDescription described = DescribeCf(file, dimension.coordinate);
+  if (const auto degrees = DegreesIn(described.units, direction); degrees.has_value()) {
+    axis.unit = CfAxisUnit::kDegrees;
+    axis.units_per_written = *degrees;
+  } else if (const auto metres = MetresIn(described.units); metres.has_value()) {
+    axis.units_per_written = *metres;
+    if (HasNoUnits(described.units) && IsAngle(described)) {
+      return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the coordinate ",
+                                                     described.name,
+                                                     " has no units; add them: degrees, m or km"));
     }
+    if (HasNoUnits(described.units)) {
+      spdlog::warn("{}: {} has no units; taken to be in m", file.Path(), described.name);
+    }
+  } else {
+    return WrongLength(file, described, "m, km or degrees are needed");
   }
-  if (faces_m.front() > faces_m.back()) std::ranges::reverse(faces_m);
-  THUNDERHEAD_RETURN_IF_ERROR(CheckMonotonic(file, dimension, faces_m));
-  axis.spacing_m = (faces_m.back() - faces_m.front()) / axis.cells;
-  if (direction != CfDirection::kZ && !IsEven(faces_m)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(file.Path(), ": the coordinate ", dimension,
-                     " is not evenly spaced; interpolate to even spacing first"));
+  const bool wraps = axis.unit == CfAxisUnit::kDegrees && direction == CfDirection::kX;
+  constexpr double kFullCircle_deg = 360.0;
+  const double period = wraps ? kFullCircle_deg / axis.units_per_written : 0.0;
+  THUNDERHEAD_ASSIGN_OR_RETURN(WrittenAxis written,
+                               ReadWritten(file, dimension, axis.units_per_written, period));
+  THUNDERHEAD_RETURN_IF_ERROR(TakeFaces(file, std::move(written), direction, single_cell, axis));
+  if (IsEven(axis.faces)) return axis;
+  return absl::InvalidArgumentError(
+      absl::StrCat(file.Path(), ": the coordinate ", axis.coordinate,
+                   " is not evenly spaced; interpolate to even spacing first"));
+}
+
+absl::StatusOr<CfAxis> ReadHeightAxis(const netcdf::NetcdfFile& file,
+                                      const CfDimension& dimension) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLength(file, dimension));
+  CfAxis axis;
+  axis.dimension = dimension.name;
+  axis.coordinate = dimension.coordinate;
+  axis.cells = static_cast<int>(dimension.length);
+  const CfDescription described = DescribeCf(file, dimension.coordinate);
+  const auto metres = MetresIn(described.units);
+  if (!metres.has_value()) {
+    return WrongLength(file, described,
+                       "heights in m or km are needed: interpolate to heights first");
   }
-  axis.faces_m = std::move(faces_m);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const double sign, UpwardSign(file, described));
+  axis.units_per_written = *metres * sign;
+  THUNDERHEAD_ASSIGN_OR_RETURN(WrittenAxis written,
+                               ReadWritten(file, dimension, axis.units_per_written, 0.0));
+  THUNDERHEAD_RETURN_IF_ERROR(TakeFaces(file, std::move(written), CfDirection::kZ, 0.0, axis));
   return axis;
 }
 

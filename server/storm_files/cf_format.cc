@@ -1,14 +1,15 @@
 #include "storm_files/cf_format.h"
 
+#include <cmath>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_format.h"
 #include "base/status.h"
+#include "netcdf/netcdf_file.h"
 #include "storm_files/cf_metadata.h"
 #include "storm_files/cf_reader.h"
 #include "storm_files/fields_on_heights.h"
+#include "storm_files/units.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -18,8 +19,13 @@ namespace {
 std::string RunOf(const CfMetadata& metadata) {
   std::string run;
   for (const CfField& field : metadata.fields) absl::StrAppend(&run, field.variable.name, " ");
-  const CfAxis& z = metadata.axes[2];
-  absl::StrAppend(&run, z.faces_m.front(), " ", z.spacing_m, " ", z.cells);
+  const CfHeights& heights = metadata.heights;
+  absl::StrAppend(&run, heights.name, " ", metadata.order.cells[2]);
+  if (!heights.faces_m.empty()) {
+    const double depth_m = heights.faces_m.back() - heights.faces_m.front();
+    absl::StrAppend(&run, " ", heights.faces_m.front(), " ",
+                    depth_m / static_cast<double>(metadata.order.cells[2]));
+  }
   return run;
 }
 
@@ -32,6 +38,12 @@ class CfFormat final : public StormFormat {
            "mass_concentration_of_cloud_liquid_water_in_air) or a variable extinction (m-1)";
   }
 
+  bool MayBegin(std::string_view start) const override {
+    return netcdf::NetcdfFile::BeginsLikeNetcdf(start);
+  }
+
+  absl::Status PrepareBeforeConfinement() const override { return LoadUnits(); }
+
   FormatFit Sniff(const UnknownFile& file) const override {
     const bool fits = file.Netcdf().ok() && LooksLikeCf(*file.Netcdf());
     return fits ? FormatFit::kConvention : FormatFit::kNone;
@@ -42,29 +54,30 @@ class CfFormat final : public StormFormat {
     THUNDERHEAD_ASSIGN_OR_RETURN(CfMetadata metadata, ReadCfMetadata(*unknown.Netcdf()));
     StormFile file;
     file.path = metadata.path;
-    const auto& [x, y, z] = metadata.axes;
-    file.cells = {x.cells, y.cells, z.cells};
-    file.dx_m = x.spacing_m;
-    file.dy_m = y.spacing_m;
+    const CfPlaces& places = metadata.places;
+    file.cells = {metadata.x.cells, metadata.y.cells, static_cast<int>(metadata.order.cells[2])};
+    file.dx_m = places.dx_m;
+    file.dy_m = places.dy_m;
     file.times = metadata.times;
     for (const CfField& field : metadata.fields) {
       file.fields.push_back(field.quantity.hydrometeor);
     }
     file.about = metadata.source;
     file.run = RunOf(metadata);
-    if (x.middle_deg.has_value() && y.middle_deg.has_value()) {
-      file.longitude_deg = x.middle_deg;
-      file.latitude_deg = y.middle_deg;
-      // A projection exists only for degrees of longitude and latitude. The reader converts degrees
-      // to metres with one scale, that at the middle of the domain. Degrees of a rotated grid are
-      // not places on Earth.
-      const CfDescription described = DescribeCf(*unknown.Netcdf(), x.dimension);
-      if (!absl::StartsWith(described.standard_name, "grid_")) {
-        file.projection = absl::StrFormat(
-            "+proj=eqc +lat_ts=%.10g +lat_0=%.10g +lon_0=%.10g +x_0=0 +y_0=0 +R=%.10g +units=m "
-            "+no_defs",
-            *y.middle_deg, *y.middle_deg, *x.middle_deg, kCfEarthRadius_m);
+    file.assumptions = metadata.assumptions;
+    if (places.even != nullptr) {
+      const EvenColumns& even = *places.even;
+      file.cells = {even.columns.x, even.columns.y, file.cells.z};
+      if (even.Resampled()) {
+        file.dx_m = even.dx_m;
+        file.dy_m = even.dy_m;
       }
+      // Rounding must not turn Greenwich into a place west of it.
+      constexpr double kRounding_deg = 1e-9;
+      const double longitude_deg = even.middle.longitude_deg;
+      file.longitude_deg = std::abs(longitude_deg) < kRounding_deg ? 0.0 : longitude_deg;
+      file.latitude_deg = even.middle.latitude_deg;
+      file.projection = even.projection;
     }
     file.reader =
         MakeRecordReader([metadata = std::make_shared<const CfMetadata>(std::move(metadata))](

@@ -7,6 +7,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/strip.h"
+#include "storm_files/units.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -49,6 +50,10 @@ constexpr std::array kVariables = {
     Named{"swc", Hydrometeor::kSnow},       Named{"qg", Hydrometeor::kGraupel},
     Named{"qgraup", Hydrometeor::kGraupel}, Named{"qgraupel", Hydrometeor::kGraupel},
     Named{"qh", Hydrometeor::kHail},        Named{"qhail", Hydrometeor::kHail},
+    Named{"qhl", Hydrometeor::kHail},       Named{"clwc", Hydrometeor::kCloud},
+    Named{"ciwc", Hydrometeor::kIce},       Named{"crwc", Hydrometeor::kRain},
+    Named{"cswc", Hydrometeor::kSnow},      Named{"clwmr", Hydrometeor::kCloud},
+    Named{"q_liquid", Hydrometeor::kCloud}, Named{"q_ice", Hydrometeor::kIce},
 };
 
 template <std::size_t count>
@@ -81,66 +86,55 @@ std::optional<CfQuantity> FromStandardName(const std::string& standard_name) {
   return quantity;
 }
 
-struct Scale {
-  std::string_view units;
-  volume::Quantity quantity;
-  double scale;
-};
-
-constexpr std::array kScales = {
-    Scale{"kgkg-1", volume::Quantity::kMixingRatio, 1.0},
-    Scale{"kg/kg", volume::Quantity::kMixingRatio, 1.0},
-    Scale{"1", volume::Quantity::kMixingRatio, 1.0},
-    Scale{"gkg-1", volume::Quantity::kMixingRatio, 1e-3},
-    Scale{"g/kg", volume::Quantity::kMixingRatio, 1e-3},
-    Scale{"kgm-3", volume::Quantity::kMassConcentration, 1.0},
-    Scale{"kg/m3", volume::Quantity::kMassConcentration, 1.0},
-    Scale{"gm-3", volume::Quantity::kMassConcentration, 1e-3},
-    Scale{"g/m3", volume::Quantity::kMassConcentration, 1e-3},
-    Scale{"mgm-3", volume::Quantity::kMassConcentration, 1e-6},
-    Scale{"mg/m3", volume::Quantity::kMassConcentration, 1e-6},
-    Scale{"m-1", volume::Quantity::kExtinction, 1.0},
-    Scale{"1/m", volume::Quantity::kExtinction, 1.0},
-    Scale{"/m", volume::Quantity::kExtinction, 1.0},
-    Scale{"km-1", volume::Quantity::kExtinction, 1e-3},
-    Scale{"1/km", volume::Quantity::kExtinction, 1e-3},
-};
+// Returns whether a unit without a dimension may be that of a mass ratio. Shares such as "%" and
+// "ppm" are usually shares of volume or of an area. A plain number is a mass ratio by convention.
+bool MayBeMassRatio(const std::string& units) {
+  return absl::StrContains(absl::AsciiStrToLower(units), "g") ||
+         std::ranges::none_of(units, [](char c) { return absl::ascii_isalpha(c) || c == '%'; });
+}
 
 void ApplyUnits(const std::string& units, CfQuantity* quantity) {
   const bool extinction = quantity->quantity == volume::Quantity::kExtinction;
-  const std::string plain = PlainUnits(units);
-  if (plain.empty()) {
+  quantity->known_units = true;
+  if (HasNoUnits(units)) {
     // Without units, extinction is assumed to be in 1/m. The unit of an amount of water stays
     // unknown, because it may be per kg or per m3.
     quantity->known_units = extinction;
     return;
   }
-  const auto at = std::ranges::find(kScales, std::string_view(plain), &Scale::units);
-  quantity->known_units =
-      at != kScales.end() && (at->quantity == volume::Quantity::kExtinction) == extinction;
-  if (!quantity->known_units) return;
-  quantity->quantity = at->quantity;
-  quantity->scale = at->scale;
+  const auto use = [&](std::string_view unit, volume::Quantity as) {
+    const std::optional<UnitConversion> conversion = ConversionOf(units, unit);
+    if (!conversion.has_value() || conversion->offset != 0.0) return false;
+    quantity->quantity = as;
+    quantity->scale = conversion->scale;
+    return true;
+  };
+  if (extinction) {
+    quantity->known_units = use("m-1", volume::Quantity::kExtinction);
+  } else if (!use("kg m-3", volume::Quantity::kMassConcentration)) {
+    quantity->known_units = MayBeMassRatio(units) && use("1", volume::Quantity::kMixingRatio);
+  }
 }
 
 std::optional<AirVariable> AirByName(const CfDescription& variable) {
   const std::string& standard = variable.standard_name;
   const std::string name = absl::AsciiStrToLower(variable.name);
   const bool plain = standard.empty();
-  if (standard == "air_density" || (plain && IsOneOf(name, {"rho", "air_density", "rhoa"}))) {
+  if (standard == "air_density" ||
+      (plain && IsOneOf(name, {"rho", "air_density", "rhoa", "rhobf", "rhoref", "rhob", "dn0"}))) {
     return AirVariable::kDensity;
   }
   if (standard == "air_pressure" || (plain && IsOneOf(name, {"p", "prs", "pres", "pressure"}))) {
     return AirVariable::kPressure;
   }
-  if (standard == "air_temperature" || (plain && IsOneOf(name, {"t", "ta", "temp"}))) {
+  if (standard == "air_temperature" || (plain && IsOneOf(name, {"t", "ta", "temp", "tabs"}))) {
     return AirVariable::kTemperature;
   }
   if (standard == "air_potential_temperature" || (plain && IsOneOf(name, {"th", "theta"}))) {
     return AirVariable::kPotentialTemperature;
   }
   if (IsOneOf(standard, {"specific_humidity", "humidity_mixing_ratio"}) ||
-      (plain && IsOneOf(name, {"qv", "qvapor"}))) {
+      (plain && IsOneOf(name, {"qv", "qvapor", "q", "hus"}))) {
     return AirVariable::kVapour;
   }
   return std::nullopt;
@@ -169,22 +163,21 @@ std::optional<WindVariable> WindByName(const CfDescription& variable) {
   return std::nullopt;
 }
 
-bool IsEastwards(std::string_view plain_units) {
-  return IsOneOf(plain_units, {"degreeseast", "degreeeast", "degreee", "degreese"});
+// Returns whether the units are one of the spellings of CF for degrees of longitude or latitude.
+bool IsEastwards(std::string_view units) {
+  return IsOneOf(absl::AsciiStrToLower(absl::string_view(units.data(), units.size())),
+                 {"degrees_east", "degree_east", "degree_e", "degrees_e", "degreee", "degreese"});
 }
 
-bool IsNorthwards(std::string_view plain_units) {
-  return IsOneOf(plain_units, {"degreesnorth", "degreenorth", "degreen", "degreesn"});
+bool IsNorthwards(std::string_view units) {
+  return IsOneOf(absl::AsciiStrToLower(absl::string_view(units.data(), units.size())),
+                 {"degrees_north", "degree_north", "degree_n", "degrees_n", "degreen", "degreesn"});
 }
 
 }  // namespace
 
-std::string PlainUnits(std::string_view units) {
-  std::string plain = absl::AsciiStrToLower(absl::string_view(units.data(), units.size()));
-  if (units.starts_with("Mg")) plain[0] = 'M';
-  std::erase_if(plain, [](char c) { return c == ' ' || c == '*' || c == '^' || c == '.'; });
-  std::erase_if(plain, [](char c) { return c == '(' || c == ')' || c == '_'; });
-  return plain;
+bool HasNoUnits(std::string_view units) {
+  return absl::StripAsciiWhitespace(absl::string_view(units.data(), units.size())).empty();
 }
 
 std::optional<CfQuantity> QuantityOf(const CfDescription& variable) {
@@ -209,24 +202,30 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
   if (!kind.has_value()) return std::nullopt;
   CfAir air;
   air.variable = *kind;
-  air.of_moist_air = variable.standard_name == "specific_humidity";
-  const std::string units = PlainUnits(variable.units);
+  air.of_moist_air =
+      variable.standard_name == "specific_humidity" ||
+      (variable.standard_name.empty() && IsOneOf(variable.name, {"q", "hus", "qv_s"}));
+  const auto use = [&](std::string_view unit) {
+    if (HasNoUnits(variable.units)) return true;
+    const std::optional<UnitConversion> conversion = ConversionOf(variable.units, unit);
+    if (!conversion.has_value()) return false;
+    air.scale = conversion->scale;
+    air.offset = conversion->offset;
+    return true;
+  };
   switch (*kind) {
     case AirVariable::kDensity:
-      air.known_units = IsOneOf(units, {"", "kgm-3", "kg/m3"});
+      air.known_units = use("kg m-3");
       break;
     case AirVariable::kPressure:
-      if (IsOneOf(units, {"hpa", "mbar", "millibar", "mb"})) air.scale = 100.0;
-      air.known_units = air.scale != 1.0 || IsOneOf(units, {"", "pa", "pascal", "nm-2"});
+      air.known_units = use("Pa");
       break;
     case AirVariable::kTemperature:
     case AirVariable::kPotentialTemperature:
-      if (IsOneOf(units, {"degc", "celsius", "degreescelsius", "c"})) air.offset = 273.15;
-      air.known_units = air.offset != 0.0 || IsOneOf(units, {"", "k", "kelvin", "degk"});
+      air.known_units = use("K");
       break;
     case AirVariable::kVapour:
-      if (IsOneOf(units, {"gkg-1", "g/kg"})) air.scale = 1e-3;
-      air.known_units = air.scale != 1.0 || IsOneOf(units, {"", "1", "kgkg-1", "kg/kg"});
+      air.known_units = use("1") && (HasNoUnits(variable.units) || MayBeMassRatio(variable.units));
       break;
   }
   return air;
@@ -235,11 +234,13 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
 std::optional<CfWind> WindVariableOf(const CfDescription& variable) {
   const std::optional<WindVariable> kind = WindByName(variable);
   if (!kind.has_value()) return std::nullopt;
-  const std::string units = PlainUnits(variable.units);
-  const bool known = *kind == WindVariable::kTurbulentEnergy
-                         ? IsOneOf(units, {"m2s-2", "m2/s2", "jkg-1", "j/kg"})
-                         : IsOneOf(units, {"ms-1", "m/s", "meterspersecond", "metrespersecond"});
-  return CfWind{*kind, known};
+  const bool energy = *kind == WindVariable::kTurbulentEnergy;
+  const std::optional<UnitConversion> conversion =
+      ConversionOf(variable.units, energy ? "m2 s-2" : "m s-1");
+  const bool known = conversion.has_value() && conversion->offset == 0.0;
+  const bool true_east =
+      variable.standard_name == "eastward_wind" || variable.standard_name == "northward_wind";
+  return CfWind{*kind, known, known ? conversion->scale : 1.0, true_east};
 }
 
 std::optional<CfDirection> DirectionOf(const CfDescription& coordinate) {
@@ -259,40 +260,55 @@ std::optional<CfDirection> DirectionOf(const CfDescription& coordinate) {
                          "height_above_reference_ellipsoid"})) {
     return CfDirection::kZ;
   }
-  if (standard == "time" || absl::StrContains(coordinate.units, " since ")) {
+  if (absl::StartsWith(standard, "atmosphere_") || absl::StrContains(standard, "model_level") ||
+      standard == "air_pressure") {
+    return CfDirection::kZ;
+  }
+  if (IsOneOf(standard, {"time", "forecast_period"}) ||
+      absl::StrContains(coordinate.units, " since ")) {
     return CfDirection::kTime;
   }
-  const std::string units = PlainUnits(coordinate.units);
-  if (IsEastwards(units)) return CfDirection::kX;
-  if (IsNorthwards(units)) return CfDirection::kY;
+  if (IsEastwards(coordinate.units)) return CfDirection::kX;
+  if (IsNorthwards(coordinate.units)) return CfDirection::kY;
   if (!coordinate.positive.empty()) return CfDirection::kZ;
   const std::string name = absl::AsciiStrToLower(coordinate.name);
-  if (IsOneOf(name, {"x", "xh", "xc", "lon", "longitude", "easting", "nx", "west_east"})) {
+  if (IsOneOf(name, {"x", "xh", "xc", "xf", "xt", "xm", "xu", "lon", "longitude", "rlon", "easting",
+                     "nx", "ni", "nip1", "west_east"})) {
     return CfDirection::kX;
   }
-  if (IsOneOf(name, {"y", "yh", "yc", "lat", "latitude", "northing", "ny", "south_north"})) {
+  if (IsOneOf(name, {"y", "yh", "yc", "yf", "yt", "ym", "yv", "lat", "latitude", "rlat", "northing",
+                     "ny", "nj", "njp1", "south_north"})) {
     return CfDirection::kY;
   }
-  if (IsOneOf(name, {"z", "zh", "zc", "height", "altitude", "alt", "lev", "level", "nz"})) {
+  if (IsOneOf(name, {"z", "zh", "zc", "zf", "zt", "zm", "zw", "height", "altitude", "alt", "lev",
+                     "level", "nz", "nk", "nkp1", "zu_3d", "zw_3d", "bottom_top", "hybrid"})) {
     return CfDirection::kZ;
+  }
+  // CDO numbers equal names: "height_2". ICON and COSMO call their levels so.
+  for (const char* prefix : {"height_", "lev_", "level", "generalvertical", "plev", "z_"}) {
+    if (absl::StartsWith(name, prefix)) return CfDirection::kZ;
   }
   if (IsOneOf(name, {"t", "time"})) return CfDirection::kTime;
   return std::nullopt;
 }
 
 std::optional<double> MetresIn(std::string_view units) {
-  const std::string plain = PlainUnits(units);
-  if (IsOneOf(plain, {"", "m", "meter", "meters", "metre", "metres"})) return 1.0;
-  if (IsOneOf(plain, {"km", "kilometer", "kilometers", "kilometre", "kilometres"})) return 1000.0;
-  return std::nullopt;
+  if (HasNoUnits(units)) return 1.0;
+  const std::optional<UnitConversion> conversion = ConversionOf(units, "m");
+  if (!conversion.has_value() || conversion->offset != 0.0) return std::nullopt;
+  return conversion->scale;
 }
 
-bool IsDegrees(std::string_view units, CfDirection direction) {
-  const std::string plain = PlainUnits(units);
-  if (direction == CfDirection::kX && IsEastwards(plain)) return true;
-  if (direction == CfDirection::kY && IsNorthwards(plain)) return true;
-  const bool horizontal = direction == CfDirection::kX || direction == CfDirection::kY;
-  return horizontal && IsOneOf(plain, {"degree", "degrees"});
+std::optional<double> DegreesIn(std::string_view units, CfDirection direction) {
+  if (direction != CfDirection::kX && direction != CfDirection::kY) return std::nullopt;
+  if (IsEastwards(units)) return direction == CfDirection::kX ? std::optional(1.0) : std::nullopt;
+  if (IsNorthwards(units)) return direction == CfDirection::kY ? std::optional(1.0) : std::nullopt;
+  const std::optional<UnitConversion> conversion = ConversionOf(units, "degree");
+  if (!conversion.has_value() || conversion->offset != 0.0) return std::nullopt;
+  // UDUNITS takes "degrees_west" for degrees, but not for their opposite.
+  return units.find('_') != std::string_view::npos || units.find("true") != std::string_view::npos
+             ? std::nullopt
+             : std::optional(conversion->scale);
 }
 
 }  // namespace thunderhead::storm_files

@@ -19,10 +19,8 @@ struct CfDescription {
   std::string positive;
 };
 
-// Returns units in lower case without blanks, stars, carets, dots, brackets and underscores: "kg
-// m**-3" becomes "kgm-3". "Mg" (megagram) keeps its capital letter, so that it differs from "mg"
-// (milligram).
-std::string PlainUnits(std::string_view units);
+// Returns whether a `units` attribute is absent or blank.
+bool HasNoUnits(std::string_view units);
 
 // The quantity of a variable that can be drawn. The variable's values times `scale` are in the
 // quantity's unit.
@@ -55,7 +53,9 @@ enum class WindVariable { kEastward, kNorthward, kUpward, kTurbulentEnergy };
 
 struct CfWind {
   WindVariable variable = WindVariable::kEastward;
-  bool known_units = true;  // false if the units are not m s-1 (wind) or m2 s-2 (energy)
+  bool known_units = true;  // false if the units are no speed (wind) or speed squared (energy)
+  double scale = 1.0;       // to m s-1, or m2 s-2
+  bool true_east = false;  // true if the component is to the true east or north, not along the grid
 };
 
 std::optional<CfWind> WindVariableOf(const CfDescription& variable);
@@ -70,8 +70,8 @@ std::optional<CfDirection> DirectionOf(const CfDescription& coordinate);
 // text means metres.
 std::optional<double> MetresIn(std::string_view units);
 
-// Returns whether the units are degrees along x (of longitude) or y (of latitude), or degrees
-// without a direction, such as those of a rotated grid.
-bool IsDegrees(std::string_view units, CfDirection direction);
+// Returns the angle in degrees of one unit along x (of longitude) or y (of latitude). The unit may
+// lack a direction, like that of a rotated grid. Returns nothing for other units and directions.
+std::optional<double> DegreesIn(std::string_view units, CfDirection direction);
 
 }  // namespace thunderhead::storm_files

@@ -2,30 +2,55 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "netcdf/netcdf_file.h"
+#include "storm_files/grib_air.h"
 
 namespace thunderhead::storm_files {
 namespace {
+
+// Returns the faces of layers whose middles are `middles_m`, upwards, with the column running
+// fastest. A face lies half-way between two middles. The outermost ones are as far from the middle
+// as the other face of the layer.
+std::vector<float> FacesOfMiddles(const std::vector<float>& middles_m, std::size_t columns) {
+  const std::size_t layers = middles_m.size() / columns;
+  std::vector<float> faces_m(middles_m.size() + columns);
+  for (std::size_t i = 0; i < columns; ++i) {
+    const auto middle = [&](std::size_t layer) { return middles_m[layer * columns + i]; };
+    for (std::size_t face = 1; face < layers; ++face) {
+      faces_m[face * columns + i] = 0.5F * (middle(face - 1) + middle(face));
+    }
+    const std::size_t last = layers - 1;
+    faces_m[i] = layers > 1 ? 2.0F * middle(0) - faces_m[columns + i] : 0.0F;
+    faces_m[layers * columns + i] = 2.0F * middle(last) - faces_m[last * columns + i];
+  }
+  return faces_m;
+}
 
 class CfSource final : public LayerSource {
  public:
   CfSource(std::shared_ptr<const CfMetadata> metadata, std::size_t record, netcdf::NetcdfFile file)
       : shared_metadata_(std::move(metadata)), file_(std::move(file)) {
-    const auto& [x, y, z] = metadata_.axes;
+    const CfHeights& heights = metadata_.heights;
     domain_.path = metadata_.path;
     domain_.record = record;
     domain_.time = metadata_.times[record];
-    domain_.cells = {x.cells, y.cells, z.cells};
-    domain_.dx_m = x.spacing_m;
-    domain_.dy_m = y.spacing_m;
-    domain_.fixed_heights = true;
-    domain_.heights_from = z.dimension;
+    domain_.cells = {metadata_.x.cells, metadata_.y.cells,
+                     static_cast<int>(metadata_.order.cells[2])};
+    domain_.dx_m = metadata_.places.dx_m;
+    domain_.dy_m = metadata_.places.dy_m;
+    domain_.even = metadata_.places.even;
+    domain_.on_terrain = heights.kind != CfHeightKind::kAxis &&
+                         (heights.kind != CfHeightKind::kAboveGround || heights.faces_m[0] == 0.0);
+    domain_.fixed_heights = heights.kind != CfHeightKind::kPressure &&
+                            (!heights.array.has_value() || heights.array->time < 0);
+    domain_.heights_from = heights.name;
     for (const CfField& from : metadata_.fields) {
       LayerField& field = domain_.fields.emplace_back();
       field.hydrometeor = from.quantity.hydrometeor;
@@ -44,8 +69,14 @@ class CfSource final : public LayerSource {
   absl::StatusOr<ModelWind> Wind() override;
 
  private:
-  absl::StatusOr<std::vector<float>> ReadLayers(const CfVariable& variable) const;
+  absl::StatusOr<std::vector<float>> ReadScaled(const CfVariable& variable, double scale,
+                                                double offset = 0.0) const;
+  absl::StatusOr<std::vector<float>> ReadColumns(const CfColumnValue& value) const;
+  absl::StatusOr<std::vector<float>> ReadMotion(const CfWindField& field) const;
   absl::StatusOr<std::vector<float>> ReadWind(WindVariable wind) const;
+  absl::StatusOr<std::vector<float>> ReadAir(const CfAirField& field) const;
+  absl::StatusOr<std::vector<float>> FacesOfArray(const std::vector<float>& terrain_m) const;
+  absl::StatusOr<std::vector<float>> HydrostaticFaces(const std::vector<float>& terrain_m);
 
   const std::shared_ptr<const CfMetadata> shared_metadata_;
   const CfMetadata& metadata_ = *shared_metadata_;
@@ -53,64 +84,112 @@ class CfSource final : public LayerSource {
   netcdf::NetcdfFile file_;
 };
 
-// Returns the values of the record in the file's own layers. x runs fastest, then y (northwards),
-// then height (upwards).
-absl::StatusOr<std::vector<float>> CfSource::ReadLayers(const CfVariable& variable) const {
-  const auto rank = static_cast<std::size_t>(variable.dimensions);
-  std::vector<std::size_t> start(rank, 0);
-  std::vector<std::size_t> count(rank, 1);
-  const std::array places = {variable.x, variable.y, variable.z};
-  std::array<std::size_t, 3> lengths{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    lengths[axis] = static_cast<std::size_t>(metadata_.axes[axis].cells);
-    count[static_cast<std::size_t>(places[axis])] = lengths[axis];
-  }
-  if (variable.time >= 0) start[static_cast<std::size_t>(variable.time)] = domain_.record;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> read,
-                               file_.ReadPart(variable.name, start, count));
-  // Strides of x, y and z in the array that was read. A reversed axis is traversed from its end.
-  std::array<std::ptrdiff_t, 3> strides{};
-  std::ptrdiff_t origin = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::ptrdiff_t stride = 1;
-    for (auto i = static_cast<std::size_t>(places[axis]) + 1; i < rank; ++i) {
-      stride *= static_cast<std::ptrdiff_t>(count[i]);
-    }
-    const bool reversed = metadata_.axes[axis].reversed;
-    if (reversed) origin += stride * (static_cast<std::ptrdiff_t>(lengths[axis]) - 1);
-    strides[axis] = reversed ? -stride : stride;
-  }
-  std::vector<float> values(read.size());
-  std::size_t to = 0;
-  for (std::size_t z = 0; z < lengths[2]; ++z) {
-    for (std::size_t y = 0; y < lengths[1]; ++y) {
-      std::ptrdiff_t from = origin + static_cast<std::ptrdiff_t>(z) * strides[2] +
-                            static_cast<std::ptrdiff_t>(y) * strides[1];
-      for (std::size_t x = 0; x < lengths[0]; ++x, from += strides[0]) {
-        values[to++] = read[static_cast<std::size_t>(from)];
-      }
-    }
-  }
+absl::StatusOr<std::vector<float>> CfSource::ReadScaled(const CfVariable& variable, double scale,
+                                                        double offset) const {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> values,
+                               ReadOnAxes(file_, variable, metadata_.order, domain_.record));
+  if (scale == 1.0 && offset == 0.0) return values;
+  for (float& value : values) value = static_cast<float>(value * scale + offset);
   return values;
 }
 
-absl::StatusOr<std::vector<float>> CfSource::InterfaceHeights_m() {
-  std::vector<float> heights_m;
-  heights_m.reserve(metadata_.axes[2].faces_m.size() * domain_.Columns());
-  for (const double face_m : metadata_.axes[2].faces_m) {
-    heights_m.insert(heights_m.end(), domain_.Columns(), static_cast<float>(face_m));
+// Returns one value for each column.
+absl::StatusOr<std::vector<float>> CfSource::ReadColumns(const CfColumnValue& value) const {
+  CfOrder flat = metadata_.order;
+  flat.cells[2] = 1;
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> values,
+                               ReadOnAxes(file_, value.variable, flat, domain_.record));
+  for (float& each : values) each = static_cast<float>(each * value.scale);
+  return values;
+}
+
+// Returns the faces of the layers of an array of heights.
+absl::StatusOr<std::vector<float>> CfSource::FacesOfArray(
+    const std::vector<float>& terrain_m) const {
+  const CfHeights& heights = metadata_.heights;
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> heights_m,
+                               ReadScaled(*heights.array, heights.scale));
+  const std::size_t columns = domain_.Columns();
+  if (heights.above_ground && !terrain_m.empty()) {
+    for (std::size_t i = 0; i < heights_m.size(); ++i) heights_m[i] += terrain_m[i % columns];
+  }
+  if (heights.kind == CfHeightKind::kMiddles) heights_m = FacesOfMiddles(heights_m, columns);
+  // Layers below the ground get no thickness, so they count as missing. The lowest layer begins at
+  // the ground.
+  for (std::size_t i = 0; i < heights_m.size() && !terrain_m.empty(); ++i) {
+    const float ground_m = terrain_m[i % columns];
+    if (heights.kind == CfHeightKind::kMiddles && i < columns && heights_m[i] > ground_m) {
+      heights_m[i] = ground_m;
+    }
+    if (heights_m[i] < ground_m) heights_m[i] = ground_m;
   }
   return heights_m;
+}
+
+// Computes the faces of layers whose pressure is known.
+absl::StatusOr<std::vector<float>> CfSource::HydrostaticFaces(const std::vector<float>& terrain_m) {
+  const CfHeights& heights = metadata_.heights;
+  const std::size_t columns = domain_.Columns();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> surface_Pa,
+                               ReadColumns(*heights.surface_pressure));
+  std::vector<float> face_pressure_Pa(heights.a.size() * columns);
+  for (std::size_t i = 0; i < face_pressure_Pa.size(); ++i) {
+    face_pressure_Pa[i] = static_cast<float>(heights.a[i / columns] +
+                                             heights.b[i / columns] * surface_Pa[i % columns]);
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LayerState state, Air());
+  std::vector<float> ground_m = terrain_m;
+  ground_m.resize(columns, 0.0F);
+  return HydrostaticInterfaces(
+      face_pressure_Pa, VirtualTemperature_K(Temperature(state), state.vapour_kg_per_kg), ground_m);
+}
+
+absl::StatusOr<std::vector<float>> CfSource::InterfaceHeights_m() {
+  const CfHeights& heights = metadata_.heights;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> terrain_m, Terrain_m());
+  const std::size_t columns = domain_.Columns();
+  const std::size_t faces = metadata_.order.cells[2] + 1;
+  const auto ground_m = [&](std::size_t column) {
+    return terrain_m.empty() || std::isnan(terrain_m[column]) ? 0.0F : terrain_m[column];
+  };
+  std::vector<float> heights_m;
+  switch (heights.kind) {
+    case CfHeightKind::kMiddles:
+    case CfHeightKind::kFaces:
+      return FacesOfArray(terrain_m);
+    case CfHeightKind::kPressure:
+      return HydrostaticFaces(terrain_m);
+    case CfHeightKind::kAxis:
+      for (const double face_m : heights.faces_m) {
+        heights_m.insert(heights_m.end(), columns, static_cast<float>(face_m));
+      }
+      break;
+    case CfHeightKind::kAboveGround:
+    case CfHeightKind::kLinear:
+      heights_m.resize(faces * columns);
+      for (std::size_t i = 0; i < heights_m.size(); ++i) {
+        const std::size_t face = i / columns;
+        const bool linear = heights.kind == CfHeightKind::kLinear;
+        heights_m[i] =
+            static_cast<float>(linear ? heights.a[face] + heights.b[face] * ground_m(i % columns)
+                                      : heights.faces_m[face] + ground_m(i % columns));
+      }
+      break;
+  }
+  return heights_m;
+}
+
+absl::StatusOr<std::vector<float>> CfSource::ReadAir(const CfAirField& field) const {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> values,
+                               ReadScaled(field.variable, field.air.scale, field.air.offset));
+  if (field.air.of_moist_air) SpecificHumidityToVapour(values);
+  return values;
 }
 
 absl::StatusOr<LayerState> CfSource::Air() {
   LayerState state;
   for (const CfAirField& field : metadata_.air) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> values, ReadLayers(field.variable));
-    for (float& value : values) {
-      value = static_cast<float>(value * field.air.scale + field.air.offset);
-      if (field.air.of_moist_air) value /= 1.0F - value;
-    }
+    THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> values, ReadAir(field));
     switch (field.air.variable) {
       case AirVariable::kDensity:
         state.air_density_kg_per_m3 = std::move(values);
@@ -129,50 +208,71 @@ absl::StatusOr<LayerState> CfSource::Air() {
         break;
     }
   }
+  const CfHeights& heights = metadata_.heights;
+  if (heights.kind != CfHeightKind::kPressure || !state.pressure_Pa.empty()) return state;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> surface_Pa,
+                               ReadColumns(*heights.surface_pressure));
+  state.pressure_Pa.resize(metadata_.order.cells[2] * domain_.Columns());
+  for (std::size_t i = 0; i < state.pressure_Pa.size(); ++i) {
+    const std::size_t layer = i / domain_.Columns();
+    state.pressure_Pa[i] = static_cast<float>(
+        heights.a_middle[layer] + heights.b_middle[layer] * surface_Pa[i % domain_.Columns()]);
+  }
   return state;
 }
 
 absl::StatusOr<LayerAmounts> CfSource::Amounts(std::size_t field) {
   const CfField& from = metadata_.fields[field];
   LayerAmounts read;
-  THUNDERHEAD_ASSIGN_OR_RETURN(read.amounts, ReadLayers(from.variable));
-  const auto scale = static_cast<float>(from.quantity.scale);
-  for (float& amount : read.amounts) amount *= scale;
+  THUNDERHEAD_ASSIGN_OR_RETURN(read.amounts, ReadScaled(from.variable, from.quantity.scale));
   return read;
 }
 
 absl::StatusOr<std::vector<float>> CfSource::Terrain_m() {
-  if (!metadata_.surface.has_value()) return std::vector<float>();
-  const auto nx = static_cast<std::size_t>(domain_.cells.x);
-  const auto ny = static_cast<std::size_t>(domain_.cells.y);
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> read,
-                               file_.ReadPart(metadata_.surface->variable, {0, 0}, {ny, nx}));
-  const auto metres = static_cast<float>(metadata_.surface->metres);
-  std::vector<float> terrain_m(nx * ny);
-  for (std::size_t y = 0; y < ny; ++y) {
-    for (std::size_t x = 0; x < nx; ++x) {
-      const std::size_t from_y = metadata_.axes[1].reversed ? ny - 1 - y : y;
-      const std::size_t from_x = metadata_.axes[0].reversed ? nx - 1 - x : x;
-      terrain_m[y * nx + x] = read[from_y * nx + from_x] * metres;
+  if (!metadata_.terrain.has_value()) return std::vector<float>();
+  return ReadColumns(*metadata_.terrain);
+}
+
+// Reads a component of the wind, or turbulent energy, at the cells' centres. Values on faces are
+// averaged.
+absl::StatusOr<std::vector<float>> CfSource::ReadMotion(const CfWindField& field) const {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> values,
+                               ReadScaled(field.variable, field.wind.scale));
+  const auto& more = field.variable.more;
+  if (more == std::array<int, 3>{0, 0, 0}) return values;
+  const auto& cells = metadata_.order.cells;
+  const std::size_t nx = cells[0] + static_cast<std::size_t>(more[0]);
+  const std::size_t ny = cells[1] + static_cast<std::size_t>(more[1]);
+  const std::size_t next = more[0] > 0 ? 1 : more[1] > 0 ? nx : nx * ny;
+  std::vector<float> means;
+  means.reserve(cells[0] * cells[1] * cells[2]);
+  for (std::size_t z = 0; z < cells[2]; ++z) {
+    for (std::size_t y = 0; y < cells[1]; ++y) {
+      for (std::size_t x = 0; x < cells[0]; ++x) {
+        const std::size_t at = (z * ny + y) * nx + x;
+        means.push_back(0.5F * (values[at] + values[at + next]));
+      }
     }
   }
-  return terrain_m;
+  return means;
 }
 
 // Returns the wind in layers, or an empty array if the file does not have it.
 absl::StatusOr<std::vector<float>> CfSource::ReadWind(WindVariable wind) const {
-  const auto field = std::ranges::find(metadata_.wind, wind, &CfWindField::wind);
-  if (field == metadata_.wind.end()) return std::vector<float>();
-  return ReadLayers(field->variable);
+  for (const CfWindField& field : metadata_.wind) {
+    if (field.wind.variable == wind) return ReadMotion(field);
+  }
+  return std::vector<float>();
 }
 
 absl::StatusOr<LayerEnergy> CfSource::TurbulentEnergy() {
-  const auto field =
-      std::ranges::find(metadata_.wind, WindVariable::kTurbulentEnergy, &CfWindField::wind);
-  if (field == metadata_.wind.end()) return LayerEnergy();
-  LayerEnergy energy{field->variable.name, {}};
-  THUNDERHEAD_ASSIGN_OR_RETURN(energy.energy_m2_per_s2, ReadLayers(field->variable));
-  return energy;
+  for (const CfWindField& field : metadata_.wind) {
+    if (field.wind.variable != WindVariable::kTurbulentEnergy) continue;
+    LayerEnergy energy{field.variable.name, {}};
+    THUNDERHEAD_ASSIGN_OR_RETURN(energy.energy_m2_per_s2, ReadMotion(field));
+    return energy;
+  }
+  return LayerEnergy();
 }
 
 absl::StatusOr<ModelWind> CfSource::Wind() {
@@ -181,6 +281,10 @@ absl::StatusOr<ModelWind> CfSource::Wind() {
   wind.dx_m = domain_.dx_m;
   wind.dy_m = domain_.dy_m;
   wind.on_faces = false;
+  wind.east_and_north =
+      domain_.even != nullptr && std::ranges::any_of(metadata_.wind, [](const CfWindField& field) {
+        return field.wind.variable == WindVariable::kEastward && field.wind.true_east;
+      });
   THUNDERHEAD_ASSIGN_OR_RETURN(wind.u_m_per_s, ReadWind(WindVariable::kEastward));
   THUNDERHEAD_ASSIGN_OR_RETURN(wind.v_m_per_s, ReadWind(WindVariable::kNorthward));
   THUNDERHEAD_ASSIGN_OR_RETURN(wind.w_m_per_s, ReadWind(WindVariable::kUpward));
@@ -191,7 +295,8 @@ absl::StatusOr<ModelWind> CfSource::Wind() {
 
 absl::StatusOr<std::unique_ptr<LayerSource>> OpenCfTime(std::shared_ptr<const CfMetadata> metadata,
                                                         std::size_t record) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(netcdf::NetcdfFile file, netcdf::NetcdfFile::Open(metadata->path));
+  THUNDERHEAD_ASSIGN_OR_RETURN(netcdf::NetcdfFile file,
+                               netcdf::NetcdfFile::Open(metadata->path, metadata->group));
   return std::make_unique<CfSource>(std::move(metadata), record, std::move(file));
 }
 

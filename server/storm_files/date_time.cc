@@ -82,17 +82,20 @@ class Scanner {
   absl::string_view rest_;
 };
 
-std::optional<absl::CivilDay> TakeDate(Scanner& text) {
+// Takes a date of any calendar: "2013-5-20", "-4713-01-01" or "20130520".
+std::optional<WrittenDate> TakeDate(Scanner& text) {
+  if (constexpr std::size_t kCompact = 8; text.Digits() == kCompact) {
+    const int number = *text.TakeNumber(kCompact);
+    return WrittenDate{number / 10'000, number / 100 % 100, number % 100, {}};
+  }
+  const bool before_christ = text.Take("-");
   const std::optional<int> year = text.TakeNumber(4);
   if (!year.has_value() || !text.Take("-")) return std::nullopt;
   const std::optional<int> month = text.TakeNumber(2);
   if (!month.has_value() || !text.Take("-")) return std::nullopt;
   const std::optional<int> day = text.TakeNumber(2);
   if (!day.has_value()) return std::nullopt;
-  const absl::CivilDay date(*year, *month, *day);
-  // CivilDay turns a day that does not exist into another day.
-  if (date.month() != *month || date.day() != *day) return std::nullopt;
-  return date;
+  return WrittenDate{before_christ ? -*year : *year, *month, *day, {}};
 }
 
 // Takes a time of day: "18", "18:00" or "18:00:00.5".
@@ -129,30 +132,45 @@ std::optional<absl::Duration> TakeOffset(Scanner& text) {
   return offset;
 }
 
-}  // namespace
-
-std::optional<absl::Time> ParseDateTime(std::string_view text) {
+// Parses a date, in the stricter form of models or in every form of UDUNITS.
+std::optional<WrittenDate> ParseForm(std::string_view text, bool as_udunits) {
   Scanner scanner(absl::StripAsciiWhitespace(absl::string_view(text.data(), text.size())));
-  const std::optional<absl::CivilDay> date = TakeDate(scanner);
+  if (!as_udunits && scanner.Digits() > 4) return std::nullopt;
+  std::optional<WrittenDate> date = TakeDate(scanner);
   if (!date.has_value()) return std::nullopt;
-  absl::Time time = absl::FromCivil(absl::CivilSecond(*date), absl::UTCTimeZone());
   bool has_clock = scanner.Take("T") || scanner.Take("_");
   if (!has_clock && scanner.TakeBlanks()) has_clock = scanner.Digits() > 0;
+  bool after_blanks = false;
   if (has_clock) {
     const std::optional<absl::Duration> clock = TakeTimeOfDay(scanner);
     if (!clock.has_value()) return std::nullopt;
-    time += *clock;
-    scanner.TakeBlanks();
+    date->since_midnight = *clock;
+    after_blanks = scanner.TakeBlanks();
   }
-  const bool east = has_clock && scanner.Take("+");
+  // An offset without a sign is eastern, as in UDUNITS.
+  const bool no_sign = as_udunits && after_blanks && scanner.Digits() > 0;
+  const bool east = has_clock && (scanner.Take("+") || no_sign);
   if (east || (has_clock && scanner.Take("-"))) {
     const std::optional<absl::Duration> offset = TakeOffset(scanner);
     if (!offset.has_value()) return std::nullopt;
-    time -= east ? *offset : -*offset;
+    date->since_midnight -= east ? *offset : -*offset;
   } else if (!scanner.Take("UTC") && !scanner.Take("GMT")) {
     scanner.Take("Z");
   }
-  return scanner.AtEnd() ? std::optional(time) : std::nullopt;
+  return scanner.AtEnd() ? date : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<WrittenDate> ParseWrittenDate(std::string_view text) { return ParseForm(text, true); }
+
+std::optional<absl::Time> ParseDateTime(std::string_view text) {
+  const std::optional<WrittenDate> written = ParseForm(text, false);
+  if (!written.has_value() || written->year < 0) return std::nullopt;
+  const absl::CivilDay date(written->year, written->month, written->day);
+  // CivilDay turns a day that does not exist into another day.
+  if (date.month() != written->month || date.day() != written->day) return std::nullopt;
+  return absl::FromCivil(absl::CivilSecond(date), absl::UTCTimeZone()) + written->since_midnight;
 }
 
 std::optional<TimeUnits> ParseTimeUnits(std::string_view units) {

@@ -16,6 +16,18 @@ namespace thunderhead::storm_files {
 // seconds.
 std::optional<absl::Time> ParseDateTime(std::string_view text);
 
+// A date and time of day as a text writes them, in no particular calendar.
+struct WrittenDate {
+  int year = 0;
+  int month = 0;  // 0 to 99; the calendar says which exist
+  int day = 0;
+  absl::Duration since_midnight;  // in UTC, so it can be negative or longer than a day
+};
+
+// Parses a text as ParseDateTime does, but also what UDUNITS accepts: dates that exist only in
+// other calendars, years before 0, the compact form "20130520", and offsets without a sign.
+std::optional<WrittenDate> ParseWrittenDate(std::string_view text);
+
 struct TimeUnits {
   double seconds = 1.0;              // seconds in one unit
   std::optional<absl::Time> origin;  // the date after "since"; nothing if there is none

@@ -19,6 +19,8 @@ class GribFormat final : public StormFormat {
   std::string_view Requirement() const override { return "GRIB2 (it has no GRIB message)"; }
 
   bool MayBegin(std::string_view start) const override {
+    // A netCDF file that was made from GRIB names it in attributes.
+    if (netcdf::NetcdfFile::BeginsLikeNetcdf(start)) return false;
     return grib::BeginsLikeGrib(start) || grib::BeginsCompressed(start);
   }
 

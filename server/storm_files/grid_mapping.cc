@@ -295,8 +295,8 @@ void AddGeostationary(Composer& map) {
   std::string sweep = map.Text("sweep_angle_axis");
   if (sweep.empty()) {
     const std::string fixed = map.Text("fixed_angle_axis");
-    if (fixed == "x") sweep = "y";
-    if (fixed == "y") sweep = "x";
+    if (fixed == "x") sweep = std::string("y");
+    if (fixed == "y") sweep = std::string("x");
   }
   if (sweep != "x" && sweep != "y") {
     map.Fail("has no attribute sweep_angle_axis (x or y), which geostationary needs");

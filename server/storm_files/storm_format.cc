@@ -72,7 +72,9 @@ absl::Status StormFormats::CheckStart(const std::string& path, int file) const {
   start.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
   const bool known =
       std::ranges::any_of(formats_, [&](const auto& format) { return format->MayBegin(start); });
-  return known ? absl::OkStatus() : netcdf::NetcdfFile::CheckStart(path, file);
+  // NetCDF files may be locked by their writer.
+  const bool checked = known && !netcdf::NetcdfFile::BeginsLikeNetcdf(start);
+  return checked ? absl::OkStatus() : netcdf::NetcdfFile::CheckStart(path, file);
 }
 
 absl::Status StormFormats::PrepareBeforeConfinement(std::string_view start) const {

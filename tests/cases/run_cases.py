@@ -12,6 +12,8 @@ import sys
 import time
 from typing import NamedTuple
 
+import cf_cases
+
 
 class Check(NamedTuple):
     case: str  # the folder of the case; empty for files that are there already
@@ -48,6 +50,16 @@ CHECKS = {
               STILL_WRITTEN, aged=("xwrf.nc",)),
         Check("", f"inspect {KATRINA} --time 0", 0, ("middle  23.753 N -89.540 E", "0.00181", "0.00528", "scheme WSM3")),
         Check("", f"inspect {KATRINA} --time 3", 0, ("middle  24.737 N -90.889 E", "domain moves")),
+    ),
+    "cf": tuple(Check(*row) for row in cf_cases.CHECKS),
+    "series": (
+        Check("24_restart_overlap", "inspect run", 0,
+              ("2013-05-20T20:00:00Z", "2013-05-20T20:40:00Z", "because it was written later")),
+        Check("26_field_in_some_files", "inspect run", 0,
+              ("2013-05-20T20:00:00Z", "2013-05-20T20:40:00Z", "has no graupel", "have no hail")),
+        Check("68_longer_overlap", "inspect run", 0, ("2013-05-20T21:00:00Z", "because it was written later")),
+        Check("69_times_not_rising", "inspect falling.nc", 0, ("2013-05-20T20:00:00Z", "2013-05-20T20:30:00Z")),
+        Check("69_times_not_rising", "inspect double.nc", 0, ("in records 0 and 1; the later record is used",)),
     ),
 }
 

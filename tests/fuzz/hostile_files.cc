@@ -21,6 +21,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "absl/strings/match.h"
 #include "base/guarded.h"
@@ -28,6 +29,7 @@
 #include "netcdf/netcdf_file.h"
 #include "sandbox/confinement.h"
 #include "spdlog/spdlog.h"
+#include "storm_files/storm_format.h"
 #include "storm_store/storm_catalogue.h"
 #include "tests/fuzz/dice.h"
 #include "tests/fuzz/foreign_storage.h"
@@ -274,7 +276,10 @@ int OutcomeOf(const std::string& path, const std::string& bytes) {
     spdlog::set_level(spdlog::level::off);
     NoteSignals();
     base::ReadFromMemory(path, std::as_bytes(std::span(bytes)));
-    if (!sandbox::Confine({kMemory, 10}).ok()) _exit(kNotConfined);
+    const std::string_view start =
+        std::string_view(bytes).substr(0, storm_files::UnknownFile::kStart_bytes);
+    const bool prepared = storm_files::StormFormats::BuiltIn().PrepareBeforeConfinement(start).ok();
+    if (!prepared || !sandbox::Confine({kMemory, 10}).ok()) _exit(kNotConfined);
     const absl::Status status = base::Guarded([&] { return ReadStorm(path); });
     const std::string message(status.message());
     if (status.ok()) _exit(kRead);

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "physics/air.h"
-#include "storm_files/cf_axes.h"
 #include "storm_files/cf_names.h"
+#include "storm_files/units.h"
 #include "storm_files/vertical_remap.h"
 #include "storm_store/storm_store.h"
 #include "tests/support/captured_log.h"
@@ -20,6 +20,7 @@ namespace {
 using testing::CapturedLog;
 using testing::CfContent;
 using testing::CfCoordinate;
+using ::testing::Contains;
 using testing::ExtinctionFile;
 using ::testing::HasSubstr;
 using testing::Middles;
@@ -234,6 +235,8 @@ TEST_F(CfReader, HydrometeorsByStandardNameOrNameInTheirUnits) {
                 5e-4F},
            Case{"lwc", {{"units", "g/m^3"}}, 0.3, Hydrometeor::kCloud, 3e-4F},
            Case{"QS", {{"units", "mg m-3"}}, 70.0, Hydrometeor::kSnow, 7e-5F},
+           Case{"QS", {{"units", "ug.m^(-3)"}}, 7e4, Hydrometeor::kSnow, 7e-5F},
+           Case{"QHL", {{"units", "1e-3 kg m-3"}}, 0.5, Hydrometeor::kHail, 5e-4F},
            Case{"hail",
                 {{"standard_name", concentration + "hail_in_air"}, {"units", "kg m-3"}},
                 1e-3,
@@ -327,8 +330,8 @@ TEST_F(CfReader, TimesThatCountFromNoDateAreRefused) {
   for (const std::string units :
        {"seconds since 2013-13-20 18:00:00", "seconds since 2013-05-20 99:99:99",
         "seconds since 2013-05-20 18:00:00 +9999", "seconds since 2013-02-29",
-        "seconds since 2013-05-20 24:00:00", "fortnights since 2013-05-20",
-        "months since 2013-05-20", "day as %Y%m%d.%f", "K"}) {
+        "seconds since 2013-05-20 24:00:00", "moons since 2013-05-20", "months since 2013-05-20",
+        "10 minutes since 2013-05-20", "K"}) {
     ExpectError(Timed(units, 0.0), "the coordinate time has units '" + units + "'");
   }
   SyntheticCf file = Timed("", 0.0);
@@ -336,39 +339,127 @@ TEST_F(CfReader, TimesThatCountFromNoDateAreRefused) {
   ExpectError(file, "the coordinate time has no units");
 }
 
-TEST_F(CfReader, TimesOfOtherCalendarsAreRefused) {
+// The expected times were computed with cftime.
+TEST_F(CfReader, TimesHaveTheDatesOfTheFilesCalendar) {
   SyntheticCf file = Timed("days since 2013-02-28", 1.0);
   for (const char* calendar : {"standard", "gregorian", "Gregorian", "proleptic_gregorian"}) {
     file.coordinates.back().attributes["calendar"] = calendar;
     ASSERT_TRUE(Read(file).ok()) << calendar;
     EXPECT_EQ(info_.times[0].valid_time, "2013-03-01T00:00:00Z");
   }
-  for (const std::string calendar : {"noleap", "360_day", "all_leap", "julian", "mayan"}) {
+  const std::tuple<const char*, const char*, double, const char*> cases[] = {
+      {"noleap", "days since 1900-01-01", 41384.833333333336, "2013-05-20T20:00:00Z"},
+      {"365_day", "days since 1900-01-01", 41384.833333333336, "2013-05-20T20:00:00Z"},
+      {"all_leap", "days since 2012-02-28", 1.0, "2012-02-29T00:00:00Z"},
+      {"360_day", "days since 1900-01-01", 40819.833333333336, "2013-05-20T20:00:00Z"},
+      {"julian", "days since 1900-01-01", 41413.833333333336, "2013-05-20T20:00:00Z"},
+      // CF's default calendar has two more days in the years since 1.
+      {"standard", "hours since 0001-01-01 00:00:00", 17637120.0, "2013-01-11T00:00:00Z"},
+      {"proleptic_gregorian", "hours since 0001-01-01", 17637120.0, "2013-01-13T00:00:00Z"},
+      {"standard", "days since -4713-01-01 12:00:00", 2456433.3333333335, "2013-05-20T20:00:00Z"},
+      {"standard", "day as %Y%m%d.%f", 20130520.833333332, "2013-05-20T20:00:00Z"},
+      {"360_day", "day as %Y%m%d.%f", 20130520.25, "2013-05-20T06:00:00Z"},
+  };
+  for (const auto& [calendar, units, time, expected] : cases) {
+    file = Timed(units, time);
     file.coordinates.back().attributes["calendar"] = calendar;
-    ExpectError(file, "counts in the calendar '" + calendar + "'");
+    const auto fields = Read(file);
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    EXPECT_EQ(info_.times[0].valid_time, expected) << calendar << " " << units;
   }
-  // CF's default calendar has two more days in the years since 1.
-  file = Timed("hours since 0001-01-01 00:00:00", 17'637'120.0);
-  ExpectError(file, "across the change of calendars in 1582");
-  file.coordinates.back().attributes["calendar"] = "proleptic_gregorian";
+  file.coordinates.back().attributes["calendar"] = "noleap";
   ASSERT_TRUE(Read(file).ok());
-  EXPECT_EQ(info_.times[0].valid_time, "2013-01-13T00:00:00Z");
+  EXPECT_THAT(info_.assumptions, Contains(HasSubstr("calendar noleap")));
+}
+
+TEST_F(CfReader, DatesThatNoOtherCalendarHasAreRefused) {
+  SyntheticCf file = Timed("days since 2013-02-28", 2.0);
+  file.coordinates.back().attributes["calendar"] = "360_day";
+  ExpectError(file, "2013-02-30 of the calendar 360_day");
+  file.coordinates.back().attributes["calendar"] = "mayan";
+  ExpectError(file, "counts in the calendar 'mayan'");
+  ExpectError(Timed("months since 2013-05-20", 1.0), "months and years have no fixed length");
+  ExpectError(Timed("years since 2013-05-20", 1.0), "months and years have no fixed length");
+  ExpectError(Timed("month as %Y%m.%f", 201305.5), "only 'day as %Y%m%d.%f'");
+  ExpectError(Timed("days since 2013-05-00", 1.0), "day 0");
+  ExpectError(Timed("days since 0000-01-01", 735374.0), "no year 0");
+  ExpectError(Timed("day as %Y%m%d.%f", 20130230.0), "20130230");
+  file = Timed("days since 2013-02-29", 1.0);
+  ExpectError(file, "does not exist in the calendar standard");
+}
+
+// Returns a file whose fields have no time dimension.
+SyntheticCf WithScalarTime() {
+  SyntheticCf file = Small();
+  file.variables[0].attributes["coordinates"] = "valid";
+  file.variables.push_back(
+      {"valid",
+       {},
+       {{"units", "hours since 2013-05-20 18:00:00"}, {"standard_name", "time"}},
+       [](const Index&) { return 2.5; }});
+  return file;
+}
+
+TEST_F(CfReader, TimesMayBeScalarOrAuxiliary) {
+  ASSERT_TRUE(Read(WithScalarTime()).ok());
+  EXPECT_EQ(info_.times[0].valid_time, "2013-05-20T20:30:00Z");
+  // The dimension is a number of the record, and an auxiliary coordinate has the times.
+  SyntheticCf file = Timed("1", 7.0);
+  file.coordinates.back().attributes = {{"units", "1"}, {"axis", "T"}};
+  file.variables.push_back(
+      {"valid_time", {"time"}, {{"units", "hours since 2013-05-20 18:00:00"}}, [](const Index&) {
+         return 2.0;
+       }});
+  ASSERT_TRUE(Read(file).ok());
+  EXPECT_EQ(info_.times[0].valid_time, "2013-05-20T20:00:00Z");
+  // Files made from GRIB give the start of the forecast and the time since then.
+  file = WithScalarTime();
+  file.variables.back().attributes["standard_name"] = "forecast_reference_time";
+  file.variables.push_back(
+      {"step", {}, {{"units", "minutes"}, {"standard_name", "forecast_period"}}, [](const Index&) {
+         return 15.0;
+       }});
+  ASSERT_TRUE(Read(file).ok());
+  EXPECT_EQ(info_.times[0].valid_time, "2013-05-20T20:45:00Z");
+  // PALM gives the date apart from the units.
+  file = Timed("seconds", 3600.0);
+  file.attributes["origin_time"] = "2013-05-20 18:00:00 +00";
+  ASSERT_TRUE(Read(file).ok());
+  EXPECT_EQ(info_.times[0].valid_time, "2013-05-20T19:00:00Z");
+}
+
+TEST_F(CfReader, TimesThatOccurTwiceOrFallAreReported) {
+  SyntheticCf file = Timed("hours since 2013-05-20 18:00:00", 2.0);
+  file.coordinates.back().values = {2.0, 2.0};
+  ASSERT_TRUE(Read(file).ok());
+  EXPECT_THAT(info_.assumptions, Contains(HasSubstr("twice")));
+  file.coordinates.back().values = {2.5, 2.0};
+  ASSERT_TRUE(Read(file).ok());
+  EXPECT_THAT(info_.assumptions, Contains(HasSubstr("do not rise")));
+  EXPECT_EQ(info_.times[0].valid_time, "2013-05-20T20:00:00Z");
 }
 
 TEST_F(CfReader, CoordinatesInOtherUnitsAreRefused) {
   SyntheticCf file = Small();
   file.coordinates[0].attributes["axis"] = "X";
-  for (const std::string units : {"ft", "Mm", "mm", "degrees_north", "degrees_west",
-                                  "degree_Celsius", "radian", "rotations", "10 m", "1"}) {
+  for (const std::string units :
+       {"degrees_north", "degrees_west", "degree_Celsius", "hPa", "1", "s"}) {
     file.coordinates[0].attributes["units"] = units;
     ExpectError(file, "the coordinate x has units '" + units + "'");
   }
   file = Small();
   file.coordinates[2].attributes["axis"] = "Z";
-  for (const std::string units : {"ft", "hPa", "degrees_north", "degrees", "1", "level"}) {
+  for (const std::string units : {"degrees_north", "degrees", "s"}) {
     file.coordinates[2].attributes["units"] = units;
     ExpectError(file, "the coordinate z has units '" + units + "'");
   }
+  for (const std::string units : {"1", "level"}) {
+    file.coordinates[2].attributes["units"] = units;
+    ExpectError(
+        file, "the vertical coordinate z has units '" + units + "', so it holds numbers of levels");
+  }
+  file.coordinates[2].attributes["units"] = "hPa";
+  ExpectError(file, "the vertical coordinate z holds pressures");
   file = Small();
   file.coordinates[2].attributes["positive"] = "sideways";
   ExpectError(file, "positive 'sideways'");
@@ -414,11 +505,16 @@ TEST_F(CfReader, TheGroundIsInItsUnits) {
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_FLOAT_EQ((*fields)->terrain_height_m[3], 30.0F);
   file.variables.back().attributes["units"] = "ft";
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_FLOAT_EQ((*fields)->terrain_height_m[3], 0.03F * 0.3048F);
+  file.variables.back().attributes["units"] = "kg";
   const CapturedLog log;
   fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_EQ((*fields)->terrain_height_m[3], 0.0F);
-  EXPECT_THAT(log.Text(), HasSubstr("orog (units 'ft') is not read"));
+  EXPECT_THAT(log.Text(), HasSubstr("orog (units 'kg') is not read"));
+  EXPECT_THAT(info_.assumptions, Contains(HasSubstr("the terrain orog")));
 }
 
 TEST_F(CfReader, DegreesHaveAPlaceOnEarth) {
@@ -464,7 +560,7 @@ TEST_F(CfReader, SaysWhatAFileLacks) {
   file.coordinates[1].values[2] = file.coordinates[1].values[0];
   ExpectError(file, "neither rises nor falls");
   file = Small();
-  file.coordinates[2].attributes["units"] = "hPa";
+  file.coordinates[2].attributes["units"] = "s";
   ExpectError(file, "heights in m or km");
   file = Small();
   file.variables[0].attributes["units"] = "dBZ";
@@ -484,22 +580,20 @@ TEST_F(CfReader, SaysWhatAFileLacks) {
 }
 
 TEST_F(CfReader, AmountsInUnknownUnitsAreRefused) {
-  for (const std::string units : {"kg", "g", "kg m-2", "Mg m-3", "ppm", "mol m-3", "10 g m-3",
-                                  "kg kg-2", "(not text)", "%"}) {
+  for (const std::string units :
+       {"kg", "g", "kg m-2", "ppm", "mol m-3", "kg kg-2", "degrees", "(not text)", "%"}) {
     ExpectError(Water("lwc", {{"units", units}}, 1e-3), "lwc has units '" + units + "'");
   }
-  // "Mm-1", used for aerosols, is not "mm-1".
-  for (const std::string units : {"Mm-1", "mm-1", "kg m-3", "cm-1"}) {
+  for (const std::string units : {"kg m-3", "s-1", "m"}) {
     SyntheticCf file = Small();
     file.variables[0].attributes["units"] = units;
     ExpectError(file, "extinction has units '" + units + "'");
   }
   SyntheticCf file = Water("qc", {{"units", "g/kg"}}, 0.8);
-  for (const auto& [name, units] : {std::pair<std::string, std::string>{"prs", "atm"},
-                                    {"prs", "MPa"},
-                                    {"temp", "degF"},
+  for (const auto& [name, units] : {std::pair<std::string, std::string>{"prs", "m"},
+                                    {"temp", "kg"},
                                     {"qv", "ppm"},
-                                    {"rho", "g m-3"}}) {
+                                    {"rho", "mol m-3"}}) {
     file.variables.resize(1);
     file.variables.push_back(UniformField(name, units, 1.0));
     ExpectError(file, name + " has units '" + units + "'");
@@ -588,7 +682,8 @@ TEST_F(CfReader, WindThatDoesNotFitIsLeftOut) {
   EXPECT_EQ((*fields)->motion.source, volume::TurbulenceSource::kGradient);
   EXPECT_TRUE((*fields)->motion.turbulence.empty());
   file = Windy();
-  file.coordinates.push_back({"xf", {-250.0, -150.0, -50.0, 50.0, 150.0}, {{"units", "m"}}, {}});
+  file.coordinates.push_back(
+      {"xf", {-250.0, -150.0, -50.0, 50.0, 150.0, 250.0}, {{"units", "m"}}, {}});
   file.variables[2].dimensions = {"z", "y", "xf"};
   fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
@@ -610,17 +705,42 @@ TEST_F(CfReader, WindThatDoesNotFitIsLeftOut) {
   EXPECT_EQ((*fields)->motion.shear_m_per_s, glm::dvec2(1.0, 0.0));
 }
 
+// "Mm-1" is used for aerosols.
 TEST(CfNames, UnitsAreReadInTheirSpellings) {
-  EXPECT_EQ(PlainUnits("kg m**-3"), "kgm-3");
-  EXPECT_EQ(PlainUnits("g.m^(-3)"), "gm-3");
-  EXPECT_EQ(PlainUnits("mg m-3"), "mgm-3");
-  EXPECT_EQ(PlainUnits("MG M-3"), "mgm-3");
-  EXPECT_EQ(PlainUnits("Mg m-3"), "Mgm-3");
-  EXPECT_TRUE(IsDegrees("degrees_E", CfDirection::kX));
-  EXPECT_TRUE(IsDegrees("degree_north", CfDirection::kY));
-  EXPECT_TRUE(IsDegrees("degrees", CfDirection::kY));
-  EXPECT_FALSE(IsDegrees("degrees_E", CfDirection::kY));
-  EXPECT_FALSE(IsDegrees("degrees", CfDirection::kZ));
+  for (const auto& [from, to, scale, offset] :
+       {std::tuple<const char*, const char*, double, double>{"kg m**-3", "kg m-3", 1.0, 0.0},
+        {"g.m^(-3)", "kg m-3", 1e-3, 0.0},
+        {"mg/m^3", "kg m-3", 1e-6, 0.0},
+        {"Mg m-3", "kg m-3", 1e3, 0.0},
+        {"g kg^-1", "1", 1e-3, 0.0},
+        {"KG/KG", "1", 1.0, 0.0},
+        {"Mm-1", "m-1", 1e-6, 0.0},
+        {"/m", "m-1", 1.0, 0.0},
+        {"mb", "Pa", 100.0, 0.0},
+        {"atm", "Pa", 101325.0, 0.0},
+        {"degC", "K", 1.0, 273.15},
+        {"radian", "degree", 57.29577951308232, 0.0},
+        {"weeks", "s", 604800.0, 0.0}}) {
+    const std::optional<UnitConversion> conversion = ConversionOf(from, to);
+    ASSERT_TRUE(conversion.has_value()) << from;
+    EXPECT_NEAR(conversion->scale, scale, 1e-9 * scale) << from;
+    EXPECT_NEAR(conversion->offset, offset, 1e-9) << from;
+  }
+  for (const auto& [from, to] : {std::pair{"", "m"},
+                                 {"degrees", "1"},
+                                 {"1", "degree"},
+                                 {"hPa", "m"},
+                                 {"s", "Hz"},
+                                 {"(not text)", "m"},
+                                 {"kg kg-2", "1"}}) {
+    EXPECT_FALSE(ConversionOf(from, to).has_value()) << from;
+  }
+  EXPECT_EQ(DegreesIn("degrees_E", CfDirection::kX), 1.0);
+  EXPECT_EQ(DegreesIn("degree_north", CfDirection::kY), 1.0);
+  EXPECT_EQ(DegreesIn("degrees", CfDirection::kY), 1.0);
+  EXPECT_FALSE(DegreesIn("degrees_E", CfDirection::kY).has_value());
+  EXPECT_FALSE(DegreesIn("degrees_west", CfDirection::kX).has_value());
+  EXPECT_FALSE(DegreesIn("degrees", CfDirection::kZ).has_value());
   EXPECT_EQ(MetresIn("km"), 1000.0);
   EXPECT_FALSE(MetresIn("hPa").has_value());
 }

@@ -206,7 +206,7 @@ TEST_F(BorderDataTest, TimesOfAStormShareItsMap) {
   EXPECT_EQ((*nowhere)->borders, nullptr);
   EXPECT_GT(PaintedAt(*(*first)->borders, {0.0, 0.0}), 0.99F);
   // The cone with both parallels at 30 degrees has the constant sin(30). The domain's middle is
-  // 0.15 degrees east of its central meridian.
+  // 0.0165 degrees east of its central meridian.
   EXPECT_NEAR((*first)->true_north_deg, -0.016476 * 0.5, 1e-3);
   EXPECT_EQ((*nowhere)->true_north_deg, 0.0);
   EXPECT_GT((*first)->Bytes(), (*nowhere)->Bytes() + (*first)->borders->Bytes() / 2);

@@ -1,0 +1,189 @@
+#include "netcdf/packing.h"
+
+#include <netcdf.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace thunderhead::netcdf {
+namespace {
+
+// Models write fill values from 1e30 (a common choice) to 9.969e36 (netCDF's own). No quantity in a
+// storm is that large.
+constexpr double kLargestValue = 1e30;
+
+constexpr double kMissingValue = std::numeric_limits<double>::quiet_NaN();
+
+double OneNumberOr(int group, int variable, const char* name, double otherwise) {
+  const std::vector<double> numbers = NumbersOf(group, variable, name);
+  return numbers.size() == 1 ? numbers.front() : otherwise;
+}
+
+double DefaultFill(nc_type type) {
+  switch (type) {
+    case NC_SHORT:
+      return NC_FILL_SHORT;
+    case NC_INT:
+      return NC_FILL_INT;
+    case NC_USHORT:
+      return NC_FILL_USHORT;
+    case NC_UINT:
+      return NC_FILL_UINT;
+    default:  // bytes have no default; the defaults of floating-point types exceed kLargestValue
+      return kMissingValue;
+  }
+}
+
+// Returns the number of values of an integer type of at most 32 bits, with a minus if the type has
+// no sign. Returns 0 for any other type.
+double SignedSpan(nc_type type) {
+  switch (type) {
+    case NC_BYTE:
+      return 0x1p8;
+    case NC_UBYTE:
+      return -0x1p8;
+    case NC_SHORT:
+      return 0x1p16;
+    case NC_USHORT:
+      return -0x1p16;
+    case NC_INT:
+      return 0x1p32;
+    case NC_UINT:
+      return -0x1p32;
+    default:
+      return 0.0;
+  }
+}
+
+// Returns the attribute _Unsigned, or nothing if it is absent.
+std::optional<bool> IsUnsigned(int group, int variable) {
+  constexpr const char* kName = "_Unsigned";
+  nc_type type;
+  std::size_t length = 0;
+  if (nc_inq_att(group, variable, kName, &type, &length) != NC_NOERR) return std::nullopt;
+  if (type == NC_STRING && length == 1) {
+    char* text = nullptr;
+    if (nc_get_att_string(group, variable, kName, &text) != NC_NOERR) return std::nullopt;
+    const char first = text != nullptr ? text[0] : '\0';
+    nc_free_string(1, &text);
+    return first == 't' || first == 'T' || first == '1';
+  }
+  if (type != NC_CHAR) return OneNumberOr(group, variable, kName, 0.0) != 0.0;
+  constexpr std::size_t kLongest = 16;
+  std::array<char, kLongest> text{};
+  if (length > kLongest || nc_get_att_text(group, variable, kName, text.data()) != NC_NOERR) {
+    return std::nullopt;
+  }
+  return text[0] == 't' || text[0] == 'T' || text[0] == '1';
+}
+
+double Meant(double stored, const Packing& packing) {
+  if (packing.wrap > 0.0 && stored < 0.0) return stored + packing.wrap;
+  const bool upper_half = packing.wrap < 0.0 && stored >= -0.5 * packing.wrap;
+  return upper_half ? stored + packing.wrap : stored;
+}
+
+// Returns the numbers of an attribute of the valid range as packed values. They are unpacked values
+// in the file if they are floating-point numbers and the stored values are not.
+std::vector<double> PackedLimits(int group, int variable, const char* name, bool integers,
+                                 const Packing& packing) {
+  std::vector<double> limits = NumbersOf(group, variable, name);
+  nc_type type = NC_NAT;
+  nc_inq_atttype(group, variable, name, &type);
+  const bool unpacked = integers && (type == NC_FLOAT || type == NC_DOUBLE) &&
+                        (packing.scale != 1.0 || packing.offset != 0.0);
+  for (double& limit : limits) {
+    limit = unpacked ? (limit - packing.offset) / packing.scale : Meant(limit, packing);
+  }
+  return limits;
+}
+
+void ReadValidRange(int group, int variable, bool integers, Packing& packing) {
+  double lowest = packing.lowest;
+  double highest = packing.highest;
+  const auto limits = [&](const char* name) {
+    return PackedLimits(group, variable, name, integers, packing);
+  };
+  if (const auto least = limits("valid_min"); least.size() == 1) lowest = least[0];
+  if (const auto most = limits("valid_max"); most.size() == 1) highest = most[0];
+  if (const auto range = limits("valid_range"); range.size() == 2) {
+    lowest = std::min(range[0], range[1]);
+    highest = std::max(range[0], range[1]);
+  }
+  // A range without any value in it is a mistake, and is not used.
+  if (!(lowest <= highest)) return;
+  packing.lowest = lowest;
+  packing.highest = highest;
+}
+
+bool IsMissing(double packed, const Packing& packing) {
+  return packed == packing.fill || packed < packing.lowest || packed > packing.highest ||
+         std::ranges::find(packing.missing, packed) != packing.missing.end();
+}
+
+}  // namespace
+
+std::vector<double> NumbersOf(int group, int variable, const char* attribute) {
+  constexpr std::size_t kMost = 1 << 20;
+  nc_type type;
+  std::size_t length = 0;
+  if (nc_inq_att(group, variable, attribute, &type, &length) != NC_NOERR || length > kMost ||
+      type == NC_CHAR || type == NC_STRING || type > NC_MAX_ATOMIC_TYPE) {
+    return {};
+  }
+  std::vector<double> values(length);
+  const bool read = nc_get_att_double(group, variable, attribute, values.data()) == NC_NOERR;
+  return read ? values : std::vector<double>();
+}
+
+Packing PackingOf(int group, int variable) {
+  Packing packing;
+  nc_type type = NC_FLOAT;
+  nc_inq_vartype(group, variable, &type);
+  packing.floats = type == NC_FLOAT;
+  packing.scale = OneNumberOr(group, variable, "scale_factor", 1.0);
+  packing.offset = OneNumberOr(group, variable, "add_offset", 0.0);
+  const double span = SignedSpan(type);
+  const std::optional<bool> is_unsigned = IsUnsigned(group, variable);
+  // A type that already is as the attribute says needs no change.
+  if (is_unsigned.has_value() && *is_unsigned == (span > 0.0)) packing.wrap = span;
+  packing.fill = Meant(OneNumberOr(group, variable, "_FillValue", DefaultFill(type)), packing);
+  packing.missing = NumbersOf(group, variable, "missing_value");
+  for (double& code : packing.missing) code = Meant(code, packing);
+  ReadValidRange(group, variable, span != 0.0, packing);
+  return packing;
+}
+
+double Unpacked(double stored, const Packing& packing) {
+  const double packed = Meant(stored, packing);
+  if (IsMissing(packed, packing)) return kMissingValue;
+  const double value = packed * packing.scale + packing.offset;
+  // The comparison fails for NaN.
+  return std::abs(value) < kLargestValue ? value : kMissingValue;
+}
+
+float FlushedFloat(double value) {
+  const bool subnormal = std::abs(value) < std::numeric_limits<float>::min();
+  return subnormal ? 0.0F : static_cast<float>(value);
+}
+
+void CleanPlainFloats(const Packing& packing, std::vector<float>& values) {
+  const auto fill = static_cast<float>(packing.fill);
+  const auto lowest = static_cast<float>(packing.lowest);
+  const auto highest = static_cast<float>(packing.highest);
+  for (float& value : values) {
+    const float size = std::abs(value);
+    const bool present = size < static_cast<float>(kLargestValue) && value != fill &&
+                         value >= lowest && value <= highest;
+    const float flushed = size < std::numeric_limits<float>::min() ? 0.0F : value;
+    value = present ? flushed : std::numeric_limits<float>::quiet_NaN();
+  }
+  for (const double missing : packing.missing) {
+    std::ranges::replace(values, static_cast<float>(missing),
+                         std::numeric_limits<float>::quiet_NaN());
+  }
+}
+
+}  // namespace thunderhead::netcdf

@@ -1,0 +1,64 @@
+// The heights of a CF file's layers: from an axis in metres, from an array of heights, or computed
+// from the formula_terms of a parametric coordinate (CF, appendix D). Level numbers, eta and
+// pressure without the means to compute heights are refused.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "netcdf/netcdf_file.h"
+#include "storm_files/cf_arrange.h"
+#include "storm_files/cf_axes.h"
+
+namespace thunderhead::storm_files {
+
+// A variable with a value for each column: terrain, or surface pressure.
+struct CfColumnValue {
+  CfVariable variable;
+  double scale = 1.0;  // to m or Pa
+};
+
+enum class CfHeightKind {
+  kAxis,         // faces above sea level, the same in all columns
+  kAboveGround,  // faces above the surface
+  kMiddles,      // an array of heights of the layers' middles
+  kFaces,        // an array of heights of the faces
+  kLinear,       // a + b * terrain
+  kPressure,     // pressure a + b * surface pressure, and heights by the hydrostatic equation
+};
+
+// The heights of layers, in the order of the file if not said otherwise.
+struct CfHeights {
+  CfHeightKind kind = CfHeightKind::kAxis;
+  std::string name;                 // of the variable, for messages
+  bool reversed = false;            // the file's layers run downwards
+  std::vector<double> faces_m;      // of kAxis and kAboveGround, ascending
+  std::optional<CfVariable> array;  // of kMiddles and kFaces
+  double scale = 1.0;               // of the array, to m
+  bool above_ground = false;        // of the array
+  // The terms a and b of kLinear and kPressure at the faces, upwards, one more than layers.
+  std::vector<double> a;  // in m or Pa
+  std::vector<double> b;
+  std::optional<CfColumnValue> surface_pressure;  // of kPressure
+  // The terms of kPressure at the layers' middles, upwards.
+  std::vector<double> a_middle;
+  std::vector<double> b_middle;
+};
+
+// Returns the heights of the layers of `dimensions`. `terrain` is the file's height of the ground,
+// if it has one. Adds sentences to `assumptions`. Errors name the file, the coordinate and what is
+// needed.
+absl::StatusOr<CfHeights> ReadCfHeights(const netcdf::NetcdfFile& file,
+                                        const CfDimensions& dimensions,
+                                        const std::optional<CfColumnValue>& terrain,
+                                        std::vector<std::string>& assumptions);
+
+// Returns the terrain height: the variable with the standard name surface_altitude, the
+// geopotential at the surface, or one that models name so. `dimensions` may lack z.
+std::optional<CfColumnValue> FindTerrain(const netcdf::NetcdfFile& file,
+                                         const CfDimensions& dimensions,
+                                         std::vector<std::string>& assumptions);
+
+}  // namespace thunderhead::storm_files

@@ -1,0 +1,338 @@
+#include "storm_files/cf_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/strip.h"
+#include "base/status.h"
+#include "glm/trigonometric.hpp"
+#include "glm/vec2.hpp"
+#include "storm_files/grid_mapping.h"
+#include "storm_files/model_columns.h"
+#include "volume/map_projection.h"
+
+namespace thunderhead::storm_files {
+namespace {
+
+using volume::EarthPlace;
+
+constexpr double kMetresPerDegree = kCfEarthRadius_m * std::numbers::pi / 180.0;
+
+double NormalLongitude(double degrees) { return std::remainder(degrees, 360.0); }
+
+// Returns the way from one place to a near one, in metres east and north.
+glm::dvec2 Way_m(const EarthPlace& from, const EarthPlace& to) {
+  const double latitude = glm::radians(0.5 * (from.latitude_deg + to.latitude_deg));
+  return kMetresPerDegree *
+         glm::dvec2(NormalLongitude(to.longitude_deg - from.longitude_deg) * std::cos(latitude),
+                    to.latitude_deg - from.latitude_deg);
+}
+
+// Arrays of latitude and longitude, x fastest, in the order of the storm's axes.
+struct PlaceArrays {
+  int columns = 0;
+  int rows = 0;
+  std::vector<float> latitude_deg;
+  std::vector<float> longitude_deg;
+
+  EarthPlace At(int x, int y) const {
+    const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+                   static_cast<std::size_t>(x);
+    return {latitude_deg[i], longitude_deg[i]};
+  }
+};
+
+// Returns the name of the variable with latitudes (or longitudes) on exactly y and x. Those that
+// the field lists come first.
+std::optional<CfVariable> FindPlaceVariable(const netcdf::NetcdfFile& file,
+                                            const std::string& field, const CfDimensions& on,
+                                            CfDirection direction) {
+  const bool east = direction == CfDirection::kX;
+  const char* const standard = east ? "longitude" : "latitude";
+  const std::vector<std::string> listed = NamesIn(file.TextOrEmpty(field, "coordinates"));
+  std::optional<CfVariable> found;
+  for (const std::string& name : file.Variables()) {
+    const CfDescription described = DescribeCf(file, name);
+    if (described.standard_name.empty() ? !DirectionOf(described).has_value()
+                                        : described.standard_name != standard) {
+      continue;
+    }
+    if (!DegreesIn(described.units, direction).has_value()) continue;
+    // Units without a direction, such as radians, say nothing without a standard name.
+    const bool known = described.standard_name == standard || DirectionOf(described) == direction;
+    const auto variable = Arrange(file, name, on);
+    if (!known || !variable.ok()) continue;
+    if (variable->places[0] < 0 || variable->places[1] < 0 || variable->places[2] >= 0) continue;
+    if (variable->more != std::array<int, 3>{0, 0, 0}) continue;
+    const bool is_listed = std::ranges::find(listed, name) != listed.end();
+    if (!found.has_value() || is_listed) found = *variable;
+    if (is_listed) break;
+  }
+  return found;
+}
+
+absl::StatusOr<std::optional<PlaceArrays>> ReadPlaceArrays(const netcdf::NetcdfFile& file,
+                                                           const std::string& field,
+                                                           const CfDimensions& dimensions,
+                                                           const CfAxis& x, const CfAxis& y) {
+  const auto latitude = FindPlaceVariable(file, field, dimensions, CfDirection::kY);
+  const auto longitude = FindPlaceVariable(file, field, dimensions, CfDirection::kX);
+  if (!latitude.has_value() || !longitude.has_value()) return std::optional<PlaceArrays>();
+  PlaceArrays arrays;
+  arrays.columns = x.cells;
+  arrays.rows = y.cells;
+  const CfOrder order{{static_cast<std::size_t>(x.cells), static_cast<std::size_t>(y.cells), 1},
+                      {x.reversed, y.reversed, false}};
+  THUNDERHEAD_ASSIGN_OR_RETURN(arrays.latitude_deg, ReadOnAxes(file, *latitude, order, 0));
+  THUNDERHEAD_ASSIGN_OR_RETURN(arrays.longitude_deg, ReadOnAxes(file, *longitude, order, 0));
+  const auto degrees = [&](const CfVariable& variable, CfDirection direction) {
+    return static_cast<float>(*DegreesIn(file.TextOrEmpty(variable.name, "units"), direction));
+  };
+  for (float& each : arrays.latitude_deg) each *= degrees(*latitude, CfDirection::kY);
+  for (float& each : arrays.longitude_deg) each *= degrees(*longitude, CfDirection::kX);
+  // Some programs write zeros where the run is idealised.
+  const auto [low, high] = std::ranges::minmax(arrays.latitude_deg);
+  const auto [west, east] = std::ranges::minmax(arrays.longitude_deg);
+  if (low == high && west == east) return std::optional<PlaceArrays>();
+  for (std::size_t i = 0; i < arrays.latitude_deg.size(); ++i) {
+    // The comparison fails for NaN.
+    if (std::abs(arrays.latitude_deg[i]) <= 90.0F && std::abs(arrays.longitude_deg[i]) <= 720.0F) {
+      continue;
+    }
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": ", latitude->name, " and ", longitude->name,
+                     " have missing or impossible values; every column needs its place"));
+  }
+  return std::optional(std::move(arrays));
+}
+
+// Sets the directions of axes that have no coordinates from the columns' places.
+absl::Status OrientAxes(const netcdf::NetcdfFile& file, const PlaceArrays& arrays, CfAxis& x,
+                        CfAxis& y) {
+  if (x.unit != CfAxisUnit::kNone || y.unit != CfAxisUnit::kNone || x.cells < 2 || y.cells < 2) {
+    return absl::OkStatus();
+  }
+  const glm::ivec2 at(arrays.columns / 2 - 1, arrays.rows / 2 - 1);
+  const EarthPlace from = arrays.At(std::max(at.x, 0), std::max(at.y, 0));
+  const glm::dvec2 along_x = Way_m(from, arrays.At(std::max(at.x, 0) + 1, std::max(at.y, 0)));
+  const glm::dvec2 along_y = Way_m(from, arrays.At(std::max(at.x, 0), std::max(at.y, 0) + 1));
+  const double turn = along_x.x * along_y.y - along_x.y * along_y.x;
+  if (std::abs(along_x.x) >= std::abs(along_x.y)) x.reversed = along_x.x < 0.0;
+  if (std::abs(along_y.y) >= std::abs(along_y.x)) y.reversed = along_y.y < 0.0;
+  const bool mirrored = (turn < 0.0) != (x.reversed != y.reversed);
+  if (!mirrored) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": by its longitudes the dimension ", x.dimension, " does not run east of ",
+      y.dimension, "; give both dimensions a coordinate variable with the attribute axis"));
+}
+
+// Returns the attributes of the field's grid mapping, or nothing if it has none.
+std::optional<Attributes> MappingOf(const netcdf::NetcdfFile& file, const std::string& field,
+                                    std::string& name) {
+  const std::vector<std::string> words = NamesIn(file.TextOrEmpty(field, "grid_mapping"));
+  if (words.empty()) return std::nullopt;
+  name = std::string(absl::StripSuffix(words.front(), ":"));
+  if (!file.HasVariable(name)) return std::nullopt;
+  Attributes attributes;
+  for (const std::string& attribute : file.AttributesOf(name)) {
+    if (auto text = file.TextAttribute(name, attribute); text.has_value()) {
+      attributes[attribute] = *std::move(text);
+    } else if (auto numbers = file.NumbersAttribute(name, attribute); !numbers.empty()) {
+      attributes[attribute] = std::move(numbers);
+    }
+  }
+  return attributes;
+}
+
+// Returns the columns of a grid of longitude and latitude.
+ColumnPlaces PlacesInDegrees(const CfAxis& x, const CfAxis& y) {
+  ColumnPlaces places;
+  places.columns = {x.cells, y.cells};
+  places.projection = absl::StrFormat("+proj=longlat +R=%.10g +no_defs", kCfEarthRadius_m);
+  places.step = {x.Spacing(), y.Spacing()};
+  places.first = glm::dvec2(x.faces.front(), y.faces.front()) + 0.5 * places.step;
+  return places;
+}
+
+bool IsEarthDegrees(const netcdf::NetcdfFile& file, const CfAxis& x, const CfAxis& y) {
+  const auto rotated = [&](const CfAxis& axis) {
+    return absl::StartsWith(file.TextOrEmpty(axis.coordinate, "standard_name"), "grid_");
+  };
+  return x.unit == CfAxisUnit::kDegrees && y.unit == CfAxisUnit::kDegrees && !rotated(x) &&
+         !rotated(y);
+}
+
+// Places the columns by the field's grid mapping.
+absl::StatusOr<GridMapping> ReadMapping(const netcdf::NetcdfFile& file, const std::string& name,
+                                        const Attributes& attributes, const CfAxis& x,
+                                        const CfAxis& y) {
+  MappedGrid grid;
+  if (x.unit == CfAxisUnit::kDegrees) {
+    grid.middle = {x.Middle(), y.Middle()};
+  } else {
+    grid.unit_m = x.units_per_written;
+  }
+  auto mapping = ReadGridMapping(attributes, grid);
+  if (mapping.ok()) return mapping;
+  return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the grid mapping ", name, " ",
+                                                 std::string(mapping.status().message())));
+}
+
+// Returns the columns of a grid that is even on a map.
+ColumnPlaces PlacesOnMap(const GridMapping& mapping, const CfAxis& x, const CfAxis& y) {
+  const double written = x.unit == CfAxisUnit::kDegrees ? 1.0 : x.units_per_written;
+  const glm::dvec2 low = glm::dvec2(x.faces.front(), y.faces.front()) / written;
+  const glm::dvec2 step = glm::dvec2(x.Spacing(), y.Spacing()) / written;
+  ColumnPlaces places;
+  places.columns = {x.cells, y.cells};
+  places.projection = mapping.projection;
+  places.first = mapping.Plane_m(low + 0.5 * step);
+  places.step = mapping.Plane_m(low + 1.5 * step) - places.first;
+  return places;
+}
+
+// Returns the largest distance between a column's place on the map and its longitude and latitude,
+// of columns all over the domain. Returns nothing if a column is not on the map.
+std::optional<double> Disagreement_m(const ColumnPlaces& on_map, const PlaceArrays& arrays) {
+  const auto columns = ModelColumns::Of(on_map);
+  if (!columns.ok()) return std::nullopt;
+  constexpr int kSamples = 5;
+  double largest_m = 0.0;
+  for (int i = 0; i < kSamples * kSamples; ++i) {
+    const glm::ivec2 at =
+        (on_map.columns - 1) * glm::ivec2(i % kSamples, i / kSamples) / (kSamples - 1);
+    const std::optional<EarthPlace> place = columns->PlaceAt(at);
+    if (!place.has_value()) return std::nullopt;
+    const glm::dvec2 way_m = Way_m(*place, arrays.At(at.x, at.y));
+    largest_m = std::max(largest_m, std::hypot(way_m.x, way_m.y));
+  }
+  return largest_m;
+}
+
+absl::Status NoCoordinate(const netcdf::NetcdfFile& file, const CfAxis& axis) {
+  return absl::InvalidArgumentError(
+      absl::StrCat(file.Path(), ": the dimension ", axis.dimension, " has no coordinate variable ",
+                   axis.dimension, ", so its cells have no size; add one, in metres"));
+}
+
+// Sets the even columns, whose distances are true metres.
+absl::Status MakeColumnsEven(const netcdf::NetcdfFile& file, const ColumnPlaces& columns,
+                             CfPlaces& places) {
+  absl::StatusOr<EvenColumns> even = MakeEven(columns);
+  if (!even.ok()) return base::Annotate(even.status(), file.Path());
+  places.dx_m = even->mean_m.x;
+  places.dy_m = even->mean_m.y;
+  if (std::string sentence = AssumptionOf(*even); !sentence.empty()) {
+    places.assumptions.push_back(std::move(sentence));
+  }
+  places.even = std::make_shared<const EvenColumns>(*std::move(even));
+  return absl::OkStatus();
+}
+
+// Returns the columns of the arrays, one by one.
+ColumnPlaces PlacesOfArrays(const PlaceArrays& arrays) {
+  ColumnPlaces places;
+  places.columns = {arrays.columns, arrays.rows};
+  places.latitude_deg = arrays.latitude_deg;
+  places.longitude_deg = arrays.longitude_deg;
+  places.radius_m = kCfEarthRadius_m;
+  return places;
+}
+
+// Returns the columns by the field's grid mapping, or nothing if it has none that can be used.
+// Without `arrays`, a mapping that cannot be used is an error.
+absl::StatusOr<std::optional<ColumnPlaces>> PlacesByMapping(
+    const netcdf::NetcdfFile& file, const std::string& field, const CfAxis& x, const CfAxis& y,
+    const std::optional<PlaceArrays>& arrays, CfPlaces& places) {
+  std::string name;
+  const auto attributes = MappingOf(file, field, name);
+  if (!attributes.has_value() || x.unit == CfAxisUnit::kNone) {
+    return std::optional<ColumnPlaces>();
+  }
+  const auto mapping = ReadMapping(file, name, *attributes, x, y);
+  if (!mapping.ok() && !arrays.has_value()) return mapping.status();
+  if (!mapping.ok()) {
+    places.assumptions.push_back(
+        absl::StrCat("The places are those of the longitudes and latitudes, because the grid "
+                     "mapping ",
+                     name, " cannot be used."));
+    return std::optional<ColumnPlaces>();
+  }
+  const ColumnPlaces on_map = PlacesOnMap(*mapping, x, y);
+  if (arrays.has_value()) {
+    // The arrays say where each column is. They may be rounded to single precision.
+    constexpr double kRounding_m = 3.0;
+    const auto apart_m = Disagreement_m(on_map, *arrays);
+    const double allowed_m = kRounding_m + 0.1 * std::min(on_map.step.x, on_map.step.y);
+    if (!apart_m.has_value() || *apart_m > allowed_m) {
+      places.assumptions.push_back(absl::StrFormat(
+          "The places are those of the longitudes and latitudes; the grid mapping %s puts columns "
+          "up to %.2f km from them.",
+          name, 1e-3 * apart_m.value_or(0.0)));
+      return std::optional<ColumnPlaces>();
+    }
+  }
+  for (const std::string& sentence : mapping->assumptions) places.assumptions.push_back(sentence);
+  return std::optional(on_map);
+}
+
+// Places columns whose place is not known.
+absl::Status PlaceNowhere(const netcdf::NetcdfFile& file, const CfAxis& x, const CfAxis& y,
+                          CfPlaces& places) {
+  if (x.unit == CfAxisUnit::kNone) return NoCoordinate(file, x);
+  places.dx_m = x.Spacing();
+  places.dy_m = y.Spacing();
+  if (x.unit == CfAxisUnit::kMetres) return absl::OkStatus();
+  // Degrees of a rotated grid are as long as those of the Earth.
+  places.dx_m *= kMetresPerDegree * std::cos(glm::radians(y.Middle()));
+  places.dy_m *= kMetresPerDegree;
+  places.assumptions.push_back(absl::StrCat(
+      "The place is not known, because ", x.coordinate, " and ", y.coordinate,
+      " are those of a rotated grid, and the file has no grid mapping and no longitudes and "
+      "latitudes."));
+  return absl::OkStatus();
+}
+
+absl::Status CheckSameUnits(const netcdf::NetcdfFile& file, const CfAxis& x, const CfAxis& y) {
+  if (x.unit == y.unit) return absl::OkStatus();
+  if (x.unit == CfAxisUnit::kNone) return NoCoordinate(file, x);
+  if (y.unit == CfAxisUnit::kNone) return NoCoordinate(file, y);
+  return absl::InvalidArgumentError(
+      absl::StrCat(file.Path(), ": ", x.dimension, " and ", y.dimension,
+                   " are not in the same kind of unit; both need metres, or both degrees"));
+}
+
+}  // namespace
+
+absl::StatusOr<CfPlaces> PlaceColumns(const netcdf::NetcdfFile& file, const std::string& field,
+                                      const CfDimensions& dimensions, CfAxis& x, CfAxis& y) {
+  CfPlaces places;
+  if (IsEarthDegrees(file, x, y)) {
+    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, PlacesInDegrees(x, y), places));
+    return places;
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckSameUnits(file, x, y));
+  THUNDERHEAD_ASSIGN_OR_RETURN(auto arrays, ReadPlaceArrays(file, field, dimensions, x, y));
+  if (arrays.has_value() && x.unit == CfAxisUnit::kNone) {
+    THUNDERHEAD_RETURN_IF_ERROR(OrientAxes(file, *arrays, x, y));
+    THUNDERHEAD_ASSIGN_OR_RETURN(arrays, ReadPlaceArrays(file, field, dimensions, x, y));
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto on_map,
+                               PlacesByMapping(file, field, x, y, arrays, places));
+  if (on_map.has_value()) {
+    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, *on_map, places));
+  } else if (arrays.has_value() && std::min(x.cells, y.cells) > 1) {
+    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, PlacesOfArrays(*arrays), places));
+  } else {
+    THUNDERHEAD_RETURN_IF_ERROR(PlaceNowhere(file, x, y, places));
+  }
+  return places;
+}
+
+}  // namespace thunderhead::storm_files

@@ -1,0 +1,34 @@
+// Finds where the columns of a CF file are on Earth, and how far apart they are.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "netcdf/netcdf_file.h"
+#include "storm_files/cf_axes.h"
+#include "storm_files/even_columns.h"
+
+namespace thunderhead::storm_files {
+
+// The radius of the sphere on which degrees are converted to metres, unless a grid mapping has
+// another.
+inline constexpr double kCfEarthRadius_m = 6.371e6;
+
+struct CfPlaces {
+  double dx_m = 0.0;  // true distance between neighbouring columns along x, the mean of the domain
+  double dy_m = 0.0;
+  // The columns of the storm, even in true metres. Null for an idealised run, whose own columns are
+  // even.
+  std::shared_ptr<const EvenColumns> even;
+  std::vector<std::string> assumptions;  // sentences for the user
+};
+
+// Places the columns of `field` by the axes' coordinates, the field's grid mapping, and arrays of
+// latitude and longitude on y and x. Sets the direction of axes without coordinates. Errors name
+// the file, the variable and what is wrong.
+absl::StatusOr<CfPlaces> PlaceColumns(const netcdf::NetcdfFile& file, const std::string& field,
+                                      const CfDimensions& dimensions, CfAxis& x, CfAxis& y);
+
+}  // namespace thunderhead::storm_files
