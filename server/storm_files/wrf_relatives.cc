@@ -85,7 +85,7 @@ bool IsOnEta(const netcdf::NetcdfFile& file) {
 }
 
 std::optional<std::string> WhyOnlyRelated(const netcdf::NetcdfFile& file) {
-  if (const auto why = WhyInput(file)) return why;
+  if (auto why = WhyInput(file)) return why;
   if (IsOnEta(file)) {
     return absl::StrCat(
         "its vertical coordinate ", LevelsOf(file),

@@ -126,6 +126,7 @@ absl::StatusOr<storm_files::StormFile> CatalogueScan::DescribeTogether(
     const std::vector<std::string>& paths) {
   if (stopping_) return absl::CancelledError("the search was told to stop");
   std::vector<std::uint64_t> versions;
+  versions.reserve(paths.size());
   for (const std::string& path : paths) versions.push_back(known_[path].description->version);
   KnownTogether& known = together_[paths];
   known.scan = scans_;
