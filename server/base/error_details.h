@@ -1,7 +1,7 @@
 // Machine-readable details of an error, in addition to its message. They hold a reason code that
 // stays the same when the message changes, the invalid request field, limits, and when to retry.
 // The code that makes an absl::Status attaches the details to it as plain-text payloads. The
-// service converts them to gRPC's form (service/status_table.h). This library does not depend on
+// service converts them to gRPC's form (rpc_port/status_table.h). This library does not depend on
 // the API's messages.
 #pragma once
 

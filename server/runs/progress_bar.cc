@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <utility>
 
 #include "base/utf8.h"
 
@@ -31,7 +30,7 @@ std::string Bar(double share, int tick) {
 
 }  // namespace
 
-ProgressBar::ProgressBar(std::string label) : label_(base::Printable(label)) {
+ProgressBar::ProgressBar(const std::string& label) : label_(base::Printable(label)) {
   if (isatty(STDERR_FILENO) == 1) thread_ = std::thread([this] { Draw(); });
 }
 

@@ -7,7 +7,6 @@
 #include <mutex>
 #include <string>
 #include <thread>
-#include <utility>
 
 #include "base/utf8.h"
 
@@ -16,7 +15,7 @@ namespace thunderhead::runs {
 class ProgressBar {
  public:
   // `label` names the work, for example "reading supercell".
-  explicit ProgressBar(std::string label);
+  explicit ProgressBar(const std::string& label);
   // Erases the bar.
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
