@@ -72,24 +72,25 @@ absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
     found.problems.emplace(path, AsFileProblem(path, file.status()));
     file = absl::CancelledError("told at the end");
   };
-  const storm_store::StormSearch search{
-      .describe =
-          [&](const std::vector<std::string>& files) {
-            auto described = storm_store::DescribeInBatches(files, formats, [] { return true; });
-            for (std::size_t i = 0; i < files.size(); ++i) note(files[i], described[i]);
-            return described;
-          },
-      .describe_together =
-          [&](const std::vector<std::string>& files) {
-            auto described = formats.DescribeTogether(files);
-            note(files.front(), described);
-            return described;
-          },
-      .may_find_nothing = true,
-      .on_unlisted = {},
-      .on_folder = {},
-      .examples = formats.Examples(),
-      .links = storm_store::EveryLink()};
+  const storm_store::StormSearch search{.describe =
+                                            [&](const std::vector<std::string>& files) {
+                                              auto described = storm_store::DescribeInBatches(
+                                                  files, formats, [] { return true; });
+                                              for (std::size_t i = 0; i < files.size(); ++i)
+                                                note(files[i], described[i]);
+                                              return described;
+                                            },
+                                        .describe_together =
+                                            [&](const std::vector<std::string>& files) {
+                                              auto described = formats.DescribeTogether(files);
+                                              note(files.front(), described);
+                                              return described;
+                                            },
+                                        .may_find_nothing = true,
+                                        .on_unlisted = {},
+                                        .on_folder = {},
+                                        .examples = formats.Examples(),
+                                        .links = storm_store::EveryLink()};
   auto storms = storm_store::FindStorms(paths, search);
   if (!storms.ok()) return AsFileProblem(storms.status());
   found.storms = *std::move(storms);

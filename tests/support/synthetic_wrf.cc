@@ -279,13 +279,13 @@ void WriteWrf(const SyntheticWrf& file, const std::string& path) {
   const double per_column_deg =
       glm::degrees(file.dx_m / (kEarth_m * std::cos(glm::radians(middle_deg))));
   if (!file.columns.contains("XLAT"))
-    writer.Field("XLAT", "", "degree_north",
-                 [&](const WrfCell& cell) { return file.latitude_deg + per_row_deg * cell.y +
-                        file.north_per_record_deg * cell.record; });
+    writer.Field("XLAT", "", "degree_north", [&](const WrfCell& cell) {
+      return file.latitude_deg + per_row_deg * cell.y + file.north_per_record_deg * cell.record;
+    });
   if (!file.columns.contains("XLONG"))
-    writer.Field("XLONG", "", "degree_east",
-                 [&](const WrfCell& cell) { return file.longitude_deg + per_column_deg * cell.x +
-                        file.east_per_record_deg * cell.record; });
+    writer.Field("XLONG", "", "degree_east", [&](const WrfCell& cell) {
+      return file.longitude_deg + per_column_deg * cell.x + file.east_per_record_deg * cell.record;
+    });
   for (const auto& [name, value] : file.columns) writer.Field(name, "", "", value);
   for (const auto& [name, value] : file.mixing_ratios) {
     writer.Field(name, "bottom_top", "kg kg-1", value);

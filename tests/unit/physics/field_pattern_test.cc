@@ -154,11 +154,12 @@ TEST(RingPaint, IsOnEveryTenthKilometreAndToTheNorth) {
   const glm::vec2 small(1.0F);
   const glm::vec2 north(0.0F, 1.0F);
   EXPECT_EQ(glsl::ring_paint({10e3F, 0.0F}, north, small, 1.0F), 1.0F);
-  EXPECT_EQ(glsl::ring_paint({-14.1421F * 1e3F, -14.1421F * 1e3F}, north, small, 1.0F), 1.0F);  // 20 km
+  EXPECT_EQ(glsl::ring_paint({-14.1421F * 1e3F, -14.1421F * 1e3F}, north, small, 1.0F),
+            1.0F);  // 20 km
   EXPECT_EQ(glsl::ring_paint({5e3F, 0.0F}, north, small, 1.0F), 0.0F);
   EXPECT_EQ(glsl::ring_paint({215e3F, 0.0F}, north, small, 1.0F), 0.0F);
-  EXPECT_EQ(glsl::ring_paint({0.0F, 5e3F}, north, small, 1.0F), 1.0F);       // the line to the north
-  EXPECT_EQ(glsl::ring_paint({0.0F, -5e3F}, north, small, 1.0F), 0.0F);      // none to the south
+  EXPECT_EQ(glsl::ring_paint({0.0F, 5e3F}, north, small, 1.0F), 1.0F);   // the line to the north
+  EXPECT_EQ(glsl::ring_paint({0.0F, -5e3F}, north, small, 1.0F), 0.0F);  // none to the south
   EXPECT_EQ(glsl::ring_paint({500.0F, 10.5e3F}, north, small, 1.0F), 1.0F);  // an arrowhead
   EXPECT_EQ(glsl::ring_paint({500.0F, 9.5e3F}, north, small, 1.0F), 0.0F);
   // Lines widen to a pixel and a half.
