@@ -385,16 +385,17 @@ absl::StatusOr<EvenColumns> MakeEven(const ColumnPlaces& places, const EvenOptio
 
 std::string AssumptionOf(const EvenColumns& even) {
   if (!even.Resampled()) return "";
-  const std::string to = even.dx_m == even.dy_m
-                             ? absl::StrFormat("%.0f m", even.dx_m)
-                             : absl::StrFormat("%.0f m by %.0f m", even.dx_m, even.dy_m);
-  const auto range = [](double shortest_m, double longest_m) {
-    return absl::StrFormat("%.0f to %.0f m", shortest_m, longest_m);
+  const std::string dx = absl::StrFormat("%.0f m", even.dx_m);
+  const std::string dy = absl::StrFormat("%.0f m", even.dy_m);
+  const auto range = [&](int axis) {
+    return absl::StrFormat("%.0f to %.0f m", even.shortest_m[axis], even.longest_m[axis]);
   };
-  return absl::StrCat("The columns were resampled to even distances of ", to,
-                      ", because the true distances between the model's columns are ",
-                      range(even.shortest_m.x, even.longest_m.x), " along x and ",
-                      range(even.shortest_m.y, even.longest_m.y), " along y.");
+  const std::string ranges = range(0) == range(1)
+                                 ? range(0)
+                                 : absl::StrCat(range(0), " along x and ", range(1), " along y");
+  return absl::StrCat("The columns were resampled to even distances of ",
+                      dx == dy ? dx : absl::StrCat(dx, " by ", dy),
+                      ", because the true distances between the model's columns are ", ranges, ".");
 }
 
 }  // namespace thunderhead::storm_files

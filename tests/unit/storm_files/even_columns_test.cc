@@ -192,9 +192,13 @@ TEST(EvenColumns, SaysWhatWasDone) {
   EXPECT_NEAR(even->dx_m, MeanAlongX_m(model), 1.0);
   EXPECT_NEAR(even->shortest_m.x, Distance_m(model.At(0.0, 47.0), model.At(1.0, 47.0)), 0.1);
   EXPECT_NEAR(even->longest_m.x, Distance_m(model.At(0.0, 0.0), model.At(1.0, 0.0)), 0.1);
-  const std::string text = AssumptionOf(*even);
-  EXPECT_THAT(text, HasSubstr("The columns were resampled to even distances of 91"));
-  EXPECT_THAT(text, HasSubstr("along x and"));
+  EXPECT_THAT(AssumptionOf(*even),
+              ::testing::MatchesRegex("The columns were resampled to even distances of 91.. m, "
+                                      "because the true distances between the model's columns are "
+                                      "90.. to 92.. m."));
+  const auto degrees = MakeEven(LongitudeLatitudeGrid(4.0, 57.0).places);
+  ASSERT_TRUE(degrees.ok()) << degrees.status();
+  EXPECT_THAT(AssumptionOf(*degrees), HasSubstr(" m along x and 11118 to 11118 m along y."));
 }
 
 // A domain at the latitude where the projection's scale is true, and one elsewhere whose map factor
