@@ -201,10 +201,10 @@ TEST(EvenColumns, SaysWhatWasDone) {
   EXPECT_THAT(AssumptionOf(*degrees), HasSubstr(" m along x and 11118 to 11118 m along y."));
 }
 
-// A domain at the latitude where the projection's scale is true, and one elsewhere whose map factor
-// hardly varies.
+// One domain is at the latitude where the projection's scale is true. In the others the map factor
+// hardly varies. It is about 0.97 at 45 N and 1.06 at 20 N.
 TEST(EvenColumns, KeepsColumnsThatAreEvenAlready) {
-  for (const double latitude_deg : {30.0, 45.0}) {
+  for (const double latitude_deg : {30.0, 45.0, 20.0}) {
     const double tip_m = kLambert.FromTip_m(latitude_deg);
     const Model model =
         LambertGrid({60, 50}, 1000.0, {-429.5e3, -std::sqrt(tip_m * tip_m - 16e10) - 24.5e3});
