@@ -39,6 +39,7 @@ class Writer {
     Dimension("west_east", file.nx);
     Dimension("bottom_top", file.levels);
     Dimension("bottom_top_stag", file.levels + 1);
+    Dimension("one_time", 1);
     Dimension("one_level_short", std::max(1, file.levels - 1));
     Attributes();
   }
@@ -104,13 +105,15 @@ class Writer {
     if (file_.one_level_short.contains(name)) names[1] = "one_level_short";
     const bool once = file_.without_time.contains(name);
     if (once) names.erase(names.begin());
+    const bool own_time = file_.at_one_time.contains(name);
+    if (own_time) names.front() = "one_time";
     const Packing packing = PackingOf(name);
     const int variable = DeclareField(name, names, units, packing);
     if (file_.unwritten.contains(name)) return;
     std::size_t levels = 1;
     if (!level_dimension.empty())
       Succeed(nc_inq_dimlen(id_, dimensions_.at(names[once ? 0 : 1]), &levels));
-    const int records = once ? 1 : static_cast<int>(file_.times.size());
+    const int records = once || own_time ? 1 : static_cast<int>(file_.times.size());
     for (int record = 0; record < records; ++record) {
       const std::vector<double> values =
           Record(name, static_cast<int>(levels), record, packing, value);

@@ -241,6 +241,10 @@ TEST_F(StormFormatTest, TheNearestFormatSaysWhyAFileIsRefused) {
   EXPECT_EQ(formats.Describe(path).status().message(), "described as any netCDF");
   EXPECT_TRUE(formats.Describe(WriteCf()).ok());
   EXPECT_TRUE(formats.Describe(WriteWrf()).ok());
+  // The first of two formats that are equally near gives the reason.
+  StormFormats twice = formats;
+  twice.Add(std::make_shared<Greedy>(FormatFit::kRelated));
+  EXPECT_EQ(twice.Describe(path).status().message(), "described as any netCDF");
 }
 
 TEST_F(StormFormatTest, MessagesSayWhichFilesToGive) {

@@ -35,6 +35,19 @@ TEST_F(WrfLayoutTest, InvariantsMayHaveNoTime) {
   }
 }
 
+TEST_F(WrfLayoutTest, InvariantsMayHaveOneTimeOfTheirOwn) {
+  SyntheticWrf file = Cloud();
+  file.times = {"2013-05-20_20:00:00", "2013-05-20_20:10:00"};
+  file.terrain_m = [](int x, int) { return 100.0 * x; };
+  file.at_one_time = {"XLAT", "XLONG", "HGT", "PHB", "PB"};
+  for (const std::size_t record : {0U, 1U}) {
+    const auto fields = Read(file, record);
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    EXPECT_FLOAT_EQ(fields->terrain_height_m[3], 300.0F);
+    EXPECT_NEAR(ColumnPath(*fields, 0, 2, 1), 1e-3 * kDryDensity_kg_per_m3 * 3800.0, 1e-3);
+  }
+}
+
 TEST_F(WrfLayoutTest, AFileWithoutTimeHasOneTime) {
   SyntheticWrf file = Cloud();
   file.without_time = {"PH", "PHB", "P", "PB", "T", "QVAPOR", "QCLOUD", "HGT", "XLAT", "XLONG"};

@@ -183,6 +183,9 @@ TEST_F(WrfRelativesTest, RefusesOneProcessesTile) {
                   {"WEST-EAST_PATCH_END_UNSTAG", 8.0},
                   {"WEST-EAST_GRID_DIMENSION", 9.0}};
   EXPECT_THAT(Message(file), HasSubstr("one process's tile of the domain (west_east 5 to 8 of 8)"));
+  // A part that was cut out of a tile has another length than the tile.
+  file.numbers["WEST-EAST_PATCH_END_UNSTAG"] = 7.0;
+  ExpectCloud(file);
   // A part that was cut out keeps the attributes of the whole domain.
   file.numbers = {{"WEST-EAST_PATCH_START_UNSTAG", 1.0},
                   {"WEST-EAST_PATCH_END_UNSTAG", 8.0},
