@@ -12,6 +12,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/file_descriptor.h"
+#include "base/status.h"
 
 namespace thunderhead::base {
 namespace {
@@ -78,7 +79,30 @@ class FileBytes final : public ByteSource {
   const std::uint64_t size_;
 };
 
+absl::Status NoRegularFile(const std::string& path) {
+  return absl::InvalidArgumentError(
+      absl::StrCat(path, ": is no regular file; give the model's output file"));
+}
+
 }  // namespace
+
+absl::StatusOr<FileDescriptor> OpenRegularFile(const std::string& path) {
+  FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (!file.IsOpen()) {
+    const int error = errno;
+    if (error == ENOENT) {
+      return absl::NotFoundError(absl::StrCat(path, ": there is no such file; check the path"));
+    }
+    // A socket cannot be opened.
+    if (error == ENXIO) return NoRegularFile(path);
+    return absl::PermissionDeniedError(absl::StrCat(path, ": may not be read (",
+                                                    std::strerror(error),
+                                                    "); give this user permission to read it"));
+  }
+  struct stat information = {};
+  if (fstat(file.Get(), &information) == 0 && S_ISREG(information.st_mode)) return file;
+  return NoRegularFile(path);
+}
 
 void ReadFromMemory(const std::string& path, std::span<const std::byte> bytes) {
   RegisteredFiles()[path] = bytes;
@@ -98,21 +122,9 @@ absl::StatusOr<std::shared_ptr<const ByteSource>> OpenBytes(const std::string& p
     return absl::PermissionDeniedError(
         absl::StrCat(path, ": is not the file that this process was started to read"));
   }
-  FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
-  if (!file.IsOpen()) {
-    const int error = errno;
-    if (error == ENOENT) {
-      return absl::NotFoundError(absl::StrCat(path, ": there is no such file; check the path"));
-    }
-    return absl::PermissionDeniedError(absl::StrCat(path, ": may not be read (",
-                                                    std::strerror(error),
-                                                    "); give this user permission to read it"));
-  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(FileDescriptor file, OpenRegularFile(path));
   struct stat information = {};
-  if (fstat(file.Get(), &information) != 0 || !S_ISREG(information.st_mode)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(path, ": is no regular file; give the model's output file"));
-  }
+  if (fstat(file.Get(), &information) != 0) return NoRegularFile(path);
   return std::make_shared<FileBytes>(path, std::move(file),
                                      static_cast<std::uint64_t>(information.st_size));
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "base/file_descriptor.h"
 
 namespace thunderhead::base {
 
@@ -27,6 +28,10 @@ class ByteSource {
   // and UNAVAILABLE if the storage fails. Then the contents of `to` are unspecified.
   virtual absl::Status Read(std::uint64_t offset, std::span<std::byte> to) const = 0;
 };
+
+// Opens a regular file for reading, but never a pipe or device, because opening one could block or
+// act. Errors: NOT_FOUND; PERMISSION_DENIED; INVALID_ARGUMENT (no regular file).
+absl::StatusOr<FileDescriptor> OpenRegularFile(const std::string& path);
 
 // Opens the file at `path`. If its bytes were registered by ReadFromMemory, these are used.
 // Errors: NOT_FOUND; PERMISSION_DENIED; INVALID_ARGUMENT (no regular file).

@@ -45,7 +45,7 @@ class DecompressedBytes final : public base::ByteSource {
   const Bytes bytes_;
 };
 
-// What a step of a decompressor did.
+// The outcome of a step of a decompressor.
 enum class Step { kContinues, kEnded, kDamaged };
 
 // A decompressor of one library. Both libraries have the same kind of interface.

@@ -24,7 +24,7 @@ struct Surface {
   double value = 0.0;   // NaN if the surface has none
 };
 
-// Who made a field, by section 1.
+// The centre that made a field, and its run, by section 1.
 struct Origin {
   int centre = 0;  // common code table C-11
   int subcentre = 0;

@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "base/memory_fit.h"
@@ -199,9 +200,11 @@ struct Sample {
   Bytes data;
 };
 
-// Makes section 5 with `values` values and what follows the number of the template.
-Bytes SamplePacking(Packing packing, std::uint64_t values,
-                    std::initializer_list<std::pair<std::uint64_t, std::size_t>> numbers) {
+// Numbers, each with how many octets it has.
+using Numbers = std::vector<std::pair<std::uint64_t, std::size_t>>;
+
+// Makes section 5 with `values` values and the numbers that follow the number of the template.
+Bytes SamplePacking(Packing packing, std::uint64_t values, const Numbers& numbers) {
   Bytes section;
   std::size_t octets = 11;
   for (const auto& [number, count] : numbers) octets += count;
@@ -225,42 +228,18 @@ Bytes SampleData(std::size_t bytes) {
 // same, so the bits of a value are 0 there.
 std::vector<Sample> Samples() {
   constexpr std::uint64_t kValues = 4;
-  const auto packing = [](Packing by,
-                          std::initializer_list<std::pair<std::uint64_t, std::size_t>> numbers) {
+  const auto packing = [](Packing by, const Numbers& numbers) {
     return SamplePacking(by, kValues, numbers);
   };
+  const Numbers complex = {{0, 8}, {8, 1}, {0, 1}, {1, 1}, {0, 1},       {0, 8}, {1, 4},
+                           {0, 1}, {0, 1}, {0, 4}, {1, 1}, {kValues, 4}, {0, 1}};
+  // The order of differencing, and the octets of its extra values.
+  Numbers differencing = complex;
+  differencing.insert(differencing.end(), {{1, 1}, {1, 1}});
   std::vector<Sample> samples;
   samples.push_back({packing(Packing::kSimple, {{0, 8}, {8, 1}, {0, 1}}), SampleData(kValues)});
-  samples.push_back({packing(Packing::kComplex, {{0, 8},
-                                                 {8, 1},
-                                                 {0, 1},
-                                                 {1, 1},
-                                                 {0, 1},
-                                                 {0, 8},
-                                                 {1, 4},
-                                                 {0, 1},
-                                                 {0, 1},
-                                                 {0, 4},
-                                                 {1, 1},
-                                                 {kValues, 4},
-                                                 {0, 1}}),
-                     SampleData(1)});
-  samples.push_back({packing(Packing::kSpatialDifferencing, {{0, 8},
-                                                             {8, 1},
-                                                             {0, 1},
-                                                             {1, 1},
-                                                             {0, 1},
-                                                             {0, 8},
-                                                             {1, 4},
-                                                             {0, 1},
-                                                             {0, 1},
-                                                             {0, 4},
-                                                             {1, 1},
-                                                             {kValues, 4},
-                                                             {0, 1},
-                                                             {1, 1},
-                                                             {1, 1}}),
-                     SampleData(3)});
+  samples.push_back({packing(Packing::kComplex, complex), SampleData(1)});
+  samples.push_back({packing(Packing::kSpatialDifferencing, differencing), SampleData(3)});
   samples.push_back({packing(Packing::kIeee, {{1, 1}}), SampleData(4 * kValues)});
   samples.push_back(
       {packing(Packing::kJpeg2000, {{0, 8}, {0, 1}, {0, 1}, {0, 1}, {255, 1}}), SampleData(0)});

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/mman.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,6 +20,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "base/byte_source.h"
 #include "base/status.h"
 #include "sandbox/archive.h"
 #include "sandbox/file_bundle.h"
@@ -35,30 +35,6 @@ using std::chrono::milliseconds;
 absl::Status NoReader(const std::string& path, int error) {
   return absl::UnavailableError(absl::StrCat(path, ": no process can be started to read it (",
                                              std::strerror(error), "); try again"));
-}
-
-absl::Status NoRegularFile(const std::string& path) {
-  return absl::InvalidArgumentError(
-      absl::StrCat(path, ": is no regular file; give the model's output file"));
-}
-
-// Opens a regular file, but never a pipe or device, because opening one could block or act.
-absl::StatusOr<base::FileDescriptor> OpenFile(const std::string& path) {
-  base::FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
-  if (!file.IsOpen()) {
-    const int error = errno;
-    if (error == ENOENT) {
-      return absl::NotFoundError(absl::StrCat(path, ": there is no such file; check the path"));
-    }
-    // A socket cannot be opened.
-    if (error == ENXIO) return NoRegularFile(path);
-    return absl::PermissionDeniedError(absl::StrCat(path, ": may not be read (",
-                                                    std::strerror(error),
-                                                    "); give this user permission to read it"));
-  }
-  struct stat information = {};
-  if (fstat(file.Get(), &information) == 0 && S_ISREG(information.st_mode)) return file;
-  return NoRegularFile(path);
 }
 
 // Collects processes that did not end at once when they were killed. Such a process is still
@@ -113,7 +89,7 @@ std::string PlaceOf(const base::FileDescriptor& file) {
 absl::StatusOr<base::FileDescriptor> OpenStormFile(const std::string& path,
                                                    const CheckOpened& check_opened) {
   static const storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
-  THUNDERHEAD_ASSIGN_OR_RETURN(base::FileDescriptor file, OpenFile(path));
+  THUNDERHEAD_ASSIGN_OR_RETURN(base::FileDescriptor file, base::OpenRegularFile(path));
   if (check_opened) THUNDERHEAD_RETURN_IF_ERROR(check_opened(path, PlaceOf(file)));
   THUNDERHEAD_RETURN_IF_ERROR(formats.CheckStart(path, file.Get()));
   return file;

@@ -49,7 +49,7 @@ absl::StatusOr<CfDimensions> FindDimensions(const netcdf::NetcdfFile& file,
 absl::StatusOr<CfVariable> Arrange(const netcdf::NetcdfFile& file, const std::string& variable,
                                    const CfDimensions& on);
 
-// What a reader must know of the fields' axes.
+// The number of cells and the direction of the fields' axes.
 struct CfOrder {
   std::array<std::size_t, 3> cells = {1, 1, 1};
   std::array<bool, 3> reversed = {false, false, false};  // the axis runs west, south or down

@@ -43,7 +43,7 @@ struct GribHydrometeor {
   bool is_split = false;
 };
 
-// What gives the heights of levels.
+// The source of the heights of levels.
 enum class GribVertical {
   kHeights,      // the height of each level
   kHalfHeights,  // the heights of the half levels between them (ICON's HHL)
@@ -73,7 +73,7 @@ struct GribLayers {
   bool HasWind() const { return !wind_x.Empty() && !wind_y.Empty() && !ascent.Empty(); }
 };
 
-// What GRIB files of one run hold.
+// The contents of the GRIB files of one run.
 struct GribContents {
   std::string path;               // of the storm, for errors
   std::vector<GribLayers> times;  // in ascending order

@@ -78,7 +78,7 @@ struct StormFile {
   std::vector<volume::EarthPlace> middles;
   std::string projection;  // the grid's projection, as PROJ writes it; empty if none
   std::string member;      // the ensemble member, e.g. "mem05"; empty if the file has only one run
-  // What the reader assumed because the file does not say it, a sentence each, for users.
+  // The reader's assumptions where the file says nothing, for users. Each text is one sentence.
   std::vector<std::string> assumptions;
   // Set if the file alone is not a storm. StormFormats::DescribeTogether describes such files.
   StormPart part;

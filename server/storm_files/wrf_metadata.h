@@ -91,7 +91,7 @@ struct WrfMetadata {
   int domain = 1;                // GRID_ID, counted from 1
   std::string simulation_start;  // SIMULATION_START_DATE as in the file; differs between runs
   WrfPlace place;
-  std::vector<std::string> assumptions;  // a sentence each, for users
+  std::vector<std::string> assumptions;  // for users; each text is one sentence
 
   // Returns whether another field comes from the same variable.
   bool IsShared(physics::Hydrometeor hydrometeor) const;

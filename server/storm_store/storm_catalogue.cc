@@ -378,6 +378,23 @@ void DropRepeated(std::vector<NamedStorm>& storms) {
   std::erase_if(storms, [](const NamedStorm& storm) { return storm.files.empty(); });
 }
 
+// Returns the end of the batch of files that begins with paths[first]. A reader gets a batch in
+// memory, so its size is limited, and a file that is larger is a batch alone. A batch takes about a
+// second, so a search can be stopped soon.
+std::size_t EndOfBatch(const std::vector<std::string>& paths, std::size_t first) {
+  constexpr std::size_t kMostFiles = 50;
+  constexpr std::uintmax_t kMost_bytes = 8 << 20;
+  std::uintmax_t bytes = 0;
+  std::size_t end = first;
+  for (; end < paths.size() && end - first < kMostFiles; ++end) {
+    std::error_code error;
+    const std::uintmax_t size = fs::file_size(paths[end], error);
+    if (error || size > kMost_bytes - bytes) break;
+    bytes += size;
+  }
+  return std::max(end, first + 1);
+}
+
 // Describes each of the files.
 std::vector<absl::StatusOr<storm_files::StormFile>> Describe(
     const std::vector<std::string>& paths, const storm_files::StormFormats& formats) {
@@ -598,18 +615,9 @@ absl::StatusOr<storm_files::StormFile> DescribeFile(const std::string& path,
 std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(
     const std::vector<std::string>& paths, const storm_files::StormFormats& formats,
     const std::function<bool()>& before) {
-  // A batch of files of this size takes about a second, so a search can be stopped soon.
-  constexpr std::size_t kMostInBatch = 50;
-  constexpr std::uintmax_t kSmallFile_bytes = 8 << 20;
   std::vector<absl::StatusOr<storm_files::StormFile>> described;
   for (std::size_t first = 0, last = 0; first < paths.size(); first = last) {
-    bool small = true;
-    while (last < paths.size() && last - first < kMostInBatch && small) {
-      std::error_code error;
-      small = fs::file_size(paths[last], error) <= kSmallFile_bytes && !error;
-      // A large file is a batch alone.
-      if (small || last == first) ++last;
-    }
+    last = EndOfBatch(paths, first);
     if (!before()) {
       const absl::StatusOr<storm_files::StormFile> stopped =
           absl::CancelledError("the search was told to stop");

@@ -63,7 +63,7 @@ struct StormInfo {
   // The direction of true north in the middle of the domain, in degrees clockwise from the grid's
   // north (the world's y axis), at the first time. It is 0 without a projection.
   double true_north_deg = 0.0;
-  // What the files' reader assumed because they do not say it, a sentence each, for users.
+  // The reader's assumptions where the files say nothing, for users. Each text is one sentence.
   std::vector<std::string> assumptions;
 };
 

@@ -274,7 +274,7 @@ export class PageState {
   readonly run = computed(() => {
     return nameOfRun(this.#describedStorm.value?.runStart ?? "");
   });
-  // What the reader of the storm's files assumed, a sentence each.
+  // The reader's assumptions about the storm's files. Each text is one sentence.
   readonly assumptions = computed(() => this.#describedStorm.value?.assumptions ?? []);
   readonly shownTime = computed(() => {
     const count = this.timeCount.value;

@@ -57,7 +57,7 @@ function Storm({ page }: { page: Page }) {
   );
 }
 
-// What was assumed because the storm's files do not say it. A click lists it.
+// The number of assumptions about the storm's files. A click lists them.
 function Assumptions({ page }: { page: Page }) {
   const assumptions = page.state.assumptions.value;
   if (assumptions.length === 0) return null;
