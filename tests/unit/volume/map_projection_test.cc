@@ -304,6 +304,7 @@ TEST(MapProjectionTest, TextsThatOpenFilesOrAreNoMapOfAStormAreRefused) {
         Refused{"+proj=merc +lat_ts=nan +lon_0=0 +R=6370000", "is not a number"},
         Refused{"+proj=merc +proj=lcc +R=6370000", "+proj is given twice"},
         Refused{"+proj=merc +units=km +R=6370000", "+units=km"},
+        Refused{"+proj=merc +units=m +to_meter=2 +R=6370000", "both +units= and +to_meter="},
         Refused{"+proj=merc +lat_ts=0 +lon_0=0", "size of the Earth"},
         Refused{"+proj=ob_tran +R=6370000", "+o_proj=eqc together"},
         Refused{"+proj=ob_tran +o_proj=longlat +o_lat_p=40 +R=6370000", "+o_proj=longlat"},
