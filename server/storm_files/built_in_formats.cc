@@ -1,6 +1,9 @@
 // The list of storm formats. A new format needs a separate file, and a line here.
+#include "storm_files/at3d_format.h"
 #include "storm_files/cf_format.h"
 #include "storm_files/grib_format.h"
+#include "storm_files/mystic_format.h"
+#include "storm_files/shdom_format.h"
 #include "storm_files/storm_format.h"
 #include "storm_files/wrf_format.h"
 
@@ -11,6 +14,9 @@ StormFormats StormFormats::BuiltIn() {
   formats.Add(MakeWrfFormat());
   formats.Add(MakeCfFormat());
   formats.Add(MakeGribFormat());
+  formats.Add(MakeShdomFormat());
+  formats.Add(MakeMysticFormat());
+  formats.Add(MakeAt3dFormat());
   return formats;
 }
 

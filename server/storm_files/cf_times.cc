@@ -28,12 +28,6 @@ constexpr double kSecondsPerDay = 86'400.0;
 // Times are rounded to it, because a number of days is seldom exact.
 constexpr double kMillisecond_s = 1e-3;
 
-// Returns the start of a storm without a date. It counts as idealised and begins in year 1, as in
-// WRF.
-absl::Time StartWithoutDate() {
-  return absl::FromCivil(absl::CivilSecond(1, 1, 1), absl::UTCTimeZone());
-}
-
 // Returns whether a unit of time is a month or a year. UDUNITS gives them their mean lengths.
 bool IsMonthOrYear(double seconds) {
   // A fortnight is the longest unit of a fixed length that anyone uses.

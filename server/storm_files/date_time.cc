@@ -173,6 +173,10 @@ std::optional<absl::Time> ParseDateTime(std::string_view text) {
   return absl::FromCivil(absl::CivilSecond(date), absl::UTCTimeZone()) + written->since_midnight;
 }
 
+absl::Time StartWithoutDate() {
+  return absl::FromCivil(absl::CivilSecond(1, 1, 1), absl::UTCTimeZone());
+}
+
 std::optional<TimeUnits> ParseTimeUnits(std::string_view units) {
   constexpr absl::string_view kSince = " since ";
   const std::string text = absl::AsciiStrToLower(absl::string_view(units.data(), units.size()));

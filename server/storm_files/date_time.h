@@ -28,6 +28,10 @@ struct WrittenDate {
 // other calendars, years before 0, the compact form "20130520", and offsets without a sign.
 std::optional<WrittenDate> ParseWrittenDate(std::string_view text);
 
+// Returns the start of a storm without a date. It counts as idealised and begins in year 1, as in
+// WRF.
+absl::Time StartWithoutDate();
+
 struct TimeUnits {
   double seconds = 1.0;              // seconds in one unit
   std::optional<absl::Time> origin;  // the date after "since"; nothing if there is none

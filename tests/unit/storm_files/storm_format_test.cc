@@ -223,7 +223,10 @@ TEST_F(StormFormatTest, AFileOfNoFormatIsToldWhatEachWouldNeed) {
       ": is neither WRF output (it has no dimensions west_east, south_north, bottom_top) "
       "nor a CF file with a hydrometeor (by standard name, e.g. "
       "mass_concentration_of_cloud_liquid_water_in_air) or a variable extinction (m-1) "
-      "nor GRIB2 (it has no GRIB message)";
+      "nor GRIB2 (it has no GRIB message) "
+      "nor an SHDOM particle or property file (it does not begin with such a header) "
+      "nor a MYSTIC cloud file (it does not begin with three numbers of cells and a flag) "
+      "nor an AT3D cloud field (it does not begin with its grid and the names of its columns)";
   const std::string toy = " nor a toy (it does not begin so)";
   const std::string advice = "; give a file that is";
   EXPECT_EQ(message(StormFormats::BuiltIn()), built_in + advice);
@@ -248,12 +251,12 @@ TEST_F(StormFormatTest, TheNearestFormatSaysWhyAFileIsRefused) {
 }
 
 TEST_F(StormFormatTest, MessagesSayWhichFilesToGive) {
-  EXPECT_EQ(StormFormats::BuiltIn().Examples(), "wrfout_..., CF netCDF, or GRIB2");
-  EXPECT_EQ(With(std::make_shared<ToyFormat>()).Examples(),
-            "wrfout_..., CF netCDF, GRIB2, or *.toy");
+  const std::string built_in = "wrfout_..., CF netCDF, GRIB2, SHDOM text, MYSTIC text, ";
+  EXPECT_EQ(StormFormats::BuiltIn().Examples(), built_in + "or AT3D text");
+  EXPECT_EQ(With(std::make_shared<ToyFormat>()).Examples(), built_in + "AT3D text, or *.toy");
   const auto nothing =
       storm_store::FindStorms({folder_.Path().string()}, With(std::make_shared<ToyFormat>()));
-  EXPECT_THAT(std::string(nothing.status().message()), HasSubstr("GRIB2, or *.toy"));
+  EXPECT_THAT(std::string(nothing.status().message()), HasSubstr("AT3D text, or *.toy"));
 }
 
 }  // namespace
