@@ -104,7 +104,7 @@ void Visit(Archive& archive, storm_files::VerticalGrid& grid) {
 // `id`, `device` and `modified_ns`. Times are sent as seconds and nanoseconds since 1970.
 template <typename Archive>
 void Visit(Archive& archive, storm_files::StormFile& file) {
-  auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, latitude_deg,
+  auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, run_start, latitude_deg,
          longitude_deg, middles, projection, member, assumptions, part, parts, reader, version, id,
          device, modified_ns] = file;
   archive(cells);
@@ -128,6 +128,10 @@ void Visit(Archive& archive, storm_files::StormFile& file) {
   archive(about);
   archive(domain);
   archive(run);
+  std::optional<std::int64_t> run_start_s;
+  if (run_start.has_value()) run_start_s = absl::ToUnixSeconds(*run_start);
+  VisitOptional(archive, run_start_s);
+  if (run_start_s.has_value()) run_start = absl::FromUnixSeconds(*run_start_s);
   VisitOptional(archive, latitude_deg);
   VisitOptional(archive, longitude_deg);
   archive(middles);

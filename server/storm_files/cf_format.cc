@@ -1,9 +1,11 @@
 #include "storm_files/cf_format.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/time.h"
 #include "base/status.h"
 #include "netcdf/netcdf_file.h"
 #include "storm_files/cf_metadata.h"
@@ -25,6 +27,13 @@ std::string RunOf(const CfMetadata& metadata) {
     const double depth_m = heights.faces_m.back() - heights.faces_m.front();
     absl::StrAppend(&run, " ", heights.faces_m.front(), " ",
                     depth_m / static_cast<double>(metadata.order.cells[2]));
+  }
+  // Two forecasts of one time are two storms. A series of analyses is one storm, although each is a
+  // separate run.
+  if (metadata.run_start.has_value() && std::ranges::any_of(metadata.times, [&](absl::Time time) {
+        return time != *metadata.run_start;
+      })) {
+    absl::StrAppend(&run, " ", absl::FormatTime(*metadata.run_start, absl::UTCTimeZone()));
   }
   return run;
 }
@@ -64,6 +73,7 @@ class CfFormat final : public StormFormat {
     }
     file.about = metadata.source;
     file.run = RunOf(metadata);
+    file.run_start = metadata.run_start;
     file.assumptions = metadata.assumptions;
     if (places.even != nullptr) {
       const EvenColumns& even = *places.even;

@@ -72,6 +72,7 @@ StormFile DescribeGribStorm(std::shared_ptr<const GribStorm> storm) {
   }
   file.about = AboutText(contents);
   file.run = absl::StrCat(GribRunOf(contents.origin), ", process ", contents.process);
+  file.run_start = contents.origin.reference;
   file.member = contents.member;
   file.latitude_deg = contents.grid.latitude_deg;
   file.longitude_deg = contents.grid.longitude_deg;

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/status.h"
+#include "storm_files/date_time.h"
 #include "storm_files/even_columns.h"
 #include "storm_files/fields_on_heights.h"
 #include "storm_files/wrf_metadata.h"
@@ -74,6 +75,7 @@ class WrfFormat final : public StormFormat {
     }
     file.domain = metadata.domain;
     file.run = metadata.simulation_start;
+    file.run_start = ParseDateTime(metadata.simulation_start);
     if (metadata.place.middle.has_value()) {
       file.latitude_deg = metadata.place.middle->latitude_deg;
       file.longitude_deg = metadata.place.middle->longitude_deg;

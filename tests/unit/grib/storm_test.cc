@@ -164,6 +164,7 @@ TEST_F(GribStormTest, ReadsAWholeFile) {
   ASSERT_TRUE(file.ok()) << file.status();
   EXPECT_EQ(file->cells, glm::ivec3(2, 2, 4));
   EXPECT_EQ(file->about, "NCEP HRRR, run 2024-05-20 21:00 UTC, +1 h");
+  EXPECT_EQ(file->run_start, absl::FromUnixSeconds(1716238800));  // 2024-05-20 21:00 UTC
   EXPECT_THAT(file->fields, ElementsAre(Hydrometeor::kCloud, Hydrometeor::kRain));
   EXPECT_THAT(file->assumptions, Contains(HasSubstr("kg per kg of dry air")));
   EXPECT_EQ(file->member, "");
