@@ -31,13 +31,13 @@ void DescribeColumns(const WrfMetadata& metadata, StormFile& file) {
     file.cells = {even.columns.x, even.columns.y, metadata.cells.z};
     file.dx_m = even.dx_m;
     file.dy_m = even.dy_m;
-    file.assumptions.push_back(AssumptionOf(even));
   } else if (glm::dvec2(file.dx_m, file.dy_m) != nominal_m) {
     file.assumptions.push_back(absl::StrFormat(
         "The columns are %.0f m by %.0f m apart, as their latitudes and longitudes say; DX and DY, "
         "which are lengths on the model's map, are %.0f m and %.0f m.",
         file.dx_m, file.dy_m, nominal_m.x, nominal_m.y));
   }
+  std::ranges::copy(AssumptionsOf(even), std::back_inserter(file.assumptions));
 }
 
 class WrfFormat final : public StormFormat {
