@@ -73,7 +73,7 @@ std::optional<CfDirection> FindDirection(const netcdf::NetcdfFile& file, const s
     dimension.coordinate = name;
     return direction;
   }
-  return DirectionOf({dimension.name, "", "", "", ""});
+  return DirectionOf({dimension.name, "", "", "", "", ""});
 }
 
 // Returns a variable of two dimensions that are among those of the field and have no direction yet,
@@ -121,7 +121,8 @@ std::vector<std::string> NamesIn(const std::string& attribute) {
 
 CfDescription DescribeCf(const netcdf::NetcdfFile& file, const std::string& variable) {
   const auto text = [&](const char* attribute) { return file.TextOrEmpty(variable, attribute); };
-  return {variable, text("standard_name"), text("units"), text("axis"), text("positive")};
+  return {variable,     text("standard_name"), text("units"),
+          text("axis"), text("positive"),      text("long_name")};
 }
 
 absl::StatusOr<CfDimensions> FindDimensions(const netcdf::NetcdfFile& file,

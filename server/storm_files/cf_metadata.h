@@ -15,6 +15,7 @@
 #include "storm_files/cf_heights.h"
 #include "storm_files/cf_names.h"
 #include "storm_files/cf_places.h"
+#include "storm_files/reference_atmosphere.h"
 
 namespace thunderhead::storm_files {
 
@@ -48,6 +49,7 @@ struct CfMetadata {
                                 // only the extinction
   std::vector<CfAirField> air;  // only the variables that are needed to convert mixing ratios to
                                 // mass per volume, or to compute heights
+  std::optional<ReferenceAtmosphere> reference;  // of AirVariable::kPressureDeviation
   // Turbulent energy, and either all three components of the wind or none.
   std::vector<CfWindField> wind;
   std::optional<CfColumnValue> terrain;

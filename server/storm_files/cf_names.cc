@@ -17,6 +17,7 @@ using physics::Hydrometeor;
 struct Named {
   std::string_view name;
   Hydrometeor hydrometeor;
+  std::string_view long_name = {};  // if not empty, the long_name must contain it, in small letters
 };
 
 // Substances X in standard names such as "mass_fraction_of_X_in_air" and "X_mixing_ratio".
@@ -40,26 +41,79 @@ constexpr std::array kSubstances = {
 
 // Variable names that cloud models commonly use, for variables without a standard name.
 constexpr std::array kVariables = {
-    Named{"qc", Hydrometeor::kCloud},       Named{"qcloud", Hydrometeor::kCloud},
-    Named{"ql", Hydrometeor::kCloud},       Named{"clw", Hydrometeor::kCloud},
-    Named{"lwc", Hydrometeor::kCloud},      Named{"qr", Hydrometeor::kRain},
-    Named{"qrain", Hydrometeor::kRain},     Named{"rwc", Hydrometeor::kRain},
-    Named{"qi", Hydrometeor::kIce},         Named{"qice", Hydrometeor::kIce},
-    Named{"cli", Hydrometeor::kIce},        Named{"iwc", Hydrometeor::kIce},
-    Named{"qs", Hydrometeor::kSnow},        Named{"qsnow", Hydrometeor::kSnow},
-    Named{"swc", Hydrometeor::kSnow},       Named{"qg", Hydrometeor::kGraupel},
-    Named{"qgraup", Hydrometeor::kGraupel}, Named{"qgraupel", Hydrometeor::kGraupel},
-    Named{"qh", Hydrometeor::kHail},        Named{"qhail", Hydrometeor::kHail},
-    Named{"qhl", Hydrometeor::kHail},       Named{"clwc", Hydrometeor::kCloud},
-    Named{"ciwc", Hydrometeor::kIce},       Named{"crwc", Hydrometeor::kRain},
-    Named{"cswc", Hydrometeor::kSnow},      Named{"clwmr", Hydrometeor::kCloud},
-    Named{"q_liquid", Hydrometeor::kCloud}, Named{"q_ice", Hydrometeor::kIce},
+    Named{"qc", Hydrometeor::kCloud},
+    Named{"qcloud", Hydrometeor::kCloud},
+    Named{"ql", Hydrometeor::kCloud},
+    Named{"clw", Hydrometeor::kCloud},
+    Named{"lwc", Hydrometeor::kCloud},
+    Named{"qr", Hydrometeor::kRain},
+    Named{"qrain", Hydrometeor::kRain},
+    Named{"rwc", Hydrometeor::kRain},
+    Named{"qi", Hydrometeor::kIce},
+    Named{"qice", Hydrometeor::kIce},
+    Named{"cli", Hydrometeor::kIce},
+    Named{"iwc", Hydrometeor::kIce},
+    Named{"qs", Hydrometeor::kSnow},
+    Named{"qsnow", Hydrometeor::kSnow},
+    Named{"swc", Hydrometeor::kSnow},
+    Named{"qg", Hydrometeor::kGraupel},
+    Named{"qgraup", Hydrometeor::kGraupel},
+    Named{"qgraupel", Hydrometeor::kGraupel},
+    Named{"qh", Hydrometeor::kHail},
+    Named{"qhail", Hydrometeor::kHail},
+    Named{"qhl", Hydrometeor::kHail},
+    Named{"clwc", Hydrometeor::kCloud},
+    Named{"ciwc", Hydrometeor::kIce},
+    Named{"crwc", Hydrometeor::kRain},
+    Named{"cswc", Hydrometeor::kSnow},
+    Named{"clwmr", Hydrometeor::kCloud},
+    Named{"q_liquid", Hydrometeor::kCloud},
+    Named{"q_ice", Hydrometeor::kIce},
+    // DALES
+    Named{"plw", Hydrometeor::kRain, "precipitating liquid"},
+    Named{"pli", Hydrometeor::kSnow, "precipitating ice"},
+    // Meso-NH
+    Named{"rct", Hydrometeor::kCloud},
+    Named{"rrt", Hydrometeor::kRain},
+    Named{"rit", Hydrometeor::kIce},
+    Named{"rst", Hydrometeor::kSnow},
+    Named{"rgt", Hydrometeor::kGraupel},
+    Named{"rht", Hydrometeor::kHail},
+    // MONC
+    Named{"q_cloud_liquid_mass", Hydrometeor::kCloud},
+    Named{"q_rain_mass", Hydrometeor::kRain},
+    Named{"q_ice_mass", Hydrometeor::kIce},
+    Named{"q_cloud_ice_mass", Hydrometeor::kIce},
+    Named{"q_snow_mass", Hydrometeor::kSnow},
+    Named{"q_graupel_mass", Hydrometeor::kGraupel},
+    // UCLA-LES, whose names say little
+    Named{"l", Hydrometeor::kCloud, "liquid water mixing ratio"},
+    Named{"r", Hydrometeor::kRain, "rain-water mixing ratio"},
+    Named{"rice", Hydrometeor::kIce, "ice mixing ratio"},
+    Named{"rsnow", Hydrometeor::kSnow, "snow mixing ratio"},
+    Named{"rgrp", Hydrometeor::kGraupel, "graupel mixing ratio"},
+    Named{"rhail", Hydrometeor::kHail, "hail mixing ratio"},
+};
+
+// Variables of SAM that hold several hydrometeors.
+struct NamedMixture {
+  std::string_view name;
+  std::string_view long_name;  // in small letters
+  MixedWater mixed;
+};
+constexpr std::array kMixtures = {
+    NamedMixture{"qn", "non-precipitating condensate", MixedWater::kCloud},
+    NamedMixture{"qp", "precipitating water", MixedWater::kPrecipitation},
 };
 
 template <std::size_t count>
 std::optional<Hydrometeor> Find(const std::array<Named, count>& table, std::string_view name) {
   const auto at = std::ranges::find(table, name, &Named::name);
   return at == table.end() ? std::nullopt : std::optional(at->hydrometeor);
+}
+
+bool Says(const std::string& lower_long_name, std::string_view phrase) {
+  return absl::StrContains(lower_long_name, absl::string_view(phrase.data(), phrase.size()));
 }
 
 bool IsOneOf(std::string_view text, std::initializer_list<std::string_view> list) {
@@ -84,6 +138,37 @@ std::optional<CfQuantity> FromStandardName(const std::string& standard_name) {
   if (!hydrometeor.has_value()) return std::nullopt;
   quantity.hydrometeor = *hydrometeor;
   return quantity;
+}
+
+// Returns the quantity of a variable without a standard name.
+std::optional<CfQuantity> FromName(const CfDescription& variable) {
+  const std::string name = absl::AsciiStrToLower(variable.name);
+  const std::string long_name = absl::AsciiStrToLower(variable.long_name);
+  CfQuantity quantity;
+  // DALES writes specific contents, and says so here.
+  quantity.of_moist_air = Says(long_name, "mass fraction") || Says(long_name, "specific humidity");
+  for (const Named& each : kVariables) {
+    if (each.name != name || !Says(long_name, each.long_name)) continue;
+    quantity.hydrometeor = each.hydrometeor;
+    return quantity;
+  }
+  for (const NamedMixture& each : kMixtures) {
+    if (each.name != name || !Says(long_name, each.long_name)) continue;
+    quantity.mixed = each.mixed;
+    return quantity;
+  }
+  return std::nullopt;
+}
+
+// Returns whether a variable holds something else than its name says: the liquid water potential
+// temperature, which UCLA-LES calls t, or a deviation from a base state.
+bool IsOtherThanNamed(const CfDescription& variable) {
+  const std::string long_name = absl::AsciiStrToLower(variable.long_name);
+  for (const char* phrase : {"liquid", "virtual", "equivalent", "perturbation", "deviation",
+                             "anomaly", "tendency", "total water"}) {
+    if (Says(long_name, phrase)) return true;
+  }
+  return false;
 }
 
 // Returns whether a unit without a dimension may be that of a mass ratio. Shares such as "%" and
@@ -119,22 +204,28 @@ void ApplyUnits(const std::string& units, CfQuantity* quantity) {
 std::optional<AirVariable> AirByName(const CfDescription& variable) {
   const std::string& standard = variable.standard_name;
   const std::string name = absl::AsciiStrToLower(variable.name);
-  const bool plain = standard.empty();
+  if (standard == "difference_of_air_pressure_from_model_reference" ||
+      (standard.empty() && IsOneOf(name, {"pp", "prspert"}))) {
+    return AirVariable::kPressureDeviation;
+  }
+  const bool plain = standard.empty() && !IsOtherThanNamed(variable);
   if (standard == "air_density" ||
-      (plain && IsOneOf(name, {"rho", "air_density", "rhoa", "rhobf", "rhoref", "rhob", "dn0"}))) {
+      (plain && IsOneOf(name, {"rho", "air_density", "rhoa", "rhobf", "rhof", "rhoref", "rhob",
+                               "rhon", "dn0"}))) {
     return AirVariable::kDensity;
   }
-  if (standard == "air_pressure" || (plain && IsOneOf(name, {"p", "prs", "pres", "pressure"}))) {
+  if (standard == "air_pressure" ||
+      (plain && IsOneOf(name, {"p", "prs", "pres", "pressure", "pabst"}))) {
     return AirVariable::kPressure;
   }
   if (standard == "air_temperature" || (plain && IsOneOf(name, {"t", "ta", "temp", "tabs"}))) {
     return AirVariable::kTemperature;
   }
-  if (standard == "air_potential_temperature" || (plain && IsOneOf(name, {"th", "theta"}))) {
+  if (standard == "air_potential_temperature" || (plain && IsOneOf(name, {"th", "theta", "tht"}))) {
     return AirVariable::kPotentialTemperature;
   }
   if (IsOneOf(standard, {"specific_humidity", "humidity_mixing_ratio"}) ||
-      (plain && IsOneOf(name, {"qv", "qvapor", "q", "hus"}))) {
+      (plain && IsOneOf(name, {"qv", "qvapor", "q", "hus", "rvt", "q_vapour"}))) {
     return AirVariable::kVapour;
   }
   return std::nullopt;
@@ -189,9 +280,8 @@ std::optional<CfQuantity> QuantityOf(const CfDescription& variable) {
     quantity->quantity = volume::Quantity::kExtinction;
   } else if (!variable.standard_name.empty()) {
     quantity = FromStandardName(variable.standard_name);
-  } else if (const auto hydrometeor = Find(kVariables, name); hydrometeor.has_value()) {
-    quantity.emplace();
-    quantity->hydrometeor = *hydrometeor;
+  } else {
+    quantity = FromName(variable);
   }
   if (quantity.has_value()) ApplyUnits(variable.units, &*quantity);
   return quantity;
@@ -218,6 +308,7 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
       air.known_units = use("kg m-3");
       break;
     case AirVariable::kPressure:
+    case AirVariable::kPressureDeviation:
       air.known_units = use("Pa");
       break;
     case AirVariable::kTemperature:
@@ -280,15 +371,18 @@ std::optional<CfDirection> DirectionOf(const CfDescription& coordinate) {
                      "ny", "nj", "njp1", "south_north"})) {
     return CfDirection::kY;
   }
-  if (IsOneOf(name, {"z", "zh", "zc", "zf", "zt", "zm", "zw", "height", "altitude", "alt", "lev",
-                     "level", "nz", "nk", "nkp1", "zu_3d", "zw_3d", "bottom_top", "hybrid"})) {
+  if (IsOneOf(name, {"z",  "zh",     "zc",       "zf",    "zt",         "zm",    "zn",
+                     "zw", "height", "altitude", "alt",   "lev",        "level", "nz",
+                     "nk", "nkp1",   "zu_3d",    "zw_3d", "bottom_top", "hybrid"})) {
     return CfDirection::kZ;
   }
   // CDO numbers equal names: "height_2". ICON and COSMO call their levels so.
   for (const char* prefix : {"height_", "lev_", "level", "generalvertical", "plev", "z_"}) {
     if (absl::StartsWith(name, prefix)) return CfDirection::kZ;
   }
-  if (IsOneOf(name, {"t", "time"})) return CfDirection::kTime;
+  if (IsOneOf(name, {"t", "time"}) || absl::StartsWith(name, "time_series")) {
+    return CfDirection::kTime;
+  }
   return std::nullopt;
 }
 

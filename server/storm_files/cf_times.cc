@@ -367,6 +367,11 @@ absl::StatusOr<CfTimes> ReadCfTimes(const netcdf::NetcdfFile& file, const std::s
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> values,
                                ReadTimeValues(file, *name, records));
   const std::string calendar = file.TextOrEmpty(*name, "calendar");
+  // MicroHH counts "seconds since start".
+  constexpr absl::string_view kSinceStart = " since start";
+  if (absl::EndsWithIgnoreCase(units, kSinceStart)) {
+    units.resize(units.size() - kSinceStart.size());
+  }
   CfTimes read;
   if (!absl::StrContains(absl::AsciiStrToLower(units), " since ") &&
       !absl::StrContains(units, " as %")) {

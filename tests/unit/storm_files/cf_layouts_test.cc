@@ -492,7 +492,7 @@ TEST_F(CfLayouts, TheAirMayBeAProfile) {
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_FLOAT_EQ((*fields)->fields[0].concentration_kg_per_m3[0], 0.5e-3F * 1.2F);
   file.variables.back() = Values("PP", {"z", "y", "x"}, "Pa", [](const Index&) { return 10.0; });
-  ExpectError(file, "PP is only the deviation from a reference pressure");
+  ExpectError(file, "PP is only the deviation from a reference state");
 }
 
 }  // namespace
