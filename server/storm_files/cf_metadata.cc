@@ -9,6 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
+#include "storm_files/cf_cells.h"
 #include "storm_files/cf_times.h"
 #include "storm_files/units.h"
 
@@ -131,6 +132,9 @@ bool Has(const CfMetadata& metadata, AirVariable variable) {
       metadata.air, [variable](const CfAirField& field) { return field.air.variable == variable; });
 }
 
+// Returns the number of dimensions, without time, of a variable on all axes.
+std::size_t RankOf(const CfMetadata& metadata) { return metadata.dimensions.unstructured ? 2 : 3; }
+
 // Takes the variables of the air. First those on all axes are taken, and then profiles along z for
 // what is still missing, such as the base state of an anelastic model.
 absl::Status TakeAir(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& variables,
@@ -140,7 +144,7 @@ absl::Status TakeAir(const netcdf::NetcdfFile& file, const std::vector<CfDescrip
     if (!air.has_value() || Has(*metadata, air->variable)) continue;
     const auto shape = file.Shape(variable.name);
     const auto arranged = Arrange(file, variable.name, metadata->dimensions);
-    if (!shape.ok() || (!profiles && shape->size() < 3)) continue;
+    if (!shape.ok() || (!profiles && shape->size() < RankOf(*metadata))) continue;
     if (profiles && (!arranged.ok() || arranged->places[2] < 0 || arranged->places[0] >= 0 ||
                      arranged->places[1] >= 0 || !OnCells(*arranged))) {
       continue;
@@ -204,9 +208,25 @@ absl::Status FindAir(const netcdf::NetcdfFile& file, const std::vector<CfDescrip
       "(K), or give masses in kg m-3"));
 }
 
+// Places the cells of an unstructured grid, in one row.
+absl::Status ReadCells(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
+  const auto& [cells, row, layers] = metadata->dimensions.axes;
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      metadata->places,
+      PlaceCells(file, metadata->fields.front().variable.name, metadata->dimensions));
+  metadata->x.dimension = cells.name;
+  metadata->x.unit = CfAxisUnit::kNone;
+  metadata->x.cells = static_cast<int>(cells.length);
+  metadata->y = metadata->x;
+  metadata->y.cells = 1;
+  metadata->order.cells = {cells.length, 1, layers.length};
+  return absl::OkStatus();
+}
+
 // Reads the horizontal axes. If the domain is only one cell wide along one axis, that width is
 // assumed to be the cell size along the other axis.
 absl::Status ReadColumns(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
+  if (metadata->dimensions.unstructured) return ReadCells(file, metadata);
   const auto& [x_on, y_on, z_on] = metadata->dimensions.axes;
   const auto read = [&](const CfDimension& on, CfDirection direction, double single,
                         CfAxis* axis) -> absl::Status {
@@ -263,7 +283,7 @@ void FindWind(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& 
     const std::optional<CfWind> wind = WindVariableOf(variable);
     if (!wind.has_value()) continue;
     const auto shape = file.Shape(variable.name);
-    if (!shape.ok() || shape->size() < 3) continue;
+    if (!shape.ok() || shape->size() < RankOf(*metadata)) continue;
     absl::StatusOr<CfVariable> arranged = ArrangeWind(file, variable, *wind, *metadata);
     if (!arranged.ok()) {
       spdlog::warn("the motion of the air is read without {}: {}", variable.name,
@@ -312,6 +332,30 @@ absl::Status CheckArrayAgainstTerrain(const netcdf::NetcdfFile& file, CfMetadata
     break;
   }
   return absl::OkStatus();
+}
+
+// Sets what variables mean by the model that wrote them, where their names do not say it.
+void ApplyModel(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
+  const bool icon = file.TextAttribute("", "uuidOfHGrid").has_value() ||
+                    file.NumberAttribute("", "number_of_grid_used").has_value();
+  const bool per_kg = std::ranges::any_of(metadata->fields, [](const CfField& field) {
+    return field.quantity.quantity == volume::Quantity::kMixingRatio;
+  });
+  if (icon && per_kg) {
+    for (CfField& field : metadata->fields) field.quantity.of_moist_air = true;
+    for (CfAirField& field : metadata->air) {
+      if (field.air.variable == AirVariable::kVapour) field.air.of_moist_air = true;
+    }
+    metadata->assumptions.push_back(
+        "Masses per kg are those per kg of the whole air, as in all files of ICON.");
+  }
+  if (IsMpas(file) && Has(*metadata, AirVariable::kDensity)) {
+    // Without humidity, the density counts as that of dry air.
+    std::erase_if(metadata->air, [](const CfAirField& field) {
+      return field.air.variable == AirVariable::kVapour;
+    });
+    metadata->assumptions.push_back("The air's density is that of dry air, as in MPAS.");
+  }
 }
 
 // Returns the only group with fields, or the root.
@@ -369,6 +413,7 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root) {
   metadata.order.reversed[2] = metadata.heights.reversed;
   THUNDERHEAD_RETURN_IF_ERROR(CheckArrayAgainstTerrain(file, &metadata));
   THUNDERHEAD_RETURN_IF_ERROR(FindAir(file, variables, &metadata));
+  ApplyModel(file, &metadata);
   FindWind(file, variables, &metadata);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       CfTimes times,
