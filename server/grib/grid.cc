@@ -301,8 +301,7 @@ std::string NameOfTemplate(std::uint64_t number) {
     case 90:
       return "is a satellite's view";
     case 100:
-    case 101:
-      return "is unstructured (ICON's triangles)";
+      return "is unstructured (triangles of an icosahedron)";
     case 140:
       return "is on a Lambert map of equal areas";
     case 150:
@@ -313,6 +312,24 @@ std::string NameOfTemplate(std::uint64_t number) {
     default:
       return "is of a kind that is not known";
   }
+}
+
+// Returns that the grid consists of ICON's triangles, and which grid of ICON it is.
+absl::Status UnreadTriangles(const Octets& section) {
+  constexpr std::size_t kOctets = 35;
+  if (section.Count() < kOctets) return BadGrid("has too few numbers");
+  std::string uuid;
+  for (std::size_t octet = 20; octet <= kOctets; ++octet) {
+    const bool begins_part = octet == 24 || octet == 26 || octet == 28 || octet == 30;
+    absl::StrAppend(&uuid, begins_part ? "-" : "",
+                    absl::Hex(section.Unsigned(octet, 1), absl::kZeroPad2));
+  }
+  return absl::InvalidArgumentError(absl::StrCat(
+      "its grid is unstructured (template 3.101, ICON's triangles), and GRIB2 files do not have "
+      "the "
+      "places of its cells; convert it to netCDF with the grid file of the grid ",
+      section.Unsigned(16, 3), " (uuidOfHGrid ", uuid,
+      "), for example with cdo -f nc setgrid,GRID_FILE, and add the heights of the levels (HHL)"));
 }
 
 }  // namespace
@@ -332,6 +349,8 @@ absl::StatusOr<Grid> ReadGrid(std::span<const std::byte> section3) {
       return ReadPolarStereographic(section);
     case 30:
       return ReadLambert(section);
+    case 101:
+      return UnreadTriangles(section);
     default:
       return UnreadGrid(
           absl::StrCat(NameOfTemplate(number), " (template 3.", number, "), which is not read"));

@@ -38,6 +38,15 @@ std::string RunOf(const CfMetadata& metadata) {
   return run;
 }
 
+void SetPlace(const EvenColumns& even, StormFile& file) {
+  // Rounding must not turn Greenwich into a place west of it.
+  constexpr double kRounding_deg = 1e-9;
+  const double longitude_deg = even.middle.longitude_deg;
+  file.longitude_deg = std::abs(longitude_deg) < kRounding_deg ? 0.0 : longitude_deg;
+  file.latitude_deg = even.middle.latitude_deg;
+  file.projection = even.projection;
+}
+
 class CfFormat final : public StormFormat {
  public:
   std::string_view Name() const override { return "a CF file"; }
@@ -82,12 +91,7 @@ class CfFormat final : public StormFormat {
         file.dx_m = even.dx_m;
         file.dy_m = even.dy_m;
       }
-      // Rounding must not turn Greenwich into a place west of it.
-      constexpr double kRounding_deg = 1e-9;
-      const double longitude_deg = even.middle.longitude_deg;
-      file.longitude_deg = std::abs(longitude_deg) < kRounding_deg ? 0.0 : longitude_deg;
-      file.latitude_deg = even.middle.latitude_deg;
-      file.projection = even.projection;
+      if (!even.projection.empty()) SetPlace(even, file);
     }
     file.reader =
         MakeRecordReader([metadata = std::make_shared<const CfMetadata>(std::move(metadata))](

@@ -285,6 +285,32 @@ absl::StatusOr<std::optional<std::vector<absl::Time>>> ReadReferenceAndPeriod(
   return std::optional(std::move(times));
 }
 
+// Reads times that are written as text, as MPAS writes them ("2013-05-20_18:00:00" in xtime).
+// Returns nothing if the file has none.
+absl::StatusOr<std::optional<std::vector<absl::Time>>> ReadWrittenTimes(
+    const netcdf::NetcdfFile& file, const std::string& dimension, std::size_t records) {
+  constexpr const char* kName = "xtime";
+  constexpr std::size_t kLongest = 1000;  // characters; MPAS has 64
+  const auto on = file.Dimensions(kName);
+  const auto shape = file.Shape(kName);
+  const bool along = on.ok() && shape.ok() && on->size() == 2 && on->front() == dimension &&
+                     shape->front() == records && shape->back() <= kLongest;
+  if (!along) return std::optional<std::vector<absl::Time>>();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> rows, file.ReadRows(kName));
+  std::vector<absl::Time> times;
+  for (const std::string& row : rows) {
+    const std::string text(absl::StripAsciiWhitespace(row));
+    const std::optional<absl::Time> time = ParseDateTime(text);
+    if (!time.has_value()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(file.Path(), ": ", kName, " has the time '", absl::CEscape(text),
+                       "' where one such as 2013-05-20_18:00:00 is needed; correct it"));
+    }
+    times.push_back(*time);
+  }
+  return std::optional(std::move(times));
+}
+
 // Returns the date from which PALM and other models count, if the file gives it apart from the
 // units.
 std::string OriginOf(const netcdf::NetcdfFile& file, const std::string& name) {
@@ -353,6 +379,8 @@ absl::StatusOr<CfTimes> ReadCfTimes(const netcdf::NetcdfFile& file, const std::s
   if (!name.has_value()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(auto times, ReadReferenceAndPeriod(file, dimension, records));
     if (times.has_value()) return CfTimes{*std::move(times), {}, RunStartOf(file, dimension)};
+    THUNDERHEAD_ASSIGN_OR_RETURN(times, ReadWrittenTimes(file, dimension, records));
+    if (times.has_value()) return CfTimes{*std::move(times), {}, {}};
     if (records == 1) return CfTimes{{StartWithoutDate()}, {}, {}};
     return absl::InvalidArgumentError(absl::StrCat(
         file.Path(), ": the dimension ", dimension, " has no coordinate variable ", dimension,

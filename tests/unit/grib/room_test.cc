@@ -476,7 +476,16 @@ TEST(GribGrid, NamesGridsThatAreNotRead) {
             .message());
   };
   EXPECT_THAT(error(40), HasSubstr("is Gaussian (template 3.40)"));
-  EXPECT_THAT(error(101), HasSubstr("ICON's triangles"));
+  EXPECT_THAT(
+      ReadGrid(AsBytes(testing::Section(
+                   3, Number(0, 1) + Number(4, 4) + Number(0, 2) + Number(101, 2) + Number(6, 1) +
+                          Number(44, 3) + Number(1, 1) +
+                          "\xa2\x7b\x8d\xe6\x18\xc4\x11\xe4\x82\x0a\xb5\xb0\x98\xc6\xa5\xc0")))
+          .status()
+          .message(),
+      AllOf(HasSubstr("ICON's triangles"), HasSubstr("the grid 44 (uuidOfHGrid a27b8de6-18c4-"
+                                                     "11e4-820a-b5b098c6a5c0)")));
+  EXPECT_THAT(error(100), HasSubstr("triangles of an icosahedron"));
   EXPECT_THAT(error(32769), HasSubstr("32769"));
   EXPECT_THAT(error(4711), HasSubstr("of a kind that is not known (template 3.4711)"));
 }

@@ -426,11 +426,14 @@ TEST_F(CfLayouts, ColumnsThatRunSouthAreTurned) {
   EXPECT_EQ((*fields)->condensate.low.y, 3);
 }
 
-TEST_F(CfLayouts, UnstructuredGridsAreRefusedByName) {
+TEST_F(CfLayouts, ColumnsWithoutPlacesOrAreaAreRefusedByName) {
   SyntheticCf file = Cloud();
   file.coordinates[0] = {"cell", std::vector<double>(6), {}, {}, false};
   file.variables[0].dimensions = {"z", "cell"};
-  ExpectError(file, "unstructured grid 'cell'");
+  ExpectError(file, "cells 'cell' of an unstructured grid");
+  file.coordinates[0].name = "ncol";
+  file.variables[0].dimensions = {"z", "ncol"};
+  ExpectError(file, "points 'ncol' of spectral elements");
   file.coordinates[0].name = "column";
   file.variables[0].dimensions = {"z", "column"};
   file.variables.push_back(Values("lat", {"column"}, "degrees_north", [](const Index& at) {
@@ -438,7 +441,7 @@ TEST_F(CfLayouts, UnstructuredGridsAreRefusedByName) {
   }));
   file.variables.push_back(
       Values("lon", {"column"}, "degrees_east", [](const Index&) { return 5.0; }));
-  ExpectError(file, "unstructured grid 'column'");
+  ExpectError(file, "the cells lie on one line, so the domain has no area");
 }
 
 // CM1 names its dimensions ni, nj and nk, and its wind lies on the faces between cells.
