@@ -17,7 +17,15 @@ namespace thunderhead::sandbox {
 // The largest number of files that one reader gets at once.
 inline constexpr std::size_t kMostBundled = 20'000;
 
-enum class Wanted : std::uint8_t { kProbe, kDescription, kDescriptions, kVerticalGrid, kFields };
+// kOther is for programs that read files of other kinds than storm files.
+enum class Wanted : std::uint8_t {
+  kProbe,
+  kDescription,
+  kDescriptions,
+  kVerticalGrid,
+  kFields,
+  kOther
+};
 
 struct Request {
   Wanted wanted = Wanted::kProbe;
@@ -28,6 +36,7 @@ struct Request {
   std::uint8_t bundle = 0;
   std::vector<std::string> bundled;  // the paths of these files; not sent, as the bundle has them
   std::uint64_t record = 0;
+  std::string part;  // for kOther: the name of the part of the file that is wanted
   std::optional<storm_files::VerticalGrid> grid;
   std::uint64_t memory_bytes = 0;  // limit in bytes for reading, without the mapped file
   std::uint64_t shared_bytes = 0;  // size of the shared memory, which is an open descriptor; 0 if
@@ -45,7 +54,8 @@ enum class Reply : std::uint8_t {
   kDescription,
   kDescriptions,
   kGrid,
-  kFields
+  kFields,
+  kOther
 };
 
 // A line of the reader's log or, for Reply::kError, a status.
@@ -80,6 +90,7 @@ void Visit(Archive& archive, Request& request) {
   archive(request.path);
   archive(request.bundle);
   archive(request.record);
+  archive(request.part);
   VisitOptional(archive, request.grid);
   archive(request.memory_bytes);
   archive(request.shared_bytes);

@@ -11,6 +11,7 @@
 #include "base/memory_fit.h"
 #include "base/status.h"
 #include "base/utf8.h"
+#include "storm_files/vdb_start.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -70,6 +71,7 @@ absl::Status StormFormats::CheckStart(const std::string& path, int file) const {
   std::string start(UnknownFile::kStart_bytes, '\0');
   const ssize_t count = pread(file, start.data(), start.size(), 0);
   start.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  if (BeginsLikeVdb(start)) return RefuseVdb(path);
   const bool known =
       std::ranges::any_of(formats_, [&](const auto& format) { return format->MayBegin(start); });
   // NetCDF files may be locked by their writer.
