@@ -1,5 +1,6 @@
 #include "storm_files/storm_format.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -72,8 +73,16 @@ absl::Status StormFormats::CheckStart(const std::string& path, int file) const {
   const ssize_t count = pread(file, start.data(), start.size(), 0);
   start.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
   if (BeginsLikeVdb(start)) return RefuseVdb(path);
-  const bool known =
-      std::ranges::any_of(formats_, [&](const auto& format) { return format->MayBegin(start); });
+  struct stat information = {};
+  const bool has_size = fstat(file, &information) == 0;
+  bool known = false;
+  for (const std::shared_ptr<const StormFormat>& format : formats_) {
+    if (!format->MayBegin(start)) continue;
+    known = true;
+    if (!has_size) continue;
+    THUNDERHEAD_RETURN_IF_ERROR(
+        format->CheckNeighbours(path, start, static_cast<std::uint64_t>(information.st_size)));
+  }
   // NetCDF files may be locked by their writer.
   const bool checked = known && !netcdf::NetcdfFile::BeginsLikeNetcdf(start);
   return checked ? absl::OkStatus() : netcdf::NetcdfFile::CheckStart(path, file);
