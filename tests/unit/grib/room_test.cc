@@ -127,6 +127,13 @@ TEST(GribIndex, ReadsAroundBulletinHeaders) {
   EXPECT_TRUE(BeginsLikeGrib(file));
 }
 
+TEST(GribIndex, ATextAboutGribIsNoGribFile) {
+  const std::string text = "# GRIB2 test files\nEach message begins with GRIB and its length.\n";
+  EXPECT_FALSE(BeginsLikeGrib(text));
+  EXPECT_FALSE(BeginsLikeGrib("GRIB"));
+  EXPECT_TRUE(BeginsLikeGrib("GRIB: " + BytesOf(Small())));
+}
+
 TEST(GribIndex, NamesDamage) {
   const std::string whole = BytesOf(Small());
   const std::string cut = whole.substr(0, whole.size() - 9);
