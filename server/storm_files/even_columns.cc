@@ -452,6 +452,14 @@ void Evener::ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m,
 
 // Resamples the columns to a grid in the projection of `even`, or to that of another time.
 absl::Status Evener::Resample(const EvenColumns* like, EvenColumns& even) const {
+  // Each column needs about 100 bytes here.
+  constexpr double kMostColumns = 1e8;
+  const glm::ivec2& count = model_.Count();
+  if (static_cast<double>(count.x) * count.y > kMostColumns) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("the grid has ", count.x, " x ", count.y,
+                     " columns, which are too many to resample; cut a smaller region"));
+  }
   if (like != nullptr) even.projection = like->projection;
   THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection map, MapProjection::Open(even.projection));
   const std::optional<glm::dvec2> middle_m = map.WorldOf(middle_);
@@ -542,12 +550,14 @@ std::string ResampledSentence(const EvenColumns& even) {
                       ", because the true distances between the model's columns are ", ranges, ".");
 }
 
-// Returns a scale in percent, rounded away from 100 to a tenth.
+// Returns a scale in percent, rounded to a tenth away from 100. A hundredth of a tenth is not said.
 std::string PercentText(double scale) {
   constexpr double kBeyondUse = 10.0;
+  constexpr double kUnsaid = 0.01;
   if (!(scale <= kBeyondUse)) return "more than 1000 %";
   const double tenths = 1000.0 * scale;
-  return absl::StrFormat("%.1f %%", 0.1 * (scale < 1.0 ? std::floor(tenths) : std::ceil(tenths)));
+  const double rounded = scale < 1.0 ? std::floor(tenths + kUnsaid) : std::ceil(tenths - kUnsaid);
+  return absl::StrFormat("%.1f %%", 0.1 * rounded);
 }
 
 }  // namespace

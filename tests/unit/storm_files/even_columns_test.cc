@@ -431,6 +431,12 @@ TEST(EvenColumns, RefusesWhatIsUnusable) {
   unknown.projection = "+proj=merc";
   EXPECT_THAT(refusal(unknown), HasSubstr("size of the Earth"));
 
+  // A few bytes of a file can announce many columns.
+  ColumnPlaces huge = LongitudeLatitudeGrid(4.0, 57.0).places;
+  huge.columns = {1'000'000, 900'000};
+  huge.step = {1e-5, 1e-5};
+  EXPECT_EQ(MakeEven(huge).status().code(), absl::StatusCode::kResourceExhausted);
+
   // Places in any order are no grid, and are refused in a short time.
   ColumnPlaces scattered = Listed(MercatorGrid(0.0)).places;
   std::mt19937 random(1);
