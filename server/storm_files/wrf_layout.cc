@@ -99,8 +99,9 @@ std::string NameOfTime(const netcdf::NetcdfFile& file) {
 
 bool HasUnits(const netcdf::NetcdfFile& file, const std::string& variable, const WrfUnit& unit) {
   std::string spelling = file.TextOrEmpty(variable, "units");
-  // WRF writes a dash for numbers without a unit, braces around exponents, and # for a number.
-  std::erase_if(spelling, [](char c) { return c == '{' || c == '}' || c == '#'; });
+  // WRF's Registry has a dash for numbers without a unit, "# kg(-1)" and "W m{-2}".
+  std::erase_if(spelling,
+                [](char c) { return std::string_view("#(){}").find(c) != std::string_view::npos; });
   const auto text = absl::StripAsciiWhitespace(spelling);
   if (text.empty()) return true;
   const std::optional<UnitConversion> conversion =

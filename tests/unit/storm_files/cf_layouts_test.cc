@@ -344,6 +344,8 @@ TEST_F(CfLayouts, LongitudesAndLatitudesOfEachColumnAreEnough) {
   SyntheticCf file = Cloud();
   AddPlaces(file, "y", "x");
   ASSERT_TRUE(Read(file).ok());
+  // The columns' own map projection places coasts.
+  EXPECT_THAT(info_.projection, HasSubstr("+proj="));
   EXPECT_NEAR(info_.latitude_deg.value(), 47.0, 1e-4);
   EXPECT_NEAR(info_.longitude_deg.value(), 8.0, 1e-4);
   // The dimensions have names without meaning and no coordinates.

@@ -144,6 +144,8 @@ TEST_F(WrfRelativesTest, UnitsMayBeSpelledDifferently) {
   file.units = {
       {"height", "metre"}, {"pressure", "millibars"}, {"temp", "kelvins"}, {"QCLOUD", "KG KG-1"}};
   ExpectCloud(file);
+  file.units["QCLOUD"] = "kg kg(-1)";
+  ExpectCloud(file);
   file.units["QCLOUD"] = "g kg-1";
   EXPECT_THAT(Message(file), HasSubstr("QCLOUD has units 'g kg-1' where 'kg kg-1' is needed"));
 }
