@@ -59,7 +59,7 @@ struct SessionState {
   bool SteersWhoAsks() const;
   bool MayLookAround() const;
   bool MayMark() const;
-  // Returns the person who steers; null if no viewer steers.
+  // Returns the person in control; null if no one is.
   const v1::Person* Steerer() const;
   const v1::Person* PersonOf(std::uint64_t viewer_id) const;
   // Returns a name to show: the person's own name, or one made from the role.

@@ -35,8 +35,8 @@ bool Kiosk::ShowsOwnView() const {
 
 void Kiosk::Advance(Ui& ui, TimePoint now) {
   const client::SessionState& state = ui.state;
-  // The server reports who steers only after joining. A camera requested before that would begin an
-  // own view instead.
+  // The server reports who is in control only after joining. A camera requested before that would
+  // begin an own view instead.
   const bool known = state.link == client::Link::kLive && state.presence.people_size() > 0;
   if (views_.empty() || !known || (!state.Steers() && !state.MayLookAround())) return;
   const bool first = shown_ < 0;

@@ -60,7 +60,7 @@ test("false colours are picked where the picture shows them", async () => {
   await desktop.key("Escape", "Escape");
 });
 
-// The bar above the time line that shows who steers.
+// The bar above the time line that shows the person in control.
 const SESSION_BAR = { x: 300, y: 660, width: 680, height: 36 };
 
 test("rules, control and the pointer reach a viewer's page", async () => {

@@ -13,7 +13,7 @@ import { startDisplay } from "./xvfb.mjs";
 
 const SIZE = { width: 1280, height: 800 };
 const WINDOW = ["--width", String(SIZE.width), "--height", String(SIZE.height), "--scale", "1"];
-// The bar above the time line that shows who steers.
+// The bar above the time line that shows the person in control.
 const SESSION_BAR = { x: 300, y: 660, width: 680, height: 36 };
 const MIDDLE = { x: 700, y: 330 };
 

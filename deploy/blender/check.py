@@ -81,7 +81,11 @@ def storm_of(case, arguments):
 
 
 def render_both(number, case, arguments):
-    """Cycles' picture in two independent halves, the reference's and its standard error, and the seconds of each."""
+    """Renders the case with Cycles and the reference.
+
+    Returns two independent halves of Cycles' picture, the reference's picture and its standard error, and the seconds
+    that each program took.
+    """
     base = os.path.join(arguments.work, f"case{number}")
     scene_of(case, base + ".scene.json")
     common = [storm_of(case, arguments), "--scene", base + ".scene.json", "--camera", case.camera, "--size",
@@ -111,7 +115,10 @@ def blocks(picture):
 
 
 def excess(halves, truth, variance):
-    """Relative RMSE of the difference, its noise, and what is left of it without the noise (negative: less than none)."""
+    """Returns the relative RMSE of the difference, the part of it that noise explains, and the rest.
+
+    The rest is negative if the difference is smaller than the noise explains.
+    """
     cycles = 0.5 * (halves[0] + halves[1])
     of_cycles = np.mean((halves[0] - halves[1]) ** 2) / 4
     of_truth = np.mean(variance)
@@ -142,7 +149,10 @@ HEADER = ("| case | camera | scatterings | g | step | samples | mean, Cycles ove
 
 
 def write_picture(path, halves, truth):
-    """Cycles, the reference, and half grey plus a quarter of their difference over the reference's mean."""
+    """Writes three pictures side by side: Cycles, the reference, and their difference.
+
+    The difference is shown as half grey plus a quarter of it, relative to the reference's mean.
+    """
     cycles = 0.5 * (halves[0] + halves[1])
     white = np.percentile(truth, 99.5)
     panes = [np.clip(picture / white, 0, 1) ** (1 / 2.2) for picture in (cycles, truth)]
@@ -152,7 +162,7 @@ def write_picture(path, halves, truth):
 
 
 def write_table(path, table):
-    """Replaces what is between the two marks in the page."""
+    """Replaces the text between the two marks in the page."""
     with open(path, encoding="utf-8") as file:
         page = file.read()
     before, rest = page.split(MARKS[0])

@@ -1,7 +1,7 @@
-"""Reads OpenEXR files of one part in scan lines, uncompressed or ZIP, with 32-bit float channels: all that Cycles and
-Thunderhead's reference write here. Each channel becomes a numpy array, rows from the top.
+"""Reads OpenEXR files of one part in scan lines, uncompressed or ZIP, with 32-bit float channels. Cycles and
+Thunderhead's reference write such files.
 
-Format: openexr.com/en/latest/OpenEXRFileLayout.html.
+Each channel becomes a numpy array, rows from top to bottom. Format: openexr.com/en/latest/OpenEXRFileLayout.html.
 """
 
 import struct
@@ -55,7 +55,7 @@ def _unzip(packed, size):
 
 
 def read(path):
-    """The channels of the file by name, arrays of (height, width)."""
+    """Returns the channels of the file by name, as arrays of shape (height, width)."""
     with open(path, "rb") as file:
         data = file.read()
     if data[:4] != b"\x76\x2f\x31\x01":
@@ -78,6 +78,6 @@ def read(path):
 
 
 def read_rgb(path, layer=""):
-    """The channels of a layer ("" or "stderr.") as an array of (height, width, 3)."""
+    """Returns the channels of a layer ("" or "stderr.") as an array of shape (height, width, 3)."""
     channels = read(path)
     return np.stack([channels[layer + color] for color in "RGB"], axis=-1).astype(np.float64)

@@ -1,11 +1,11 @@
-"""Renders a storm that `thunderhead export STORM -o storm.vdb --view storm.json` wrote, with Cycles.
+"""Renders with Cycles a storm that `thunderhead export STORM -o storm.vdb --view storm.json` wrote.
 
     blender -b --factory-startup --python thunderhead_storm.py -- storm.vdb storm.json -o storm.exr
 
-Camera, sun and picture size are the scene's; each grid scatters by Henyey and Greenstein with its own asymmetry and
-albedo. There is no sky, no air and no ground. Without -o the scene is only built: start Blender without -b, and work on.
-The output is linear radiance in the unit of the sun's irradiance, as 32-bit OpenEXR. One Blender unit is a kilometre.
-Needs Blender 3.4 or later.
+Camera, sun and picture size are those of the scene. Each grid scatters by Henyey and Greenstein with its own asymmetry
+and albedo. There is no sky, no air and no ground. Without -o the script only builds the scene: start Blender without
+-b, and continue there. The output is linear radiance in the unit of the sun's irradiance, as 32-bit OpenEXR. One
+Blender unit is a kilometre. Needs Blender 3.4 or later.
 """
 
 import argparse
@@ -51,10 +51,12 @@ def parse_arguments():
 
 
 def add_medium(material, grids):
-    """One node scatters for all grids: where several nodes overlap, Cycles 3.4 scatters too much of a lamp's direct
-    light, as if it added up their phase functions without weights (measured: two grids, 1.8 times as bright). Its albedo
-    and asymmetry are the means of the grids' at each place, weighted by their extinction and by their scattering. This is
-    exact for grids of equal asymmetry; others keep their mean cosine.
+    """Adds one scattering node for all grids.
+
+    If several nodes overlap, Cycles 3.4 scatters too much of a lamp's direct light: with two grids, 1.8 times as much
+    was measured. It seems to add up the nodes' phase functions without weights. The albedo and the asymmetry of the one
+    node are the means of the grids at each place, weighted by their extinction and by their scattering. This is exact
+    for grids of equal asymmetry. Other grids keep their mean cosine.
     """
     material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links

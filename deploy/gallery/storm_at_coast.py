@@ -1,7 +1,9 @@
-"""A storm moved to a coast for the gallery: one time of an idealised WRF file with a map projection, latitudes and longitudes around
-Galveston Bay, and land and water by GSHHG's coast.
+"""Moves a storm to a coast for the gallery.
 
     storm_at_coast.py IN.nc OUT.nc
+
+OUT.nc has one time of an idealised WRF file, with a map projection, latitudes and longitudes around Galveston Bay, and
+land and water by GSHHG's coast.
 """
 
 import sys
@@ -18,7 +20,7 @@ WATER, GRASSLAND = 16, 7  # USGS classes
 
 
 class Lambert:
-    """The conformal conic projection around the middle's meridian (Snyder 1987, 15-1 to 15-11)."""
+    """The Lambert conformal conic projection around the meridian of the domain's middle (Snyder 1987, 15-1 to 15-11)."""
 
     def __init__(self) -> None:
         first, second = numpy.radians(PARALLELS_DEG)
@@ -31,14 +33,14 @@ class Lambert:
         return numpy.tan(numpy.pi / 4 + latitude / 2)
 
     def place_of(self, east_m: numpy.ndarray, north_m: numpy.ndarray) -> tuple[numpy.ndarray, numpy.ndarray]:
-        """Latitudes and longitudes."""
+        """Returns latitudes and longitudes in degrees."""
         down_m = self.middle_m - north_m
         latitude = 2 * numpy.arctan((self.scale_m / numpy.hypot(east_m, down_m)) ** (1 / self.cone)) - numpy.pi / 2
         return numpy.degrees(latitude), MIDDLE_DEG[1] + numpy.degrees(numpy.arctan2(east_m, down_m) / self.cone)
 
 
 def coast_near(latitudes: numpy.ndarray, longitudes: numpy.ndarray) -> numpy.ndarray:
-    """Pieces of coasts around there, each as two longitudes and two latitudes."""
+    """Returns the pieces of coast near these places, each as two longitudes and two latitudes in degrees."""
     pieces = []
     with netCDF4.Dataset(COASTS) as file:
         file.set_auto_maskandscale(False)
@@ -61,7 +63,10 @@ def coast_near(latitudes: numpy.ndarray, longitudes: numpy.ndarray) -> numpy.nda
 
 
 def is_land(latitudes: numpy.ndarray, longitudes: numpy.ndarray) -> numpy.ndarray:
-    """Where the way north to the land crosses the coast an even number of times."""
+    """Returns which places are land.
+
+    A place is land if a line to the north, up to a latitude that is land, crosses the coast an even number of times.
+    """
     coast = coast_near(latitudes, longitudes)
     land = numpy.empty(latitudes.shape, bool)
     for at, longitude in numpy.ndenumerate(longitudes):

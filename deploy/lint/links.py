@@ -1,4 +1,4 @@
-"""Checks the links between the documents: that the file and the heading that each names are there."""
+"""Checks the links between the documents: each file and heading that a link names must exist."""
 
 import os
 import re
@@ -11,7 +11,7 @@ FENCED = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
 
 
 def anchors(path):
-    """The anchors that the headings of a document are given where it is shown."""
+    """Returns the anchors that a viewer of Markdown gives to the headings of a document."""
     with open(path, encoding="utf-8") as document:
         headings = HEADING.findall(FENCED.sub("", document.read()))
     return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}

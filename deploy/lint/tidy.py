@@ -1,12 +1,14 @@
-"""Runs clang-tidy on the files named on standard input, as many processes at once as there are processors.
+"""Runs clang-tidy on the files named on standard input, in as many processes at a time as there are processors.
 
-Nearly all of its time goes into the headers that a file includes. So files that are compiled alike are examined as one text,
-twelve at a time, as the build compiles them. Files of a text in which something is found are examined again one by one: that
-decides, and names the file. With --alone each file is also compiled by itself, which finds a forgotten include.
+clang-tidy spends nearly all of its time on the headers that a file includes. So twelve files with the same compiler
+arguments are examined as one text, as the build compiles them. If something is found in a text, its files are examined
+again one by one, and this result counts. With --alone each file is also compiled alone, which finds a forgotten
+include.
 
-A file that passed is not examined again until it, a file of this repository that it includes, its compile command or a
-check changes: what passed is kept in BUILD/passed.json, so an interrupted run goes on where it ended. Headers of the
-system do not count; remove that file after an upgrade. Exits with 1 if clang-tidy or the compiler found something.
+A file that passed is examined again only if it, a file of this repository that it includes, its compile command or a
+check has changed. BUILD/passed.json records the files that passed, so an interrupted run can be continued. Changes of
+the system's headers are not noticed: remove that file after an upgrade. Exits with 1 if clang-tidy or the compiler
+found something.
 """
 
 import argparse
@@ -33,7 +35,7 @@ def say(text):
 
 
 class Sources:
-    """The files of the repository, each read once."""
+    """The files of the repository. Each file is read once."""
 
     def __init__(self, root):
         self.root = root
@@ -45,7 +47,7 @@ class Sources:
         return self.texts[path]
 
     def included(self, path, folders):
-        """`path` and every file of the repository that it includes, in whatever way."""
+        """Returns `path` and every file of the repository that it includes, directly or through other files."""
         found, left = set(), [path]
         while left:
             file = left.pop()
@@ -76,7 +78,7 @@ def key_of(sources, files, command, rules):
 
 
 def arguments_of(command, path):
-    """The compiler's arguments that say how `path` is compiled, without input and output."""
+    """Returns the compiler's arguments for `path`, without input and output."""
     words = iter(shlex.split(command)[1:])
     for word in words:
         if word == "-o":
@@ -86,19 +88,19 @@ def arguments_of(command, path):
 
 
 def compile_alone(path, arguments):
-    """What the compiler says of a file by itself; empty if nothing. Warnings are the build's."""
+    """Compiles a file alone, with the build's warnings. Returns the compiler's messages; empty if there are none."""
     result = subprocess.run(["clang++", "-fsyntax-only", "-w", *arguments, str(path)], capture_output=True, text=True)
     return result.stderr if result.returncode else ""
 
 
 def tidy(path, arguments, checks):
-    """What clang-tidy says of a file; empty if nothing."""
+    """Runs clang-tidy on a file. Returns its messages; empty if there are none."""
     result = subprocess.run(["clang-tidy", "--quiet", *checks, str(path), "--", *arguments], capture_output=True, text=True)
     return result.stdout if result.returncode else ""
 
 
 def batches_of(todo):
-    """Groups of at most FILES_AT_ONCE files with the same arguments, in the order of their first."""
+    """Returns groups of at most FILES_AT_ONCE files with the same arguments, ordered by the first file of each group."""
     groups = {}
     for item in todo:
         groups.setdefault(item[1], []).append(item)

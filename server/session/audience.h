@@ -1,7 +1,7 @@
 // The people of a session and their connections. An Audience changes the roster (who is present and
-// who steers) and the board (pointers and marks) under a lock, and sends the new state to all
-// people. Each update is serialized once for all people and sent at most a few times a second;
-// older states are skipped. Safe from any thread. Knows no message formats.
+// the person in control) and the board (pointers and marks) under a lock, and sends the new state
+// to all people. Each update is serialized once for all people and sent at most a few times a
+// second; older states are skipped. Safe from any thread. Knows no message formats.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
-// The people of a session: who they are, who steers, who asks for control, who looks around, and
-// what the rules allow each of them. A plain value; the time is an argument. Knows no connections
-// and no messages.
+// The people of a session: who they are, who is in control, who asks for control, who looks around,
+// and what the rules allow each of them. A plain value; the time is an argument. Knows no
+// connections and no messages.
 //
 // At most one person steers at a time. Control is in one of four states. A person has it. Or it
 // waits some seconds for the person who steered and lost the connection. Or it is kept for the
@@ -64,7 +64,8 @@ struct Person {
 // Who has control, as it is saved across restarts: a viewer, the presenters, or no one.
 struct KeptControl {
   bool is_free = false;
-  // The viewer who steers or for whom control waits. An empty key means that no viewer does.
+  // The viewer who is in control, or for whom control waits. An empty key means that no viewer
+  // does.
   std::string viewer_key;
   std::string viewer_name;
   std::uint64_t viewer_id = 0;
@@ -135,12 +136,12 @@ class Roster {
   // steers, or a presenter, is asked. PERMISSION_DENIED while control is locked; RESOURCE_EXHAUSTED
   // for asking too often.
   absl::Status AskControl(std::uint64_t id, Time now);
-  // Gives control to a person, or gives it up if `to` is 0. The person who steers and presenters
+  // Gives control to a person, or gives it up if `to` is 0. The person in control and presenters
   // may do so. Control that a presenter gives up becomes free and goes to the viewer who asked
   // first, if any. Control that a viewer gives up goes back to the presenters. PERMISSION_DENIED if
   // a viewer gives it to a viewer while control is locked.
   absl::Status GiveControl(std::uint64_t from, std::uint64_t to, Time now);
-  // Refuses a request for control. The person who steers and presenters may do so.
+  // Refuses a request for control. The person in control and presenters may do so.
   absl::Status RefuseControl(std::uint64_t from, std::uint64_t to);
   absl::Status TakeControl(std::uint64_t id);
 
@@ -168,7 +169,7 @@ class Roster {
   // Returns the people in the order in which they joined.
   const std::vector<Person>& people() const { return people_; }
   const Person* Find(std::uint64_t id) const;
-  // Returns the id of the person who steers; 0 if no one steers.
+  // Returns the id of the person in control; 0 if no one is.
   std::uint64_t steering() const { return steering_; }
   bool presenter_away() const;
   // Returns the person for whom control waits, in the state in which they left. Null if control

@@ -15,11 +15,6 @@
 namespace thunderhead::storm_files {
 namespace {
 
-bool Has(const CfMetadata& metadata, AirVariable variable) {
-  return std::ranges::any_of(
-      metadata.air, [variable](const CfAirField& field) { return field.air.variable == variable; });
-}
-
 // Returns whether a pressure or temperature is only the deviation from a base state. Then a whole
 // column of the first time is far below the values of any atmosphere. PALM and MONC write such a p,
 // and MONC such a th, and their names do not say so.
@@ -84,7 +79,8 @@ class AirFinder {
 
   bool MayBeOnAllAxes(const std::string& name) const {
     const auto shape = file_.Shape(name);
-    return shape.ok() && shape->size() >= 3 && !HasFewerAxes(file_, name, metadata_);
+    return shape.ok() && shape->size() >= RankOf(metadata_) &&
+           !HasFewerAxes(file_, name, metadata_);
   }
 
   absl::Status TakeOne(const CfDescription& variable, const CfAir& air, bool profile) {

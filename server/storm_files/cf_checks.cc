@@ -15,6 +15,13 @@ absl::Status WrongUnits(const netcdf::NetcdfFile& file, const CfDescription& var
       " where ", wanted, " is needed; convert it, or add its units attribute"));
 }
 
+std::size_t RankOf(const CfMetadata& metadata) { return metadata.dimensions.unstructured ? 2 : 3; }
+
+bool Has(const CfMetadata& metadata, AirVariable variable) {
+  return std::ranges::any_of(
+      metadata.air, [variable](const CfAirField& field) { return field.air.variable == variable; });
+}
+
 bool OnAllAxes(const CfVariable& variable) {
   return std::ranges::none_of(variable.places, [](int place) { return place < 0; });
 }

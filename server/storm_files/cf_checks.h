@@ -1,6 +1,7 @@
 // Checks of the variables of a CF file that several parts of its metadata share.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -12,6 +13,12 @@ namespace thunderhead::storm_files {
 // Returns INVALID_ARGUMENT, which names the variable, its units and those that are wanted.
 absl::Status WrongUnits(const netcdf::NetcdfFile& file, const CfDescription& variable,
                         const std::string& wanted);
+
+// Returns the number of dimensions, without time, of a variable on all axes.
+std::size_t RankOf(const CfMetadata& metadata);
+
+// Returns whether a variable of the air was found.
+bool Has(const CfMetadata& metadata, AirVariable variable);
 
 // Returns whether the variable lies on x, y and z.
 bool OnAllAxes(const CfVariable& variable);

@@ -56,7 +56,7 @@ bool HoldsHeights(const CfDescription& variable) {
   }
   const std::string name = absl::AsciiStrToLower(variable.name);
   return OneOf(name, {"hhl", "hfl", "z_ifc", "z_mc", "zhval", "zghalf", "zgfull", "zg", "zgeo",
-                      "altitude", "alt", "height", "geopotential_height", "geopotential"});
+                      "altitude", "alt", "height", "geopotential_height", "geopotential", "zgrid"});
 }
 
 bool IsAboveGround(const netcdf::NetcdfFile& file, const std::string& variable,
@@ -500,7 +500,11 @@ absl::StatusOr<CfHeights> ReadCfHeights(const netcdf::NetcdfFile& file,
   }
   const CfDimension& z = dimensions.axes[2];
   if (z.coordinate.empty()) {
-    return NoHeights(file, z.name, "has no coordinate variable, so the heights are not known");
+    return NoHeights(file, z.name,
+                     z.name == "nVertLevels"
+                         ? "has no heights (MPAS writes them to zgrid in the init or static file: "
+                           "add it, for example with ncks -A -v zgrid)"
+                         : "has no coordinate variable, so the heights are not known");
   }
   // COSMO and ICON number their levels and keep the heights in HHL, often in another file.
   if (const auto why = WhyNoHeight(file, z.coordinate); why.has_value()) {

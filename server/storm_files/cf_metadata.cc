@@ -10,6 +10,7 @@
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 #include "storm_files/cf_air.h"
+#include "storm_files/cf_cells.h"
 #include "storm_files/cf_checks.h"
 #include "storm_files/cf_models.h"
 #include "storm_files/cf_times.h"
@@ -132,9 +133,25 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
   return absl::OkStatus();
 }
 
+// Places the cells of an unstructured grid, in one row.
+absl::Status ReadCells(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
+  const auto& [cells, row, layers] = metadata->dimensions.axes;
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      metadata->places,
+      PlaceCells(file, metadata->fields.front().variable.name, metadata->dimensions));
+  metadata->x.dimension = cells.name;
+  metadata->x.unit = CfAxisUnit::kNone;
+  metadata->x.cells = static_cast<int>(cells.length);
+  metadata->y = metadata->x;
+  metadata->y.cells = 1;
+  metadata->order.cells = {cells.length, 1, layers.length};
+  return absl::OkStatus();
+}
+
 // Reads the horizontal axes. If the domain is only one cell wide along one axis, that width is
 // assumed to be the cell size along the other axis.
 absl::Status ReadColumns(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
+  if (metadata->dimensions.unstructured) return ReadCells(file, metadata);
   const auto& [x_on, y_on, z_on] = metadata->dimensions.axes;
   const auto read = [&](const CfDimension& on, CfDirection direction, double single,
                         CfAxis* axis) -> absl::Status {
@@ -191,7 +208,7 @@ void FindWind(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& 
     const std::optional<CfWind> wind = WindVariableOf(variable);
     if (!wind.has_value()) continue;
     const auto shape = file.Shape(variable.name);
-    if (!shape.ok() || shape->size() < 3) continue;
+    if (!shape.ok() || shape->size() < RankOf(*metadata)) continue;
     absl::StatusOr<CfVariable> arranged = ArrangeWind(file, variable, *wind, *metadata);
     if (!arranged.ok()) {
       spdlog::warn("the motion of the air is read without {}: {}", variable.name,
@@ -240,6 +257,30 @@ absl::Status CheckArrayAgainstTerrain(const netcdf::NetcdfFile& file, CfMetadata
     break;
   }
   return absl::OkStatus();
+}
+
+// Sets what variables mean by the model that wrote them, where their names do not say it.
+void ApplyModel(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
+  const bool icon = file.TextAttribute("", "uuidOfHGrid").has_value() ||
+                    file.NumberAttribute("", "number_of_grid_used").has_value();
+  const bool per_kg = std::ranges::any_of(metadata->fields, [](const CfField& field) {
+    return field.quantity.quantity == volume::Quantity::kMixingRatio;
+  });
+  if (icon && per_kg) {
+    for (CfField& field : metadata->fields) field.quantity.of_moist_air = true;
+    for (CfAirField& field : metadata->air) {
+      if (field.air.variable == AirVariable::kVapour) field.air.of_moist_air = true;
+    }
+    metadata->assumptions.push_back(
+        "Masses per kg are those per kg of the whole air, as in all files of ICON.");
+  }
+  if (IsMpas(file) && Has(*metadata, AirVariable::kDensity)) {
+    // Without humidity, the density counts as that of dry air.
+    std::erase_if(metadata->air, [](const CfAirField& field) {
+      return field.air.variable == AirVariable::kVapour;
+    });
+    metadata->assumptions.push_back("The air's density is that of dry air, as in MPAS.");
+  }
 }
 
 // Returns the only group with fields, or the root.
@@ -301,11 +342,13 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root) {
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckArrayAgainstTerrain(file, &metadata));
   THUNDERHEAD_RETURN_IF_ERROR(FindCfAir(file, variables, &metadata));
+  ApplyModel(file, &metadata);
   FindWind(file, variables, &metadata);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       CfTimes times,
       ReadCfTimes(file, metadata.fields.front().variable.name, metadata.dimensions.time));
   metadata.times = std::move(times.times);
+  metadata.run_start = times.run_start;
   for (std::vector<std::string>* more : {&metadata.places.assumptions, &times.assumptions}) {
     metadata.assumptions.insert(metadata.assumptions.end(), more->begin(), more->end());
   }

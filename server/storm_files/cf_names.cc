@@ -131,6 +131,9 @@ std::optional<CfQuantity> FromStandardName(const std::string& standard_name) {
   } else if (absl::ConsumePrefix(&substance, "mass_concentration_of_")) {
     quantity.quantity = volume::Quantity::kMassConcentration;
     absl::ConsumeSuffix(&substance, "_in_air");
+  } else if (absl::ConsumePrefix(&substance, "specific_") &&
+             absl::ConsumeSuffix(&substance, "_content")) {
+    quantity.of_moist_air = true;
   } else if (!absl::ConsumeSuffix(&substance, "_mixing_ratio")) {
     return std::nullopt;
   }
@@ -201,6 +204,13 @@ void ApplyUnits(const std::string& units, CfQuantity* quantity) {
   }
 }
 
+// Returns whether only the variable's name says what it holds. ICON repeats some names in the
+// attribute standard_name.
+bool HasPlainName(const CfDescription& variable) {
+  return variable.standard_name.empty() ||
+         absl::EqualsIgnoreCase(variable.standard_name, variable.name);
+}
+
 std::optional<AirVariable> AirByName(const CfDescription& variable) {
   const std::string& standard = variable.standard_name;
   const std::string name = absl::AsciiStrToLower(variable.name);
@@ -208,7 +218,7 @@ std::optional<AirVariable> AirByName(const CfDescription& variable) {
       (standard.empty() && IsOneOf(name, {"pp", "prspert"}))) {
     return AirVariable::kPressureDeviation;
   }
-  const bool plain = standard.empty() && !IsOtherThanNamed(variable);
+  const bool plain = HasPlainName(variable) && !IsOtherThanNamed(variable);
   if (standard == "air_density" ||
       (plain && IsOneOf(name, {"rho", "air_density", "rhoa", "rhobf", "rhof", "rhoref", "rhob",
                                "rhon", "dn0"}))) {
@@ -234,20 +244,20 @@ std::optional<AirVariable> AirByName(const CfDescription& variable) {
 std::optional<WindVariable> WindByName(const CfDescription& variable) {
   const std::string& standard = variable.standard_name;
   const std::string name = absl::AsciiStrToLower(variable.name);
-  const bool plain = standard.empty();
+  const bool plain = HasPlainName(variable);
   if (IsOneOf(standard, {"eastward_wind", "x_wind", "grid_eastward_wind"}) ||
-      (plain && IsOneOf(name, {"u", "ua", "uinterp", "u_wind"}))) {
+      (plain && IsOneOf(name, {"u", "ua", "uinterp", "u_wind", "ureconstructzonal"}))) {
     return WindVariable::kEastward;
   }
   if (IsOneOf(standard, {"northward_wind", "y_wind", "grid_northward_wind"}) ||
-      (plain && IsOneOf(name, {"v", "va", "vinterp", "v_wind"}))) {
+      (plain && IsOneOf(name, {"v", "va", "vinterp", "v_wind", "ureconstructmeridional"}))) {
     return WindVariable::kNorthward;
   }
   if (standard == "upward_air_velocity" ||
       (plain && IsOneOf(name, {"w", "wa", "winterp", "w_wind"}))) {
     return WindVariable::kUpward;
   }
-  if (standard == "specific_turbulent_kinetic_energy_of_air" ||
+  if (IsOneOf(standard, {"specific_turbulent_kinetic_energy_of_air", "turbulent_kinetic_energy"}) ||
       (plain && IsOneOf(name, {"tke", "tke_pbl"}))) {
     return WindVariable::kTurbulentEnergy;
   }
@@ -278,7 +288,7 @@ std::optional<CfQuantity> QuantityOf(const CfDescription& variable) {
       absl::StartsWith(variable.standard_name, "volume_extinction_coefficient_in_air")) {
     quantity.emplace();
     quantity->quantity = volume::Quantity::kExtinction;
-  } else if (!variable.standard_name.empty()) {
+  } else if (!HasPlainName(variable)) {
     quantity = FromStandardName(variable.standard_name);
   } else {
     quantity = FromName(variable);
@@ -292,9 +302,8 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
   if (!kind.has_value()) return std::nullopt;
   CfAir air;
   air.variable = *kind;
-  air.of_moist_air =
-      variable.standard_name == "specific_humidity" ||
-      (variable.standard_name.empty() && IsOneOf(variable.name, {"q", "hus", "qv_s"}));
+  air.of_moist_air = variable.standard_name == "specific_humidity" ||
+                     (HasPlainName(variable) && IsOneOf(variable.name, {"q", "hus", "qv_s"}));
   const auto use = [&](std::string_view unit) {
     if (HasNoUnits(variable.units)) return true;
     const std::optional<UnitConversion> conversion = ConversionOf(variable.units, unit);
@@ -329,8 +338,8 @@ std::optional<CfWind> WindVariableOf(const CfDescription& variable) {
   const std::optional<UnitConversion> conversion =
       ConversionOf(variable.units, energy ? "m2 s-2" : "m s-1");
   const bool known = conversion.has_value() && conversion->offset == 0.0;
-  const bool true_east =
-      variable.standard_name == "eastward_wind" || variable.standard_name == "northward_wind";
+  const bool true_east = IsOneOf(variable.standard_name, {"eastward_wind", "northward_wind"}) ||
+                         absl::StartsWith(variable.name, "uReconstruct");
   return CfWind{*kind, known, known ? conversion->scale : 1.0, true_east};
 }
 
@@ -371,9 +380,10 @@ std::optional<CfDirection> DirectionOf(const CfDescription& coordinate) {
                      "ny", "nj", "njp1", "south_north"})) {
     return CfDirection::kY;
   }
-  if (IsOneOf(name, {"z",  "zh",     "zc",       "zf",    "zt",         "zm",    "zn",
-                     "zw", "height", "altitude", "alt",   "lev",        "level", "nz",
-                     "nk", "nkp1",   "zu_3d",    "zw_3d", "bottom_top", "hybrid"})) {
+  if (IsOneOf(name, {"z",          "zh",     "zc",          "zf",           "zt",    "zm",
+                     "zn",         "zw",     "height",      "altitude",     "alt",   "lev",
+                     "level",      "nz",     "nk",          "nkp1",         "zu_3d", "zw_3d",
+                     "bottom_top", "hybrid", "nvertlevels", "nvertlevelsp1"})) {
     return CfDirection::kZ;
   }
   // CDO numbers equal names: "height_2". ICON and COSMO call their levels so.

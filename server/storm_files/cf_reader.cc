@@ -319,6 +319,7 @@ absl::StatusOr<ModelWind> CfSource::Wind() {
   wind.dx_m = domain_.dx_m;
   wind.dy_m = domain_.dy_m;
   wind.on_faces = false;
+  wind.in_order = !metadata_.dimensions.unstructured;
   wind.east_and_north =
       domain_.even != nullptr && std::ranges::any_of(metadata_.wind, [](const CfWindField& field) {
         return field.wind.variable == WindVariable::kEastward && field.wind.true_east;

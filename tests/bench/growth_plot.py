@@ -2,9 +2,9 @@
 
     growth_plot.py BENCHMARK.json [LOAD.json ...] -o PREFIX
 
-BENCHMARK.json is what `thunderhead_bench --benchmark_filter=growth --benchmark_out=BENCHMARK.json` writes. Each LOAD.json is what
-`thunderhead load --json` prints for a number of viewers; without any, viewers are not plotted. `./dev bench growth` makes all of
-them and calls this.
+`thunderhead_bench --benchmark_filter=growth --benchmark_out=BENCHMARK.json` writes BENCHMARK.json. `thunderhead load
+--json` prints a LOAD.json for one number of viewers; without LOAD.json, viewers are not plotted. `./dev bench growth`
+writes all of these files and runs this script.
 """
 
 import argparse
@@ -30,7 +30,7 @@ AXES = {"cells": "cells", "pixels": "pixels", "slices": "samples along a ray, or
 
 
 def rows_of(benchmark):
-    """Rows of (technique, axis, value, moving, milliseconds, fields in MB, textures in MB), medians only, in order."""
+    """Returns rows of (technique, axis, value, moving, milliseconds, fields in MB, textures in MB), only medians, in order."""
     rows = []
     for run in benchmark["benchmarks"]:
         found = ROW.match(run["run_name"])

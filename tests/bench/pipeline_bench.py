@@ -1,6 +1,8 @@
-"""Pictures a minute of `thunderhead sequence` on a run of twelve files, and where the time goes: ./dev bench pipeline.
+"""Measures the pictures per minute of `thunderhead sequence` on a run of twelve files, and where the time is spent.
 
-Prints a table for docs/performance.md. Other work on the machine shows in the load and in the share of the processors that the run had."""
+`./dev bench pipeline` runs it. It prints a table for docs/performance.md. If other programs use the machine, the load
+is higher and the run's share of the processors is lower.
+"""
 
 import argparse
 import json
@@ -15,7 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def sequence(program: str, storm: pathlib.Path, size: str, device: str, processes: int) -> dict[str, float]:
-    """Draws the whole run with so many processes; seconds by what they were spent on."""
+    """Draws the whole run with this number of processes. Returns the seconds that each kind of work took."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="thunderhead-bench-"))
     try:
         begun, cpu_begun = time.monotonic(), os.times()

@@ -1,7 +1,7 @@
-"""Runs the program on the files that people report trouble with, and checks its exit code and its words.
+"""Runs the program on the files that people report trouble with, and checks its exit code and its output.
 
 Usage: run_cases.py GROUP. The environment has THUNDERHEAD_BINARY, CASES (the folder with a make.py for each case) and
-WORK (a folder for the files that they write). Exit code 77 means that the cases or their Python packages are missing.
+WORK (a folder for the files that these write). Exit code 77 means that the cases or their Python packages are missing.
 """
 import importlib.util
 import os

@@ -1,4 +1,4 @@
-"""deploy/ecflow with the real server: the suite runs to its end, and a failing task aborts and runs again."""
+"""Tests deploy/ecflow with the real server: the suite runs to its end, and a failing task is aborted and runs again."""
 
 import os
 import pathlib
@@ -32,7 +32,9 @@ class Ecflow(EngineTest):
         return run("ecflow_client", *arguments, env=self.environment)
 
     def begin(self, of_shares: dict[int, str] | None = None, **variables: str) -> None:
-        """Loads the suite as it is but for its variables, and lines for single shares."""
+        """Loads the suite with `variables` and the settings of the test, and starts it. `of_shares` adds a line to
+        single shares.
+        """
         text = (SUITE / "thunderhead.def").read_text()
         settings = {
             "ECF_HOME": str(self.folder), "ECF_FILES": str(SUITE / "files"), "ECF_INCLUDE": str(SUITE / "include"),
@@ -49,7 +51,7 @@ class Ecflow(EngineTest):
         self.client("--begin=thunderhead")
 
     def node(self, path: str) -> str:
-        """The server's lines of a node, without its children's."""
+        """Returns the server's lines for a node, without those of its children."""
         return self.client("--get_state", path)
 
     def state(self, path: str) -> str:

@@ -1,4 +1,4 @@
-"""What the tests of engines share: the program, the storms, daemons in a folder of their own, products checked as their owner would."""
+"""What the tests of batch systems share: the program, the storms, daemons in a temporary folder, and the checks of products."""
 
 import hashlib
 import json
@@ -24,7 +24,9 @@ SKIPPED = 77
 
 
 def need(programs: dict[str, str]) -> None:
-    """Ends the test as skipped if a program is missing; `programs` are names with their Debian packages."""
+    """Ends the test as skipped if a program is missing. The keys of `programs` are programs, the values their Debian
+    packages.
+    """
     path = os.pathsep.join([os.environ.get("PATH", ""), "/usr/sbin", "/sbin"])
     missing = [package for name, package in programs.items() if shutil.which(name, path=path) is None]
     if missing:
@@ -34,7 +36,7 @@ def need(programs: dict[str, str]) -> None:
 
 
 def free_port() -> int:
-    """Of the registered ports, as ecFlow takes no other."""
+    """Returns a free port between 20000 and 32000, because ecFlow accepts only registered ports."""
     while True:
         with socket.socket() as probe:
             port = random.randrange(20000, 32000)
@@ -46,7 +48,7 @@ def free_port() -> int:
 
 
 def run(*command: object, check: bool = True, **more: object) -> str:
-    """The command's standard output; its failure fails the test, with all it said."""
+    """Runs the command and returns its standard output. If it fails, the test fails with all of its output."""
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True, timeout=600, **more)
     if check and done.returncode != 0:
         raise AssertionError(f"{command} ended with {done.returncode}:\n{done.stdout}\n{done.stderr}")
@@ -54,7 +56,7 @@ def run(*command: object, check: bool = True, **more: object) -> str:
 
 
 def kill_those_of(folder: pathlib.Path) -> None:
-    """Kills the processes that name the folder: jobs outlive the daemon that began them."""
+    """Kills the processes whose command line names the folder, because jobs can outlive the daemon that started them."""
     for process in pathlib.Path("/proc").glob("[0-9]*"):
         try:
             if str(folder).encode() in (process / "cmdline").read_bytes() and int(process.name) != os.getpid():
@@ -64,7 +66,7 @@ def kill_those_of(folder: pathlib.Path) -> None:
 
 
 class EngineTest(unittest.TestCase):
-    """A folder, daemons that end with the test, and a run of twelve files."""
+    """A test with a temporary folder, a run of twelve files, and daemons that end with the test."""
 
     def setUp(self) -> None:
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="thunderhead-engine-"))
@@ -80,7 +82,7 @@ class EngineTest(unittest.TestCase):
         self.products = self.folder / "products"
 
     def start(self, name: str, *command: object, **more: object) -> subprocess.Popen:
-        """Starts a daemon in the foreground, which is ended with the test; its output goes to NAME.log."""
+        """Starts a daemon in the foreground, which ends with the test. Its output is written to NAME.log."""
         with open(self.folder / f"{name}.log", "ab") as log:
             process = subprocess.Popen([str(part) for part in command], stdout=log, stderr=log, **more)
 
@@ -96,7 +98,7 @@ class EngineTest(unittest.TestCase):
         return process
 
     def logs(self) -> str:
-        """The ends of all that daemons and jobs have said."""
+        """Returns the last part of the output of each daemon and job."""
         texts = []
         for file in sorted(self.folder.rglob("*")):
             if file.suffix in {".log", ".out"} or ".job" in file.name and file.is_file():
@@ -105,7 +107,7 @@ class EngineTest(unittest.TestCase):
         return "\n".join(texts)
 
     def wait_for(self, what: str, condition, seconds: float = 600.0):
-        """What `condition` gives once that is true; fails with all logs otherwise."""
+        """Waits until `condition` returns a true value, and returns it. Otherwise the test fails with all logs."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             result = condition()
@@ -115,14 +117,16 @@ class EngineTest(unittest.TestCase):
         self.fail(f"{what} did not come within {seconds:.0f} s\n{self.logs()}")
 
     def entries(self) -> list[dict]:
-        """The lines of all manifests."""
+        """Returns the entries of all manifests."""
         lines = []
         for manifest in sorted(self.products.glob("manifest*.jsonl")):
             lines += [json.loads(line) for line in manifest.read_text().splitlines()]
         return lines
 
     def expect_each_product_once(self, products: int, others: int = 0) -> None:
-        """Every product is there, whole, recorded once, and nothing else is but `others` recorded files."""
+        """Checks that every product exists, is complete and is recorded once, and that exactly `others` other files are
+        recorded.
+        """
         entries = self.entries()
         files = [entry["file"] for entry in entries]
         self.assertEqual(len(files), len(set(files)), f"recorded twice: {sorted(files)}")

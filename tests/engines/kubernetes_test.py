@@ -1,4 +1,6 @@
-"""deploy/kubernetes against the API's schemas, the published ones and a stricter one, and its exit codes against the program's."""
+"""Tests deploy/kubernetes: its objects against the published API schemas and a stricter one, its exit codes against the
+program's.
+"""
 
 import copy
 import json
@@ -28,7 +30,7 @@ def objects(name: str) -> list[dict]:
 
 
 def published_errors(things: list[dict]) -> list[list[str]]:
-    """What is wrong with each by the schemas that the API publishes."""
+    """Returns what is wrong with each object by the schemas that the API publishes."""
     done = subprocess.run(["node", VALIDATE], input=json.dumps(things), capture_output=True, text=True, timeout=6000)
     if done.returncode != 0:
         raise AssertionError(done.stderr)
@@ -36,7 +38,7 @@ def published_errors(things: list[dict]) -> list[list[str]]:
 
 
 def errors(thing: dict) -> list[str]:
-    """What is wrong with an object, each with its place."""
+    """Returns what is wrong with an object, each fault with its place."""
     schema = {**SCHEMA, "$ref": f"#/definitions/{thing['kind']}"}
     found = jsonschema.Draft7Validator(schema).iter_errors(thing)
     return [f"{'/'.join(str(part) for part in error.absolute_path)}: {error.message}" for error in found]
@@ -84,7 +86,7 @@ class Kubernetes(unittest.TestCase):
             self.assertNotEqual(mistaken(change), [])
 
     def test_the_job_is_of_one_piece(self) -> None:
-        """What a schema cannot say: names that refer to others, and numbers that must agree."""
+        """Checks what a schema cannot: names that refer to other objects, and numbers that must agree."""
         spec = objects("sequence.yaml")[0]["spec"]
         container = spec["template"]["spec"]["containers"][0]
         environment = {variable["name"]: variable["value"] for variable in container["env"]}

@@ -1,4 +1,6 @@
-"""deploy/slurm with the real slurmctld, slurmd and munged: an array of four tasks, one killed and one requeued."""
+"""Tests deploy/slurm with the real slurmctld, slurmd and munged: an array of four tasks, of which one is killed and one
+is requeued.
+"""
 
 import getpass
 import os
@@ -91,7 +93,7 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
         return set(self.slurm("squeue", "-h", "-t", "all", "-r", "-j", job, "-o", "%T").split())
 
     def program_of(self, job: str, task: int) -> int | None:
-        """The process of thunderhead in a task of the array that has drawn something."""
+        """Returns the process of thunderhead in a task of the array that has drawn a product."""
         if not any(self.products.glob(f"manifest.{task}-of-4.jsonl")):
             return None
         if not (self.products / f"manifest.{task}-of-4.jsonl").read_text():
@@ -108,14 +110,16 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
         return None
 
     def hold(self, task: int) -> pathlib.Path:
-        """Lets a task of the array block at its second product, which is a pipe, until that is removed or opened."""
+        """Makes a task of the array block at its second product. The product is a pipe, and the task blocks until the
+        pipe is removed or opened.
+        """
         minutes = 10 * (task + 4 + 1)
         pipe = self.products / f"run42_{minutes // 60:02d}{minutes % 60:02d}.png.partial"
         os.mkfifo(pipe)
         return pipe
 
     def is_interrupted(self, process: int) -> bool:
-        """Whether the program has taken a signal as its request to stop (server/app/interruption.cc)."""
+        """Returns whether the program has received a signal as a request to stop (server/app/interruption.cc)."""
         for name in pathlib.Path(f"/proc/{process}/task").glob("*/comm"):
             try:
                 if name.read_text() == "interrupted\n":

@@ -1,4 +1,4 @@
-"""deploy/systemd: the units are sound, hardened, and start the program with flags that it knows."""
+"""Tests deploy/systemd: the units are valid and hardened, and start the program with flags that exist."""
 
 import re
 import shlex

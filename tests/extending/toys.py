@@ -28,8 +28,10 @@ class Fault(Exception):
 
 @dataclasses.dataclass(frozen=True)
 class Edit:
-    """Replaces `old`, which occurs once in the file, by `new`. `file` is the end of a path that the page names, or a path of
-    a test."""
+    """Replaces `old`, which occurs once in the file, with `new`.
+
+    `file` is the end of a path that the page names, or the path of a test.
+    """
 
     file: str
     old: str

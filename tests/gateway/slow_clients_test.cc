@@ -82,7 +82,7 @@ class SlowClientsTest : public EchoTest {
 
 // A connection that is locked out waits for a timeout that no test reaches.
 TEST_F(SlowClientsTest, HalfOpenSocketsLockNobodyOut) {
-  // There are as many connections as allowed, and twice as many again.
+  // Each of the three sets of connections is as large as the limit of the server.
   const SilentSockets silent(Site().Port(), 768, "");
   LoadPage();
   const SilentSockets half_said(Site().Port(), 768, "GET / HTTP/1.1\r\nHo");

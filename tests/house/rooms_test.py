@@ -17,7 +17,7 @@ def rooms_of(server: pathlib.Path) -> list[str]:
 
 
 def room_of(path: str, rooms: list[str]) -> str | None:
-    """Returns the room of a path relative to server/: the longest that it begins with."""
+    """Returns the room of a path relative to server/. It is the longest room that the path begins with."""
     inside = [room for room in rooms if path.startswith(room + "/")]
     return max(inside, key=len, default=None)
 

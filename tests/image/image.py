@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Builds the Dockerfile's image and starts its server once: by buildah or podman where there is one, else step by step in
-roots of mmdebstrap, which takes root.
+"""Builds the Dockerfile's image and starts its server once.
 
-  image.py check                 what needs no builder: instructions and sources of the Dockerfile; seconds
-  image.py build [--ccache DIR]  builds it and asks the server's /healthz; as long as a whole build, less with objects in DIR
+Uses buildah or podman if one is installed. Otherwise it runs the build step by step in roots of mmdebstrap, as root.
 
-Exits with 77 where there is no builder.
+  image.py check                 checks the instructions and sources of the Dockerfile, in seconds; needs no builder
+  image.py build [--ccache DIR]  builds the image and asks the server's /healthz; as slow as a whole build, faster with objects in DIR
+
+Exits with 77 if there is no builder.
 """
 
 import argparse
@@ -27,7 +28,7 @@ KNOWN = {"FROM", "WORKDIR", "COPY", "RUN", "ENV", "USER", "EXPOSE", "ENTRYPOINT"
 
 
 def instructions():
-    """The Dockerfile's instructions as (name, arguments), with lines that go on joined."""
+    """Returns the Dockerfile's instructions as (name, arguments), with continued lines joined."""
     text = (ROOT / "Dockerfile").read_text(encoding="utf-8")
     lines = [line for line in text.splitlines() if not line.lstrip().startswith("#")]
     joined = re.sub(r"\\\n", " ", "\n".join(lines))
@@ -35,7 +36,7 @@ def instructions():
 
 
 def copy_of(arguments):
-    """Sources, target and stage (None: the build context) of a COPY."""
+    """Returns sources, target and stage of a COPY. The stage is None for the build context."""
     words = shlex.split(arguments)
     stage = next((word.removeprefix("--from=") for word in words if word.startswith("--from=")), None)
     paths = [word for word in words if not word.startswith("--")]
@@ -43,7 +44,7 @@ def copy_of(arguments):
 
 
 def check():
-    """Fails with a message for what could not be built."""
+    """Fails with a message if the Dockerfile contains something that cannot be built."""
     found = instructions()
     unknown = {name for name, _ in found} - KNOWN
     assert not unknown, f"the Dockerfile has instructions that image.py does not know: {unknown}"
@@ -64,7 +65,7 @@ def check():
 
 
 class Root:
-    """A Debian root as a stage of the build."""
+    """A Debian root folder that stands for a stage of the build."""
 
     def __init__(self, folder, ccache):
         self.folder = folder
@@ -89,7 +90,7 @@ class Root:
         return self.folder / str(pathlib.PurePosixPath(self.directory, path)).lstrip("/")
 
     def command(self, words):
-        """Runs in namespaces of its own, so that nothing it mounts or starts outlives it."""
+        """Runs a command in its own namespaces, so that its mounts and processes end with it."""
         mounts = "mount -t proc proc {0}/proc && mount --rbind /dev {0}/dev".format(shlex.quote(str(self.folder)))
         environment = dict(self.environment)
         if self.ccache and self.user == "root":
@@ -111,7 +112,7 @@ class Root:
 
 
 def copy_context(root, sources, target):
-    """As COPY does of the tracked files, which is the context but for what .dockerignore leaves out."""
+    """Copies tracked files as COPY does. The build context is all tracked files except those in .dockerignore."""
     ignored = [line.strip("/") for line in (ROOT / ".dockerignore").read_text().splitlines() if line]
     for source in sources:
         files = subprocess.run(
@@ -127,7 +128,7 @@ def copy_context(root, sources, target):
 
 
 def build_in_roots(work, ccache):
-    """The last stage, with its entry point and command."""
+    """Builds all stages. Returns the last one, with its entry point and command."""
     stages = {}
     root, entry, command = None, [], []
     for name, arguments in instructions():
@@ -167,7 +168,7 @@ def build_in_roots(work, ccache):
 
 
 def answers(port, process):
-    """True once the server's /healthz answers, within ten minutes."""
+    """Returns True once the server's /healthz answers; False if it ends, or does not answer within ten minutes."""
     for _ in range(3000):
         if process.poll() is not None:
             return False

@@ -1,4 +1,4 @@
-"""--annotate, as its users see it: the same picture with texts in its corners, from this process and from a server."""
+"""Tests --annotate: a picture with texts in its corners is the same from this process and from a server."""
 
 import json
 import os
@@ -25,7 +25,7 @@ def pixels(file: pathlib.Path) -> numpy.ndarray:
 
 
 def changed(a: numpy.ndarray, b: numpy.ndarray) -> numpy.ndarray:
-    """Where two pictures differ."""
+    """Returns where two pictures differ."""
     return (numpy.abs(a - b) > 2).any(axis=2)
 
 
@@ -49,7 +49,7 @@ class AnnotationTest(ProductTest):
         self.assertEqual(differs[240:].sum(), 0, "the valid time is the same")
 
     def test_false_colours_have_a_legend(self) -> None:
-        """The legend belongs to the setting, whichever technique has it."""
+        """Every technique that shows false colours has a legend, because the legend belongs to the setting."""
         output = self.folder / "out.png"
         for technique in ({"halfAngle": {"slices": 16}}, {"lightVolume": {"slices": 16, "tracedLight": "TRACED_LIGHT_OFF"}},
                           {"metaball": {"count": 50}}):
@@ -84,7 +84,7 @@ class AnnotationTest(ProductTest):
         self.assertIn("add it", self.render(SAMPLE, output, *tiny, "--logo", logo, code=64))
 
     def sequence(self, storm: object, products: pathlib.Path, *more: object) -> tuple[int, list[pathlib.Path]]:
-        """How many pictures were drawn, and all that are there."""
+        """Renders a sequence. Returns the number of pictures drawn, and the names of all files."""
         done = run(PROGRAM, "sequence", storm, "--product", products / "{valid:%H%M}.png", "--size", "240x135", *FAST, "--annotate",
                    "--progress", "json", *more)
         drawn = [line for line in done.stdout.splitlines() if json.loads(line)["event"] == "drawn"]

@@ -1,5 +1,7 @@
-"""What a picture tells of itself: PNG, OpenEXR and movies hold the scene, the storm, its times, the version and the camera's pose, and
-the same picture can be drawn again from it."""
+"""Tests the metadata of PNG, OpenEXR and movies: scene, storm, times, version and the camera's pose.
+
+The same picture can be drawn again from this metadata.
+"""
 
 import json
 import math
@@ -23,7 +25,7 @@ SIZE = ("--size", "160x100", "--quality", "fast")
 
 
 def exr_attributes(file: pathlib.Path) -> dict[str, object]:
-    """Texts and numbers in the header of an OpenEXR file, by its specification: name, type, size, value."""
+    """Returns texts and numbers in the header of an OpenEXR file. Each attribute has a name, type, size and value."""
     data = file.read_bytes()
     assert data[:4] == b"\x76\x2f\x31\x01", "no OpenEXR"
     at, attributes = 8, {}

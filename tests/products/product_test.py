@@ -1,4 +1,4 @@
-"""What the tests of products share: the program, and storms with a place on Earth, written by netCDF's own library."""
+"""What the tests of products share: the program, and storms with a place on Earth, written with netCDF's own library."""
 
 import importlib.util
 import os
@@ -43,7 +43,7 @@ TIMES = ["2013-05-20_20:00:00", "2013-05-20_20:10:00"]
 
 
 def run(*command: object, code: int = 0, text: str | None = None, **more: object) -> subprocess.CompletedProcess:
-    """Runs it; another exit code than `code` fails the test with all it said."""
+    """Runs a command. The test fails with all of its output if its exit code is not `code`."""
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True, input=text, timeout=HANG_LIMIT_S, **more)
     if done.returncode != code:
         raise AssertionError(f"{command} ended with {done.returncode}, not {code}:\n{done.stdout}\n{done.stderr}")
@@ -51,7 +51,7 @@ def run(*command: object, code: int = 0, text: str | None = None, **more: object
 
 
 def wait_for(what: str, condition: Callable[[], object]) -> None:
-    """Waits until the condition is true; fails the test if it never is."""
+    """Waits until the condition is true. Fails the test if it does not become true."""
     end = time.monotonic() + HANG_LIMIT_S
     while not condition():
         if time.monotonic() > end:
@@ -60,14 +60,17 @@ def wait_for(what: str, condition: Callable[[], object]) -> None:
 
 
 def transform(points: list[tuple[float, float]], *options: object) -> list[tuple[float, float]]:
-    """Points through gdaltransform, all in one call."""
+    """Converts points with one call of gdaltransform."""
     lines = "".join(f"{x:.12f} {y:.12f}\n" for x, y in points)
     out = run("gdaltransform", *options, text=lines).stdout
     return [tuple(float(number) for number in line.split()[:2]) for line in out.splitlines() if line.strip()]
 
 
 def write_wrf(path: pathlib.Path, projection: str, attributes: dict[str, float], middle: tuple[float, float]) -> dict[str, numpy.ndarray]:
-    """A WRF file on a grid of that projection, its middle at `middle` (degrees east and north); returns its coordinates."""
+    """Writes a WRF file on a grid of this projection. Returns the coordinates of its columns in degrees.
+
+    middle: the grid's middle in degrees east and north.
+    """
     x_m, y_m = transform([middle], "-s_srs", DEGREES, "-t_srs", projection)[0]
     offsets = (numpy.arange(CELLS) - (CELLS - 1) / 2) * SPACING_M
     points = [(x_m + dx, y_m + dy) for dy in offsets for dx in offsets]
@@ -112,7 +115,7 @@ class ProductTest(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
 
     def render(self, storm: pathlib.Path, output: pathlib.Path, *more: object, code: int = 0) -> str:
-        """Renders; returns what it said on standard error."""
+        """Renders a picture. Returns the program's standard error."""
         return run(PROGRAM, "render", storm, "-o", output, "--device", "software", *more, code=code).stderr
 
     def scene(self, name: str, json: str) -> pathlib.Path:

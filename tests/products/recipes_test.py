@@ -1,5 +1,8 @@
-"""The recipes of README.md and docs/pipelines.md as somebody new would run them, on a copy of what they name; and every file of this
-repository that a page about pipelines names is there."""
+"""Tests the recipes of README.md and docs/pipelines.md: runs them as a new user would, on copies of the files that they
+name.
+
+Also checks that every file of this repository that a page about pipelines names exists.
+"""
 
 import os
 import pathlib
@@ -12,13 +15,16 @@ PAGES = [ROOT / "docs/pipelines.md", *sorted((ROOT / "docs/pipelines").glob("*.m
 
 
 def blocks(page: pathlib.Path) -> list[str]:
-    """The page's blocks of shell commands."""
+    """Returns the page's blocks of shell commands."""
     return re.findall(r"^```sh\n(.*?)^```$", page.read_text(), re.M | re.S)
 
 
 class RecipesTest(ProductTest):
     def follow(self, commands: str) -> list[str]:
-        """Runs the commands; the names of all products. It is built already, and small pictures are as good."""
+        """Runs the commands and returns the names of all products.
+
+        Leaves out the build, which is already done, and draws small pictures to save time.
+        """
         (self.folder / "build/release").mkdir(parents=True, exist_ok=True)
         (self.folder / "build/release/bin").symlink_to(pathlib.Path(PROGRAM).parent)
         for name in ("samples", "deploy"):

@@ -1,5 +1,9 @@
-"""What whoever owns a forecast suite asks for: `watch` on an empty folder, the twelve files of a run copied in as files come in life, killed
-on the way, and at the end twelve stills of each of two views, one movie, a manifest whose hashes check, and no leftovers."""
+"""Tests what the owner of a forecast suite needs from `watch`.
+
+It starts on an empty folder. The twelve files of a run are copied into the folder as a model would write them, and the
+program is killed several times. At the end there must be twelve images of each of two views, one movie, a manifest
+whose hashes match, and no leftover files.
+"""
 
 import collections
 import hashlib
@@ -45,7 +49,7 @@ class WatchSeriesTest(ProductTest):
         ]
 
     def copy(self, file: pathlib.Path, share: float = 1.0) -> None:
-        """Writes the file, or its first part, in pieces and in place of what is there."""
+        """Writes the file, or its first part, in pieces. Replaces a file that exists."""
         data = file.read_bytes()
         data = data[: int(share * len(data))]
         step = len(data) // PIECES + 1
@@ -58,7 +62,7 @@ class WatchSeriesTest(ProductTest):
         return f"waits until it changes: {self.inbox / file.name}" in self.log.read_text()
 
     def model(self) -> None:
-        """What comes into the folder, and when."""
+        """Writes the files into the folder one after another, as a model does."""
         cut = self.files[CUT]
         for number, file in enumerate(self.files):
             self.copy(file, 0.6 if file == cut else 1.0)

@@ -32,8 +32,8 @@ void DrawToolRail(Ui& ui, const Layout& layout);
 // Draws the open tool.
 void DrawTool(Ui& ui, const Layout& layout);
 void DrawTimeLine(Ui& ui, const Layout& layout);
-// DrawSessionBar() draws who steers, and the button that ends looking around. DrawNotices() draws
-// the accuracy and the notices.
+// DrawSessionBar() draws the person in control, and the button that ends looking around.
+// DrawNotices() draws the accuracy and the notices.
 void DrawSessionBar(Ui& ui, const Layout& layout);
 void DrawNotices(Ui& ui, const Layout& layout);
 // Draws the open panel at the right.

@@ -1,5 +1,5 @@
-// The panel with the people in the session, who steers, what viewers may do, and the key with which
-// others can join.
+// The panel with the people in the session, who is in control, what viewers may do, and the key
+// with which others can join.
 #include <imgui.h>
 
 #include <algorithm>

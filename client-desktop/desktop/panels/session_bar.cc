@@ -1,5 +1,5 @@
-// The bar above the time line. It shows who steers, with one button to ask for control or to give
-// control. It is hidden if there is nothing to say about control.
+// The bar above the time line. It shows the person in control, with one button to ask for control
+// or to give control. It is hidden if there is nothing to say about control.
 #include <imgui.h>
 
 #include <algorithm>
@@ -48,8 +48,8 @@ void ControlButton(Ui& ui) {
   }
 }
 
-// Draws the people who ask to steer, with buttons to answer them. Only people who steer or present
-// see this. As many as fit are in a line of width `room`. The others are below.
+// Draws the people who ask to steer, with buttons to answer them. Only people who are in control or
+// present see this. As many as fit are in a line of width `room`. The others are below.
 void Asking(Ui& ui, float room) {
   if (!ui.state.Steers() && !ui.state.Presents()) return;
   constexpr int kMaxShown = 3;
@@ -77,7 +77,7 @@ bool HasCompany(const client::SessionState& state) {
   return !state.Alone() || !state.Steers();
 }
 
-// Draws who steers and the possible actions, in a width of `room`.
+// Draws the person in control and the possible actions, in a width of `room`.
 void People(Ui& ui, float room) {
   ImGui::TextUnformatted(Shortened(WhoSteers(ui.state), 0.6F * room).c_str());
   ImGui::SameLine();

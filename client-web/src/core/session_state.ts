@@ -1,5 +1,5 @@
-// The session as signals: the people, who steers, the rules, pointers and marks, and what this
-// person may therefore do. This file does not depend on network or document.
+// The session as signals: the people, the person in control, the rules, pointers and marks, and
+// what this person may therefore do. This file does not depend on network or document.
 import { create } from "@bufbuild/protobuf";
 import { batch, computed, signal } from "@preact/signals-core";
 import {
@@ -85,12 +85,12 @@ export class SessionState {
   );
   readonly alone = computed(() => this.people.value.length < 2);
   // True if this person is the only one in the session, presents and steers, so that the page need
-  // not show who steers.
+  // not show who is in control.
   readonly steersAlone = computed(
     () => this.steering.value && this.presenting.value && this.alone.value,
   );
-  // True if the session bar is needed. The bar shows who steers, or that this page shows an own
-  // view.
+  // True if the session bar is needed. The bar shows the person in control, or that this page shows
+  // an own view.
   readonly hasBar = computed(
     () => this.me.value !== undefined && (this.lookingAround.value || !this.steersAlone.value),
   );

@@ -1,4 +1,5 @@
-// The list of the people in the session: their names and roles, who steers, and who asks to steer.
+// The list of the people in the session: their names and roles, who is in control, and who asks to
+// steer.
 import { LONGEST_NAME } from "../core/own_keys";
 import { type Person, Role } from "../gen/thunderhead/v1/interact_pb";
 import type { Page } from "./page";

@@ -1,4 +1,4 @@
-// The session bar. It shows the person who steers, and the button that ends looking around.
+// The session bar. It shows the person in control, and the button that ends looking around.
 import type { SessionState } from "../core/session_state";
 import type { Page } from "./page";
 

@@ -1,6 +1,8 @@
-"""Random messages by their descriptors: mostly valid, some with odd values, some damaged as bytes.
+"""Makes random messages from their descriptors. Most are valid, some have unusual values, and some have damaged bytes.
 
-A message is written as bytes, field by field, so that it can also be what no library of protobuf would write."""
+A message is written as bytes, field by field. It can therefore also be a message that no library of protobuf would
+write.
+"""
 
 import importlib
 import math
@@ -34,7 +36,7 @@ ODD_INTEGERS = [0, 1, -1, 127, 128, 2**31 - 1, 2**31, 2**32 - 1, 2**32, 2**63 - 
 
 
 def load_schema(proto: pathlib.Path, into: str) -> list[ServiceDescriptor]:
-    """Generates and imports the modules of Thunderhead's messages; returns every service among them."""
+    """Generates and imports the modules of Thunderhead's messages. Returns all services in them."""
     files = sorted(str(path.relative_to(proto)) for folder in ("thunderhead", "google") for path in (proto / folder).rglob("*.proto"))
     subprocess.run(["protoc", "-I", str(proto), "-I", "/usr/include", f"--python_out={into}", *files], check=True, cwd=proto)
     sys.path.insert(0, into)
@@ -60,7 +62,7 @@ def delimited(number: int, value: bytes) -> bytes:
 
 
 class Messages:
-    """Makes random messages, with the names that the server told."""
+    """Makes random messages, which use names (such as ids and keys) from the server's responses."""
 
     limits = None  # the module of limits.proto
     scene = None  # the descriptor of Scene, whose fields are named by update masks
@@ -76,7 +78,10 @@ class Messages:
         return self.chance.random() < self.wild
 
     def make(self, message: Descriptor, damage: float, begins: bool = False) -> bytes:
-        """A message, damaged as bytes with the probability `damage`. One that begins a stream has the first choice of its oneof."""
+        """Returns a message. Damages its bytes with the probability `damage`.
+
+        A message that begins a stream uses the first choice of its oneof.
+        """
         self.wild = self.chance.choice([0, 0, 0, 0, 0.02, 0.3])
         made = self.message(message, 0, begins)
         while self.chance.random() < damage:
@@ -156,7 +161,7 @@ class Messages:
         return self.chance.choice([b"2013-05-20T20:00:00Z", b"light_volume", b"a name", b"Z\xc3\xbcrich"])
 
     def path(self) -> bytes:
-        """A path of an update mask."""
+        """Returns a path of an update mask."""
         if self.odd():
             return self.chance.choice(ODD_PATHS).encode(errors="surrogatepass")
         message, names = self.scene, []
@@ -167,7 +172,7 @@ class Messages:
         return ".".join(names).encode()
 
     def damaged(self, message: bytes) -> bytes:
-        """The message with one damage to its bytes."""
+        """Returns the message with one damage to its bytes."""
         chance, out = self.chance, bytearray(message)
         at = chance.randint(0, len(out))
         kind = chance.randint(0, 9)
@@ -195,7 +200,7 @@ class Messages:
         return bytes(out)
 
     def learn(self, message) -> None:
-        """Remembers the names that a response tells."""
+        """Remembers the names in a response."""
         for field, value in message.ListFields():
             if field.type == FieldDescriptor.TYPE_MESSAGE:
                 if field.message_type.GetOptions().map_entry:
@@ -207,7 +212,7 @@ class Messages:
                     self.known[name].append(value)
 
     def forget(self) -> None:
-        """Forgets the names in the messages since `used` was cleared."""
+        """Forgets the names that were used in messages since `used` was cleared."""
         for names in self.known.values():
             for used in self.used:
                 if used in names:

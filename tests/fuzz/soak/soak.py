@@ -1,7 +1,9 @@
-"""Makes mutated calls of every rpc by gRPC, gRPC-Web and WebSocket, and judges the server: it never crashes, answers neither INTERNAL nor
-UNKNOWN, every answer can be parsed, and after a warm-up its memory stays the same.
+"""Makes mutated calls of every rpc by gRPC, gRPC-Web and WebSocket, and checks the server.
 
-Run by `./dev soak` and, in small, by ctest. Needs python3-protobuf and protoc."""
+The server must not crash and must answer neither INTERNAL nor UNKNOWN. Every answer must be parsable. After a warm-up
+the server's memory must stay the same. `./dev soak` runs it, and ctest runs it with few calls. Needs python3-protobuf
+and protoc.
+"""
 
 import argparse
 import base64
@@ -60,7 +62,7 @@ VALUES = ["", "a", "gzip", "deflate", "identity", "!!!", "AAAA", "AAAA,BBBB", "=
 
 @dataclasses.dataclass
 class Call:
-    """All that is sent for one call."""
+    """Everything that is sent for one call."""
 
     transport: str
     path: str
@@ -80,7 +82,7 @@ class Call:
 
 
 class Caller:
-    """Makes calls, one after another, by chance."""
+    """Makes random calls, one after another."""
 
     def __init__(self, rpcs: list, ports: dict[str, int], seed: str) -> None:
         self.chance = random.Random(seed)
@@ -142,7 +144,7 @@ class Caller:
             b"\x82\xff" + b"\xff" * 8 + message])
 
     def answer(self, call: Call) -> Answer:
-        """The answer to a call. A connection that the server closed since the last call is opened again once."""
+        """Returns the answer to a call. Opens a connection again once if the server has closed it since the last call."""
         transport = self.transports[call.transport]
         was_open = transport.socket is not None
         try:
@@ -155,7 +157,7 @@ class Caller:
             return self.answer(call) if was_open else Answer("cut")
 
     def clean_up(self) -> None:
-        """Closes, deletes and forgets all that the server keeps for these calls, as far as it was told."""
+        """Closes, deletes and forgets everything that the server keeps for these calls and that it reported."""
         for name, rpc, more in [("session", "CloseSession", b""), ("storm_id", "DeleteCloud", b""), ("job_id", "CancelRenderJob", b"\x10\1")]:
             method = next(method for method in self.rpcs if method.name == rpc)
             for known in self.messages.known[name]:
@@ -164,7 +166,7 @@ class Caller:
                                  [b"\0" + len(message).to_bytes(4, "big") + message], True, 1000))
 
     def next(self) -> tuple[str, Call, Answer, str]:
-        """Makes a call; returns its rpc, what was sent, the answer, and what is wrong with it."""
+        """Makes a call. Returns its rpc, what was sent, the answer, and what is wrong with the answer."""
         rpc = self.chance.choices(self.rpcs, self.weights)[0]
         # Each worker has a few sessions, so that none takes all places.
         keys = len(self.messages.known["session"])
@@ -188,7 +190,7 @@ class Caller:
 
 
 def fault(call: Call, answer: Answer) -> str:
-    """What is wrong with the answer to a call; nothing of most."""
+    """Returns what is wrong with the answer to a call; empty if nothing is."""
     if answer.status in (UNKNOWN, INTERNAL) and not OF_THE_LIBRARY.fullmatch(answer.text):
         return f"{GRPC_STATUSES[answer.status]}: {answer.text}"
     # gRPC's library resets a call whose message is marked as compressed but is not.
@@ -200,7 +202,7 @@ def fault(call: Call, answer: Answer) -> str:
 
 
 class Server:
-    """The program on a tiny storm, in a folder of its own."""
+    """The program, which serves a tiny storm from a temporary folder."""
 
     def __init__(self, program: str, folder: str) -> None:
         storm = f"{folder}/tiny.nc"
@@ -228,7 +230,7 @@ class Server:
         return int(found[1]) / 1024 if found else 0.0
 
     def memory_at_rest_mb(self) -> float:
-        """The memory once it no longer changes."""
+        """Returns the server's memory in MB after it has stopped changing."""
         values = collections.deque(maxlen=10)
         end = time.monotonic() + HANG_LIMIT_S
         while (len(values) < 10 or max(values) - min(values) > 0.5) and time.monotonic() < end:
@@ -237,7 +239,7 @@ class Server:
         return values[-1]
 
     def stop(self) -> str:
-        """Stops it; returns what is wrong with how it ended."""
+        """Stops the server. Returns what was wrong with its end."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
         try:
@@ -251,7 +253,10 @@ class Server:
 
 
 def work(rpcs: list, ports: dict[str, int], seed: str, calls: int, out: multiprocessing.connection.Connection) -> None:
-    """A process that makes calls. Sends counts now and then. Ends with its last calls if something is wrong, or the server is gone."""
+    """Makes calls in a process of its own. Sends its counts now and then.
+
+    If something is wrong or the server has ended, it sends its last calls and ends.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     caller = Caller(rpcs, ports, seed)
     counts, last = collections.Counter(), collections.deque(maxlen=3)
@@ -269,7 +274,7 @@ def work(rpcs: list, ports: dict[str, int], seed: str, calls: int, out: multipro
 
 
 class Soak:
-    """Workers, and what they report."""
+    """The workers and their reports."""
 
     def __init__(self, options: argparse.Namespace, rpcs: list, server: Server) -> None:
         self.options, self.rpcs, self.server = options, rpcs, server
@@ -278,7 +283,7 @@ class Soak:
         self.began = time.monotonic()
 
     def run(self) -> str:
-        """Makes all calls, or those until something is wrong, and returns that."""
+        """Makes all calls, or stops at the first fault. Returns that fault."""
         warm = min(self.options.warm_up, self.options.calls)
         self.make(warm, "warm-up")
         if self.wrong:
@@ -294,7 +299,7 @@ class Soak:
         return self.wrong
 
     def make(self, calls: int, part: str) -> None:
-        """Has so many calls made by workers; ends early if something is wrong."""
+        """Lets the workers make `calls` calls. Ends early if something is wrong."""
         pipes, workers, told, goal = [], [], 0.0, self.done + calls
         for i in range(self.options.workers):
             share = calls // self.options.workers + (i < calls % self.options.workers)
@@ -350,7 +355,7 @@ class Soak:
 
 
 def repeat(text: str, rpcs: list, server: Server) -> str:
-    """Makes one call that a former run printed."""
+    """Makes one call that an earlier run printed."""
     call = Call.of(text)
     answer = Caller(rpcs, server.ports, "").answer(call)
     print(f"answer: {answer.status} {answer.text}, {len(answer.messages)} messages")

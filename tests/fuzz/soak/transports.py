@@ -1,7 +1,8 @@
-"""Calls by gRPC, gRPC-Web and WebSocket over plain sockets, which send what no client library would.
+"""Calls by gRPC, gRPC-Web and WebSocket over plain sockets, which can send what no client library would send.
 
-Each transport has `call(path, headers, pieces, half_close, most)`: it sends the request, reads at most so many messages of the answer, and
-then leaves. A wait that lasts too long raises TimeoutError."""
+Each transport has `call(path, headers, pieces, half_close, most)`. It sends the request, reads at most `most` messages
+of the answer, and then leaves the call. A wait that lasts too long raises TimeoutError.
+"""
 
 import base64
 import dataclasses
@@ -15,7 +16,7 @@ Headers = list[tuple[str, str]]
 
 @dataclasses.dataclass
 class Answer:
-    """`status` is a gRPC status, or a word: `left` after enough messages, `http 404`, `reset 8`, `closed 1008`."""
+    """An answer. `status` is a gRPC status, or a word: `left` after enough messages, `http 404`, `reset 8`, `closed 1008`."""
 
     status: int | str
     text: str = ""
@@ -23,7 +24,7 @@ class Answer:
 
 
 class Connection:
-    """A TCP connection that is opened when it is needed."""
+    """A TCP connection, which is opened at its first use."""
 
     def __init__(self, port: int) -> None:
         self.port, self.socket, self.buffer = port, None, b""
@@ -63,7 +64,7 @@ def trailers(text: bytes) -> dict[str, str]:
 
 
 class Grpc(Connection):
-    """HTTP/2 with headers as literals: HPACK without a table."""
+    """gRPC over HTTP/2. Headers are sent as literals, that is HPACK without a table."""
 
     DATA, HEADERS, RESET, SETTINGS, PING, GOAWAY, WINDOW, CONTINUATION = 0, 1, 3, 4, 6, 7, 8, 9
     STATIC = {8: (":status", "200"), 9: (":status", "204"), 10: (":status", "206"), 11: (":status", "304"), 12: (":status", "400"),
@@ -218,7 +219,7 @@ class Grpc(Connection):
 
 
 class GrpcWeb(Connection):
-    """HTTP/1.1, kept alive."""
+    """gRPC-Web over HTTP/1.1, with a connection that is kept open."""
 
     def call(self, path: str, headers: Headers, pieces: list[bytes], half_close: bool, most: int) -> Answer:
         if self.socket is None:
@@ -269,7 +270,7 @@ class GrpcWeb(Connection):
 
 
 class WebSocket(Connection):
-    """A connection for each call. Pieces are frames of the protocol, as `websocket_frame` makes them."""
+    """gRPC over WebSocket, with a connection for each call. Pieces are frames that `websocket_frame` makes."""
 
     def call(self, path: str, headers: Headers, pieces: list[bytes], half_close: bool, most: int) -> Answer:
         self.open()
@@ -314,7 +315,7 @@ class WebSocket(Connection):
 
 
 def websocket_frame(kind: int, payload: bytes, first: int = 0x80, mask: int = 0x80) -> bytes:
-    """A frame with a key of zeros, which leaves the payload as it is."""
+    """Returns a frame whose masking key is zero, so that the payload is sent unchanged."""
     size = len(payload)
     length = bytes([mask | size]) if size < 126 else bytes([mask | 126]) + struct.pack(">H", size) if size < 65536 else (
         bytes([mask | 127]) + struct.pack(">Q", size))
