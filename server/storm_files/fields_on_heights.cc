@@ -100,6 +100,16 @@ absl::Status TimeReader::CheckSize(const std::string& what, const std::vector<fl
                                           " values where ", expected, " are expected"));
 }
 
+// Makes heights missing that no atmosphere has. A damaged temperature gives infinite ones, and fill
+// values are huge.
+void LeaveOutImpossible(std::vector<float>& heights_m) {
+  constexpr float kHighest_m = 1e6F;
+  for (float& height_m : heights_m) {
+    // The comparison fails for NaN.
+    if (!(std::abs(height_m) < kHighest_m)) height_m = std::nanf("");
+  }
+}
+
 // Returns whether the layers of every column run downwards. The lowest interface may be the ground,
 // so it says nothing.
 bool RunDownwards(const LayerAir& air) {
@@ -121,6 +131,7 @@ absl::StatusOr<VerticalGrid> TimeReader::ReadHeights() {
   THUNDERHEAD_ASSIGN_OR_RETURN(air_.interface_height_m, source_.InterfaceHeights_m());
   THUNDERHEAD_RETURN_IF_ERROR(
       CheckSize("the layers' heights", air_.interface_height_m, (air_.levels + 1) * air_.columns));
+  LeaveOutImpossible(air_.interface_height_m);
   if (RunDownwards(air_)) {
     return absl::InvalidArgumentError(absl::StrCat(
         domain_.path, ": ", domain_.heights_from, " of record ", domain_.record,
