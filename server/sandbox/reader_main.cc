@@ -55,6 +55,10 @@ absl::Status StormReader::Describe(const Request& request) {
   }
   // A part that belongs to all times has no time itself.
   if (request.wanted == Wanted::kDescription) return absl::OkStatus();
+  if (file_->reader == nullptr) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        request.path, ": is only a part of a time; give all files of the time together"));
+  }
   if (request.record < file_->times.size()) return absl::OkStatus();
   return absl::DataLossError(absl::StrCat(request.path, ": has no record ", request.record,
                                           "; the file is shorter than it was: was it replaced?"));

@@ -100,11 +100,44 @@ absl::Status TimeReader::CheckSize(const std::string& what, const std::vector<fl
                                           " values where ", expected, " are expected"));
 }
 
+// Makes heights missing that no atmosphere has. A damaged temperature gives infinite ones, and fill
+// values are huge.
+void LeaveOutImpossible(std::vector<float>& heights_m) {
+  constexpr float kHighest_m = 1e6F;
+  for (float& height_m : heights_m) {
+    // The comparison fails for NaN.
+    if (!(std::abs(height_m) < kHighest_m)) height_m = std::nanf("");
+  }
+}
+
+// Returns whether the layers of every column run downwards. The lowest interface may be the ground,
+// so it says nothing.
+bool RunDownwards(const LayerAir& air) {
+  const auto last = static_cast<std::size_t>(air.levels);
+  const std::size_t first = last > 1 ? 1 : 0;
+  bool any = false;
+  for (std::size_t i = 0; i < air.columns; ++i) {
+    const float low_m = air.interface_height_m[first * air.columns + i];
+    const float high_m = air.interface_height_m[last * air.columns + i];
+    if (std::isnan(low_m) || std::isnan(high_m)) continue;
+    if (high_m >= low_m) return false;
+    any = true;
+  }
+  return any;
+}
+
 absl::StatusOr<VerticalGrid> TimeReader::ReadHeights() {
   THUNDERHEAD_RETURN_IF_ERROR(Advance());
   THUNDERHEAD_ASSIGN_OR_RETURN(air_.interface_height_m, source_.InterfaceHeights_m());
   THUNDERHEAD_RETURN_IF_ERROR(
       CheckSize("the layers' heights", air_.interface_height_m, (air_.levels + 1) * air_.columns));
+  LeaveOutImpossible(air_.interface_height_m);
+  if (RunDownwards(air_)) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        domain_.path, ": ", domain_.heights_from, " of record ", domain_.record,
+        " run downwards, and layers upwards are needed; reverse the order of the levels, for "
+        "example with cdo invertlev or ncpdq"));
+  }
   own_grid_ = domain_.fixed_heights
                   ? GridOfEvenLayers(air_.interface_height_m, air_.levels, air_.columns)
                   : VerticalGrid{};

@@ -180,14 +180,19 @@ VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interf
   const HeightRange range = RangeOf(interface_height_m);
   // Heights are in single precision, so differences of centimetres are rounding.
   constexpr double kSame_m = 0.05;
+  // More cells than this fit in no memory. The limit keeps the number within an int.
+  constexpr double kMostCells = 1e8;
+  const auto cells_of = [&](double extent_m) {
+    return static_cast<int>(std::min(std::ceil(extent_m / grid.spacing_m), kMostCells));
+  };
   VerticalGrid extended = grid;
   if (range.low_m < grid.low_m - kSame_m) {
-    const int below = static_cast<int>(std::ceil((grid.low_m - range.low_m) / grid.spacing_m));
+    const int below = cells_of(grid.low_m - range.low_m);
     extended.low_m -= below * grid.spacing_m;
     extended.cells += below;
   }
   if (range.high_m > grid.High_m() + kSame_m) {
-    extended.cells += static_cast<int>(std::ceil((range.high_m - grid.High_m()) / grid.spacing_m));
+    extended.cells += cells_of(range.high_m - grid.High_m());
   }
   return extended;
 }

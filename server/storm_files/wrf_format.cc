@@ -10,6 +10,7 @@
 #include "storm_files/date_time.h"
 #include "storm_files/even_columns.h"
 #include "storm_files/fields_on_heights.h"
+#include "storm_files/units.h"
 #include "storm_files/wrf_metadata.h"
 #include "storm_files/wrf_reader.h"
 #include "storm_files/wrf_relatives.h"
@@ -31,6 +32,11 @@ void DescribeColumns(const WrfMetadata& metadata, StormFile& file) {
     file.cells = {even.columns.x, even.columns.y, metadata.cells.z};
     file.dx_m = even.dx_m;
     file.dy_m = even.dy_m;
+  } else if (std::min(nominal_m.x, nominal_m.y) == 0.0) {
+    file.assumptions.push_back(absl::StrFormat(
+        "The columns are %.0f m by %.0f m apart, as their latitudes and longitudes say, because "
+        "the file has no attributes DX and DY.",
+        file.dx_m, file.dy_m));
   } else if (glm::dvec2(file.dx_m, file.dy_m) != nominal_m) {
     file.assumptions.push_back(absl::StrFormat(
         "The columns are %.0f m by %.0f m apart, as their latitudes and longitudes say; DX and DY, "
@@ -47,6 +53,8 @@ class WrfFormat final : public StormFormat {
   std::string_view Requirement() const override {
     return "WRF output (it has no dimensions west_east, south_north, bottom_top)";
   }
+
+  absl::Status PrepareBeforeConfinement() const override { return LoadUnits(); }
 
   FormatFit Sniff(const UnknownFile& file) const override {
     if (!file.Netcdf().ok()) return FormatFit::kNone;

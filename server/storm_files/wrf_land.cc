@@ -9,8 +9,8 @@
 namespace thunderhead::storm_files {
 namespace {
 
-constexpr WrfUnit kShare = {"1", {"1", "-", "fraction", "dimensionless"}};
-constexpr WrfUnit kPercent = {"%", {"%", "percent"}};
+constexpr WrfUnit kShare = {"1"};
+constexpr WrfUnit kPercent = {"%"};
 
 // Returns the land-use scheme by the name of its table of classes, or else by the number of
 // classes.

@@ -1,12 +1,15 @@
 #include "storm_files/wrf_layout.h"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <optional>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "base/status.h"
+#include "storm_files/units.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -96,9 +99,16 @@ std::string NameOfTime(const netcdf::NetcdfFile& file) {
 
 bool HasUnits(const netcdf::NetcdfFile& file, const std::string& variable, const WrfUnit& unit) {
   std::string spelling = file.TextOrEmpty(variable, "units");
-  std::erase_if(spelling, [](char c) { return c == ' ' || c == '*' || c == '^' || c == '.'; });
-  std::erase_if(spelling, [](char c) { return c == '(' || c == ')' || c == '_'; });
-  return spelling.empty() || std::ranges::find(unit.spellings, spelling) != unit.spellings.end();
+  // WRF's Registry has a dash for numbers without a unit, "# kg(-1)" and "W m{-2}".
+  std::erase_if(spelling,
+                [](char c) { return std::string_view("#(){}").find(c) != std::string_view::npos; });
+  const auto text = absl::StripAsciiWhitespace(spelling);
+  if (text.empty()) return true;
+  const std::optional<UnitConversion> conversion =
+      ConversionOf(text == "-" ? "1" : std::string_view(text.data(), text.size()), unit.name);
+  constexpr double kRounding = 1e-9;
+  return conversion.has_value() && std::abs(conversion->scale - 1.0) < kRounding &&
+         conversion->offset == 0.0;
 }
 
 absl::Status CheckUnits(const netcdf::NetcdfFile& file, const std::string& variable,
@@ -106,7 +116,7 @@ absl::Status CheckUnits(const netcdf::NetcdfFile& file, const std::string& varia
   if (HasUnits(file, variable, unit)) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(
       file.Path(), ": ", variable, " has units '", file.TextOrEmpty(variable, "units"), "' where '",
-      std::string(unit.name), "' is needed; convert it (and its units attribute) first"));
+      unit.name, "' is needed; convert it (and its units attribute) first"));
 }
 
 std::vector<std::size_t> WrfLayout::Columns() const {

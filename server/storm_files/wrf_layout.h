@@ -15,13 +15,12 @@
 
 namespace thunderhead::storm_files {
 
-// The accepted spellings of a unit, without blanks, stars, carets, dots and brackets.
+// A unit as UDUNITS spells it. A file's unit is accepted if it is the same in any spelling.
 struct WrfUnit {
-  std::string_view name;
-  std::array<std::string_view, 4> spellings;
+  const char* name;
 };
 
-inline constexpr WrfUnit kWrfLength = {"m", {"m", "meter", "meters", "metres"}};
+inline constexpr WrfUnit kWrfLength = {"m"};
 
 // The number of dimensions without time of a variable in layers, and of one with a value for each
 // column.

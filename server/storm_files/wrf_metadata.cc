@@ -28,16 +28,16 @@ using physics::Hydrometeor;
 constexpr std::array<std::string_view, physics::kHydrometeorCount> kHydrometeorVariables = {
     "QCLOUD", "QRAIN", "QICE", "QSNOW", "QGRAUP", "QHAIL"};
 
-constexpr WrfUnit kMixingRatio = {"kg kg-1", {"kgkg-1", "kg/kg", "kg-1kg", "1"}};
-constexpr WrfUnit kPressure = {"Pa", {"Pa", "pascal", "pascals", "Nm-2"}};
-constexpr WrfUnit kHectopascal = {"hPa", {"hPa", "mb", "mbar", "millibar"}};
-constexpr WrfUnit kCelsius = {"degC", {"degC", "C", "celsius", "degreesC"}};
-constexpr WrfUnit kGeopotential = {"m2 s-2", {"m2s-2", "m2/s2", "Jkg-1", "J/kg"}};
+constexpr WrfUnit kMixingRatio = {"kg kg-1"};
+constexpr WrfUnit kPressure = {"Pa"};
+constexpr WrfUnit kHectopascal = {"hPa"};
+constexpr WrfUnit kCelsius = {"degC"};
+constexpr WrfUnit kGeopotential = {"m2 s-2"};
 constexpr WrfUnit kEnergy = kGeopotential;
-constexpr WrfUnit kVelocity = {"m s-1", {"ms-1", "m/s", "meters/s", "metres/s"}};
-constexpr WrfUnit kTemperature = {"K", {"K", "kelvin", "Kelvin", "degK"}};
-constexpr WrfUnit kKilometre = {"km", {"km", "kilometer", "kilometers", "kilometres"}};
-constexpr WrfUnit kPerMass = {"kg-1", {"kg-1", "/kg", "#kg-1", "#/kg"}};
+constexpr WrfUnit kVelocity = {"m s-1"};
+constexpr WrfUnit kTemperature = {"K"};
+constexpr WrfUnit kKilometre = {"km"};
+constexpr WrfUnit kPerMass = {"kg-1"};
 
 // Variables of particle sizes. Radii come before numbers, because a number needs an assumed size
 // distribution.
@@ -60,18 +60,21 @@ constexpr std::array kSizeNames = {
 // WRF's variable T is the potential temperature minus this value.
 constexpr double kBaseTheta_K = 300.0;
 
-absl::Status ReadSpacing(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
+// Reads the distances on the model's map. They are 0 if the file does not have them.
+void ReadSpacing(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
   const std::pair<const char*, double*> spacings[] = {{"DX", &metadata.dx_m},
                                                       {"DY", &metadata.dy_m}};
   for (const auto& [name, spacing_m] : spacings) {
-    *spacing_m = file.NumberAttribute("", name).value_or(0.0);
-    if (!(*spacing_m > 0.0) || !std::isfinite(*spacing_m)) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(file.Path(), ": the global attribute ", name,
-                       " (metres, above zero) is missing or wrong; add it"));
-    }
+    const double given_m = file.NumberAttribute("", name).value_or(0.0);
+    *spacing_m = given_m > 0.0 && std::isfinite(given_m) ? given_m : 0.0;
   }
-  return absl::OkStatus();
+}
+
+absl::Status CheckSpacing(const netcdf::NetcdfFile& file, const WrfMetadata& metadata) {
+  if (metadata.dx_m > 0.0 && metadata.dy_m > 0.0) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": the global attributes DX and DY (metres, above zero) are missing or wrong, ",
+      "and no latitudes and longitudes (XLAT, XLONG) give the distances; add one of them"));
 }
 
 // A variable that another program writes in place of WRF's own, and its unit in SI units.
@@ -393,7 +396,7 @@ absl::StatusOr<WrfMetadata> ReadWrfMetadata(const netcdf::NetcdfFile& file) {
   metadata.path = file.Path();
   THUNDERHEAD_ASSIGN_OR_RETURN(metadata.layout, FindWrfLayout(file));
   metadata.cells = metadata.layout.cells;
-  THUNDERHEAD_RETURN_IF_ERROR(ReadSpacing(file, metadata));
+  ReadSpacing(file, metadata);
   THUNDERHEAD_ASSIGN_OR_RETURN(WrfTimes times, ReadWrfTimes(file, metadata.layout));
   metadata.times = std::move(times.times);
   metadata.simulation_start = std::move(times.run);
@@ -411,6 +414,7 @@ absl::StatusOr<WrfMetadata> ReadWrfMetadata(const netcdf::NetcdfFile& file) {
   THUNDERHEAD_ASSIGN_OR_RETURN(metadata.place, ReadWrfPlace(file, metadata.layout));
   std::ranges::copy(metadata.place.assumptions, std::back_inserter(metadata.assumptions));
   THUNDERHEAD_RETURN_IF_ERROR(MeasureColumns(file, metadata));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckSpacing(file, metadata));
   if (metadata.place.middle.has_value()) metadata.land = FindLand(file, metadata.layout);
   metadata.model = ModelName(file);
   metadata.microphysics = MicrophysicsOf(file);

@@ -15,8 +15,8 @@
 namespace thunderhead::storm_files {
 namespace {
 
-constexpr WrfUnit kNorth = {"degree_north", {"degreenorth", "degreesnorth", "degree", "degrees"}};
-constexpr WrfUnit kEast = {"degree_east", {"degreeeast", "degreeseast", "degree", "degrees"}};
+constexpr WrfUnit kNorth = {"degree_north"};
+constexpr WrfUnit kEast = {"degree_east"};
 
 // Middles that are closer than this are the same place. It is about a metre, which is the
 // precision of XLONG.

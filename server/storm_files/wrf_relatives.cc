@@ -6,6 +6,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "storm_files/units.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -50,9 +51,8 @@ std::optional<std::string> WhyPressureLevels(const netcdf::NetcdfFile& file) {
   }
   const std::string levels = LevelsOf(file);
   if (levels.empty() || !file.HasVariable(levels) || HasHeights(file)) return std::nullopt;
-  const std::string units = absl::AsciiStrToLower(file.TextOrEmpty(levels, "units"));
-  const bool pressure = units == "hpa" || units == "pa" || units == "mb" || units == "mbar" ||
-                        units == "millibar" ||
+  const std::string units = file.TextOrEmpty(levels, "units");
+  const bool pressure = ConversionOf(units, "Pa").has_value() ||
                         file.TextOrEmpty(levels, "standard_name") == "air_pressure";
   const bool with_heights = std::ranges::any_of(
       std::vector<std::string>{"height", "z", "geopotential_height"},

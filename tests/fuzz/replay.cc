@@ -229,7 +229,7 @@ int main(int argc, char** argv) {
     Run(mutator.Next());
     longest_s = std::max(longest_s, passed() - before_s);
     ++mutations;
-    constexpr std::uint64_t kReport = 100'000;
+    constexpr std::uint64_t kReport = 10'000;
     if (mutations % kReport == 0) {
       std::fprintf(stderr, "%llu mutations in %.1f s\n", static_cast<unsigned long long>(mutations),
                    passed());

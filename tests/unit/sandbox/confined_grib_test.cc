@@ -2,13 +2,17 @@
 // its definitions from files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "absl/strings/match.h"
 #include "sandbox/confined_files.h"
 #include "storm_files/storm_format.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/unit/grib/messages.h"
 
 namespace thunderhead::sandbox {
 namespace {
@@ -73,6 +77,121 @@ TEST(ConfinedGribParts, AreReadTogether) {
   ASSERT_TRUE(own.ok()) << own.status();
   ASSERT_TRUE(confined.ok()) << confined.status();
   ExpectSame(*own, *confined);
+}
+
+// Small files that need far more memory or time than their size. A reader has 1 GiB and a minute.
+class ConfinedGribBombs : public ::testing::Test {
+ protected:
+  void SetUp() override {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "AddressSanitizer ends the program where others throw std::bad_alloc";
+#endif
+  }
+
+  // Returns a storm with one value a field, on two levels and `side` x `side` columns.
+  static std::string Storm(int side) {
+    std::string bytes;
+    grib::testing::Message message;
+    message.grid = grib::testing::GridOf({.columns = side, .rows = side, .step = 100});
+    message.points = std::int64_t{side} * side;
+    const auto add = [&](int category, int number, float value) {
+      message.category = category;
+      message.number = number;
+      message.values = {value};
+      bytes += grib::testing::BytesOf(message);
+    };
+    for (int level = 1; level <= 2; ++level) {
+      const auto height = static_cast<float>(1000 * level);
+      message.level = {105, level};
+      add(3, 5, height);
+      add(3, 0, 100'000.0F - 10.0F * height);
+      add(0, 0, 280.0F);
+      add(1, 0, 0.0F);
+      add(1, 22, 1e-3F);
+    }
+    message.level = {1, 0};
+    add(3, 5, 400.0F);
+    return bytes;
+  }
+
+  std::string Write(const std::string& bytes) {
+    const std::string path = folder_.File("storm.grib2");
+    std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+    return path;
+  }
+
+  // Returns the first error between describing the file and reading its first time.
+  absl::Status Read(const std::string& bytes) {
+    const auto file = files_->Describe(Write(bytes));
+    if (!file.ok()) return file.status();
+    return file->reader->Read(0, std::nullopt, {}).status();
+  }
+
+  const testing::TemporaryFolder folder_;
+  const std::shared_ptr<ConfinedFiles> files_ = Files();
+};
+
+TEST_F(ConfinedGribBombs, FieldsLargerThanTheMemoryAreRefused) {
+  ASSERT_TRUE(Read(Storm(4)).ok()) << Read(Storm(4));
+  // 196 million points, in 2 kB.
+  const std::string bomb = Storm(14'000);
+  EXPECT_LT(bomb.size(), 4096U);
+  EXPECT_EQ(Read(bomb).code(), absl::StatusCode::kResourceExhausted) << Read(bomb);
+  EXPECT_TRUE(Read(Storm(4)).ok());
+}
+
+TEST_F(ConfinedGribBombs, AHundredThousandMessagesAreIndexedInTime) {
+  grib::testing::Message message;
+  message.grid = grib::testing::GridOf({.columns = 4, .rows = 4, .step = 100});
+  message.points = 16;
+  message.values = {1e-3F};
+  message.category = 1;
+  message.number = 22;
+  std::string bytes = Storm(4);
+  for (int i = 0; i < 100'000; ++i) {
+    message.level = {105, i + 3};
+    bytes += grib::testing::BytesOf(message);
+  }
+  const absl::Status status = Read(bytes);
+  EXPECT_EQ(status.code(), absl::StatusCode::kDataLoss) << status;
+  EXPECT_THAT(std::string(status.message()), ::testing::HasSubstr("hybrid level 3 is missing"));
+  EXPECT_TRUE(Read(Storm(4)).ok());
+}
+
+// A file with one field of a time is no storm alone, and reading it is an error.
+TEST_F(ConfinedGribBombs, APartOfATimeIsNotReadAlone) {
+  grib::testing::Message message;
+  message.grid = grib::testing::GridOf({.columns = 4, .rows = 4, .step = 100});
+  message.points = 16;
+  message.values = {1e-3F};
+  message.category = 1;
+  message.number = 22;
+  const absl::Status status = Read(grib::testing::BytesOf(message));
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument) << status;
+  EXPECT_THAT(std::string(status.message()), ::testing::HasSubstr("only a part of a time"));
+}
+
+// A gz file may have several members, one after the other. Each of these holds 16 MiB.
+TEST_F(ConfinedGribBombs, CompressedFilesAreDecompressedToALimit) {
+  const auto packed = [](const std::string& contents) {
+    std::string text(compressBound(contents.size()) + 32, '\0');
+    z_stream stream{};
+    constexpr int kGzip = 16 + MAX_WBITS;
+    deflateInit2(&stream, Z_BEST_SPEED, Z_DEFLATED, kGzip, 8, Z_DEFAULT_STRATEGY);
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(contents.data()));
+    stream.avail_in = static_cast<uInt>(contents.size());
+    stream.next_out = reinterpret_cast<Bytef*>(text.data());
+    stream.avail_out = static_cast<uInt>(text.size());
+    EXPECT_EQ(deflate(&stream, Z_FINISH), Z_STREAM_END);
+    text.resize(stream.total_out);
+    deflateEnd(&stream);
+    return text;
+  };
+  std::string bytes = packed(Storm(4));
+  const std::string zeros = packed(std::string(16 << 20, '\0'));
+  for (int i = 0; i < 160; ++i) bytes += zeros;
+  EXPECT_EQ(Read(bytes).code(), absl::StatusCode::kResourceExhausted) << Read(bytes);
+  EXPECT_TRUE(Read(packed(Storm(4))).ok());
 }
 
 }  // namespace

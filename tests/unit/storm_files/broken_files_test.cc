@@ -60,10 +60,11 @@ TEST_F(BrokenFiles, WithoutAVariableThatIsNeeded) {
   }
 }
 
+// The places of the columns give the distances too, so a file without either is refused.
 TEST_F(BrokenFiles, WithoutGridSpacing) {
   for (const char* name : {"DX", "DY"}) {
     SyntheticWrf file = Storm();
-    file.omitted = {name};
+    file.omitted = {name, "XLAT"};
     ExpectError(Read(file), name);
   }
   SyntheticWrf file = Storm();

@@ -145,6 +145,24 @@ TEST_F(CfLayouts, HeightsAreThoseOfAnArrayOfFaces) {
   EXPECT_THAT(info_.assumptions, Contains(HasSubstr("HHL")));
 }
 
+// A fill value that no attribute names only takes its own layer away.
+TEST_F(CfLayouts, ImpossibleHeightsAreMissing) {
+  for (const double impossible_m : {1e9, -1e9}) {
+    SyntheticCf file = FromTheTop();
+    file.coordinates.push_back({"z_2", {1, 2, 3, 4, 5}, {{"axis", "Z"}, {"positive", "down"}}, {}});
+    file.variables[0].value = [](const Index&) { return 1e-4; };
+    file.variables.push_back(Values("HHL", {"z_2", "y", "x"}, "m", [=](const Index& at) {
+      const bool is_here = at.at("x") == 2 && at.at("y") == 1 && at.at("z_2") == 0;
+      return is_here ? impossible_m : 400.0 * static_cast<double>(4 - at.at("z_2"));
+    }));
+    const auto fields = Read(file);
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    EXPECT_LT((*fields)->grid.HighCorner_m().z, 2100.0);
+    EXPECT_NEAR((*fields)->fields[0].statistics.maximum_water_path_kg_per_m2, 0.16, 1e-5);
+    EXPECT_NEAR((*fields)->fields[0].statistics.mean_water_path_kg_per_m2, 0.16 - 0.04 / 24, 1e-5);
+  }
+}
+
 TEST_F(CfLayouts, HeightsAreThoseOfAnArrayOfMiddles) {
   SyntheticCf file = FromTheTop();
   file.variables.push_back(Terrain({"y", "x"}));
@@ -393,6 +411,8 @@ TEST_F(CfLayouts, LongitudesAndLatitudesOfEachColumnAreEnough) {
   SyntheticCf file = Cloud();
   AddPlaces(file, "y", "x");
   ASSERT_TRUE(Read(file).ok());
+  // The columns' own map projection places coasts.
+  EXPECT_THAT(info_.projection, HasSubstr("+proj="));
   EXPECT_NEAR(info_.latitude_deg.value(), 47.0, 1e-4);
   EXPECT_NEAR(info_.longitude_deg.value(), 8.0, 1e-4);
   // The dimensions have names without meaning and no coordinates.

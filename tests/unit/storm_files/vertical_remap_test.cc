@@ -151,6 +151,8 @@ TEST(ExtendedGrid, AddsWholeCellsBelowAndAbove) {
   EXPECT_DOUBLE_EQ(more.low_m, -200.0);
   EXPECT_EQ(more.cells, 13);
   EXPECT_DOUBLE_EQ(more.High_m(), 1100.0);
+  // More cells than an int can count are still more cells.
+  EXPECT_GE(Extended({0.0, 1e-6, 10}, {-9e5F, 9e5F}).cells, 100'000'000);
 }
 
 }  // namespace

@@ -109,6 +109,33 @@ TEST_F(WrfColumns, AProjectedLengthIsNoTrueLength) {
   EXPECT_LT(Distance_m(CloudPlace(file, *fields, middle), place(24, 30)), 0.25 * file.dx_m);
 }
 
+// Files of wrf-python have the places of the columns, but not the attributes DX and DY.
+TEST_F(WrfColumns, PlacesGiveTheDistancesWithoutDx) {
+  const StormFile expected = Describe(Nest());
+  SyntheticWrf wrf = Nest();
+  wrf.omitted = {"DX", "DY"};
+  const StormFile file = Describe(wrf);
+  EXPECT_EQ(file.dx_m, expected.dx_m);
+  EXPECT_EQ(file.dy_m, expected.dy_m);
+  EXPECT_EQ(file.cells, expected.cells);
+  // Columns that are already even are as far apart as their places say.
+  SyntheticWrf even;
+  even.mixing_ratios["QCLOUD"] = [](const WrfCell&) { return 1e-3; };
+  even.nx = even.ny = 10;
+  even.latitude_deg = 35.0;
+  even.omitted = {"DX", "DY"};
+  const StormFile described = Describe(even);
+  EXPECT_NEAR(described.dx_m, 1000.0, 2.0);
+  EXPECT_NEAR(described.dy_m, 2000.0, 4.0);
+  EXPECT_THAT(described.assumptions,
+              ::testing::Contains(HasSubstr("the file has no attributes DX and DY")));
+  even.omitted.insert("XLAT");
+  const std::string path = folder_.File("nowhere");
+  testing::WriteWrf(even, path);
+  EXPECT_THAT(std::string(StormFormats::BuiltIn().Describe(path).status().message()),
+              HasSubstr("DX and DY (metres, above zero) are missing or wrong, and no latitudes"));
+}
+
 TEST_F(WrfColumns, EachTimeOfAMovingNestIsAtItsPlace) {
   const SyntheticWrf wrf = Nest();
   const StormFile file = Describe(wrf);

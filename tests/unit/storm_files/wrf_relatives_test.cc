@@ -132,6 +132,24 @@ TEST_F(WrfRelativesTest, TheLowestOfMiddlesIsAboveTheGround) {
   EXPECT_NEAR(ColumnPath(*fields, 0, 0, 0), 1e-3 * kDryDensity_kg_per_m3 * 3900.0, 1e-3);
 }
 
+TEST_F(WrfRelativesTest, NamesLevelsThatRunDownwards) {
+  SyntheticWrf file = OfWrfPython();
+  file.mixing_ratios["height"] = [](const WrfCell& cell) { return 3750.0 - 500.0 * cell.level; };
+  EXPECT_THAT(Message(file), AllOf(HasSubstr("height of record 0 run downwards"),
+                                   HasSubstr("reverse the order of the levels")));
+}
+
+TEST_F(WrfRelativesTest, UnitsMayBeSpelledDifferently) {
+  SyntheticWrf file = OfWrfPython();
+  file.units = {
+      {"height", "metre"}, {"pressure", "millibars"}, {"temp", "kelvins"}, {"QCLOUD", "KG KG-1"}};
+  ExpectCloud(file);
+  file.units["QCLOUD"] = "kg kg(-1)";
+  ExpectCloud(file);
+  file.units["QCLOUD"] = "g kg-1";
+  EXPECT_THAT(Message(file), HasSubstr("QCLOUD has units 'g kg-1' where 'kg kg-1' is needed"));
+}
+
 TEST_F(WrfRelativesTest, RefusesWrfPythonsFilesWithoutHeights) {
   SyntheticWrf file = OfWrfPython();
   file.mixing_ratios.erase("height");
@@ -150,7 +168,7 @@ TEST_F(WrfRelativesTest, PressureLevelsNeedTheirHeights) {
   file.texts["level"]["units"] = "hPa";
   ExpectCloud(file);
   file.mixing_ratios.erase("height");
-  EXPECT_THAT(Message(file), HasSubstr("has pressure levels (level in hpa) without their heights"));
+  EXPECT_THAT(Message(file), HasSubstr("has pressure levels (level in hPa) without their heights"));
 }
 
 TEST_F(WrfRelativesTest, LevelsMayBeHeights) {
