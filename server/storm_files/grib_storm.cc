@@ -9,6 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "grib/decompressed.h"
+#include "storm_files/cell_columns.h"
 #include "storm_files/even_columns.h"
 #include "storm_files/fields_on_heights.h"
 #include "storm_files/grib_columns.h"
@@ -37,6 +38,19 @@ std::string AboutText(const GribContents& contents) {
   return about;
 }
 
+// Places the cells of an unstructured grid by their latitudes and longitudes.
+absl::StatusOr<EvenColumns> PlaceGribCells(const GribStorm& storm) {
+  const GribContents& contents = storm.contents;
+  CellPlaces places;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> latitude_deg,
+                               ReadGribField(storm, contents.cell_latitude));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> longitude_deg,
+                               ReadGribField(storm, contents.cell_longitude));
+  places.latitude_deg.assign(latitude_deg.begin(), latitude_deg.end());
+  places.longitude_deg.assign(longitude_deg.begin(), longitude_deg.end());
+  return MakeEvenOfCells(places);
+}
+
 }  // namespace
 
 GribInput GribFileAt(const std::string& path) {
@@ -56,11 +70,13 @@ absl::StatusOr<std::shared_ptr<const GribStorm>> MakeGribStorm(const std::string
   auto storm = std::make_shared<GribStorm>();
   THUNDERHEAD_ASSIGN_OR_RETURN(storm->contents, FindGribLayers(path, indexes));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRecords(path, storm->contents.times.size()));
-  absl::StatusOr<EvenColumns> even = MakeEven(PlacesOf(storm->contents.grid));
-  if (!even.ok()) return base::Annotate(even.status(), path);
-  storm->even = std::make_shared<const EvenColumns>(*std::move(even));
   storm->files = std::move(files);
   storm->indexes = std::move(indexes);
+  absl::StatusOr<EvenColumns> even = storm->contents.grid.IsUnstructured()
+                                         ? PlaceGribCells(*storm)
+                                         : MakeEven(PlacesOf(storm->contents.grid));
+  if (!even.ok()) return base::Annotate(even.status(), path);
+  storm->even = std::make_shared<const EvenColumns>(*std::move(even));
   return storm;
 }
 
