@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <iterator>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "base/memory_fit.h"
 #include "base/status.h"
+#include "glm/vec2.hpp"
 #include "grib/decompressed.h"
 #include "storm_files/cell_columns.h"
 #include "storm_files/even_columns.h"
@@ -51,6 +55,22 @@ absl::StatusOr<EvenColumns> PlaceGribCells(const GribStorm& storm) {
   return MakeEvenOfCells(places);
 }
 
+// Places the columns of the storm's grid. Running out of memory counts as an error of the input,
+// because a message of few bytes may have a huge grid.
+absl::StatusOr<EvenColumns> PlaceGribColumns(const GribStorm& storm) {
+  const grib::Grid& grid = storm.contents.grid;
+  constexpr std::size_t kColumn_bytes = sizeof(FromColumn) + sizeof(glm::dvec2);
+  THUNDERHEAD_RETURN_IF_ERROR(
+      base::CountThatFits("the grid", {grid.Points()}, kColumn_bytes).status());
+  try {
+    return grid.IsUnstructured() ? PlaceGribCells(storm) : MakeEven(PlacesOf(grid));
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  return absl::ResourceExhaustedError(absl::StrCat(
+      "the places of its ", grid.Points(), " columns do not fit in memory; cut a smaller domain"));
+}
+
 }  // namespace
 
 GribInput GribFileAt(const std::string& path) {
@@ -72,9 +92,7 @@ absl::StatusOr<std::shared_ptr<const GribStorm>> MakeGribStorm(const std::string
   THUNDERHEAD_RETURN_IF_ERROR(CheckRecords(path, storm->contents.times.size()));
   storm->files = std::move(files);
   storm->indexes = std::move(indexes);
-  absl::StatusOr<EvenColumns> even = storm->contents.grid.IsUnstructured()
-                                         ? PlaceGribCells(*storm)
-                                         : MakeEven(PlacesOf(storm->contents.grid));
+  absl::StatusOr<EvenColumns> even = PlaceGribColumns(*storm);
   if (!even.ok()) return base::Annotate(even.status(), path);
   storm->even = std::make_shared<const EvenColumns>(*std::move(even));
   return storm;
