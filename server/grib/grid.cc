@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -314,22 +315,25 @@ std::string NameOfTemplate(std::uint64_t number) {
   }
 }
 
-// Returns that the grid consists of ICON's triangles, and which grid of ICON it is.
-absl::Status UnreadTriangles(const Octets& section) {
+// Reads the grid of ICON's triangles, which has no places.
+absl::StatusOr<Grid> ReadTriangles(const Octets& section) {
   constexpr std::size_t kOctets = 35;
+  constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();
+  const std::uint64_t points = section.Unsigned(7, 4);
   if (section.Count() < kOctets) return BadGrid("has too few numbers");
+  if (points == 0 || points > kMost) return BadGrid(absl::StrCat("has ", points, " cells"));
   std::string uuid;
   for (std::size_t octet = 20; octet <= kOctets; ++octet) {
     const bool begins_part = octet == 24 || octet == 26 || octet == 28 || octet == 30;
     absl::StrAppend(&uuid, begins_part ? "-" : "",
                     absl::Hex(section.Unsigned(octet, 1), absl::kZeroPad2));
   }
-  return absl::InvalidArgumentError(absl::StrCat(
-      "its grid is unstructured (template 3.101, ICON's triangles), and GRIB2 files do not have "
-      "the "
-      "places of its cells; convert it to netCDF with the grid file of the grid ",
-      section.Unsigned(16, 3), " (uuidOfHGrid ", uuid,
-      "), for example with cdo -f nc setgrid,GRID_FILE, and add the heights of the levels (HHL)"));
+  Grid grid;
+  grid.columns = static_cast<int>(points);
+  grid.rows = 1;
+  grid.cells = absl::StrCat("grid ", section.Unsigned(16, 3), " (uuidOfHGrid ", uuid, ")");
+  grid.from_south = true;
+  return grid;
 }
 
 }  // namespace
@@ -350,7 +354,7 @@ absl::StatusOr<Grid> ReadGrid(std::span<const std::byte> section3) {
     case 30:
       return ReadLambert(section);
     case 101:
-      return UnreadTriangles(section);
+      return ReadTriangles(section);
     default:
       return UnreadGrid(
           absl::StrCat(NameOfTemplate(number), " (template 3.", number, "), which is not read"));

@@ -18,8 +18,11 @@ struct Grid {
   // The map projection in PROJ's notation, with the size of the Earth. Coordinates are degrees for
   // "+proj=longlat" and "+proj=ob_tran" (a rotated pole), and metres on the map for the others.
   std::string projection;
-  glm::dvec2 south_west{0.0};            // coordinates of the centre of the south-west cell
-  glm::dvec2 step{0.0};                  // distances of neighbours in these coordinates
+  glm::dvec2 south_west{0.0};  // coordinates of the centre of the south-west cell
+  glm::dvec2 step{0.0};        // distances of neighbours in these coordinates
+  // Names an unstructured grid: "grid 44 (uuidOfHGrid a27b8de6-...)". It is empty for others. The
+  // cells are columns of one row, in the file's order. Their places are in other fields.
+  std::string cells;
   bool wind_along_grid = false;          // true if winds are along x and y, false if east and north
   std::vector<std::string> assumptions;  // each one sentence
 
@@ -29,6 +32,7 @@ struct Grid {
   bool columns_first = false;
   bool alternates = false;
 
+  bool IsUnstructured() const { return !cells.empty(); }
   std::size_t Points() const {
     return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   }

@@ -13,6 +13,7 @@
 #include "base/status.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
+#include "glm/gtc/constants.hpp"
 #include "glm/trigonometric.hpp"
 #include "glm/vec3.hpp"
 #include "storm_files/model_columns.h"
@@ -177,6 +178,7 @@ class CellRaster {
     const float farthest_m = *std::ranges::max_element(neighbours_.reach_m);
     farthest_square_ = static_cast<double>(farthest_m) * farthest_m * (1.0 + 1e-6);
     even_.model_columns = {static_cast<int>(plane_m.size()), 1};
+    even_.unstructured = true;
   }
 
   const Neighbours& Distances() const { return neighbours_; }
@@ -317,17 +319,13 @@ absl::StatusOr<EvenColumns> MakeEvenOfCells(const CellPlaces& places) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckArea(plane_m));
     even.middle = map.PlaceOf(BoxOf(plane_m).Middle()).value_or(*mean);
   }
-  const double reach_m = ReachOf_m(places, even.middle);
+  even.reach_m = ReachOf_m(places, even.middle);
+  const double angle = even.reach_m / places.radius_m;
+  if (angle > glm::half_pi<double>()) return TooWide("reach farther than a hemisphere");
   // The scale of a stereographic projection at an angle c from its centre is 1 / cos(c / 2)^2.
-  const double cosine = std::cos(0.5 * reach_m / places.radius_m);
-  even.largest_error = 1.0 / (cosine * cosine) - 1.0;
-  constexpr double kMostError = 0.01;
-  if (!(even.largest_error <= kMostError)) {
-    return TooWide(
-        absl::StrFormat("reach %.0f km from their middle, so distances on a flat grid would be "
-                        "wrong by up to %.1f %%",
-                        reach_m / 1e3, 100.0 * even.largest_error));
-  }
+  const double cosine = std::cos(0.5 * angle);
+  even.largest_scale = 1.0 / (cosine * cosine);
+  even.largest_error = even.largest_scale - 1.0;
   even.projection = StereographicOn(even.middle, places.radius_m);
   THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection map, MapProjection::Open(even.projection));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<glm::dvec2> plane_m, OnMap(places, map));
@@ -348,13 +346,6 @@ absl::StatusOr<EvenColumns> MakeEvenOfPlane(const std::vector<glm::dvec2>& plane
   EvenColumns even;
   THUNDERHEAD_RETURN_IF_ERROR(Rasterize(plane_m, BoxOf(plane_m), even));
   return even;
-}
-
-std::string AssumptionOfCells(const EvenColumns& even) {
-  return absl::StrFormat(
-      "The %d cells of the unstructured grid were put on %d x %d even columns of %.0f m. Each "
-      "column has the values of the nearest cell.",
-      even.model_columns.x, even.columns.x, even.columns.y, even.dx_m);
 }
 
 }  // namespace thunderhead::storm_files

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -28,15 +27,14 @@ struct CellPlaces {
 // would be more than four times as many columns as cells. A column is outside if it is farther from
 // the nearest cell than 1.2 times the distance between that cell and its third nearest neighbour.
 //
-// INVALID_ARGUMENT if a place is missing or impossible, or if the cells cover no area. It is also
-// the error for a domain so large that distances on a flat grid are wrong by more than 1 %.
+// Distances are true in the middle of the domain, and elsewhere as EvenColumns::largest_scale says.
+//
+// INVALID_ARGUMENT if a place is missing or impossible, if the cells cover no area, or if the
+// domain is wider than a hemisphere.
 absl::StatusOr<EvenColumns> MakeEvenOfCells(const CellPlaces& places);
 
 // Returns even columns of cells on a plane without a place on Earth. `plane_m` has their centres.
 // The projection of the result is empty.
 absl::StatusOr<EvenColumns> MakeEvenOfPlane(const std::vector<glm::dvec2>& plane_m);
-
-// Returns a sentence for users that says what was done with the cells.
-std::string AssumptionOfCells(const EvenColumns& even);
 
 }  // namespace thunderhead::storm_files

@@ -155,7 +155,7 @@ absl::StatusOr<CfPlaces> PlaceCells(const netcdf::NetcdfFile& file, const std::s
   CfPlaces places;
   places.dx_m = even.dx_m;
   places.dy_m = even.dy_m;
-  places.assumptions.push_back(AssumptionOfCells(even));
+  places.assumptions = AssumptionsOf(even);
   places.even = std::make_shared<const EvenColumns>(std::move(even));
   return places;
 }

@@ -573,7 +573,14 @@ absl::StatusOr<EvenColumns> MakeEven(const ColumnPlaces& places, const EvenOptio
 
 std::vector<std::string> AssumptionsOf(const EvenColumns& even) {
   std::vector<std::string> sentences;
-  if (even.Resampled()) sentences.push_back(ResampledSentence(even));
+  if (even.unstructured) {
+    sentences.push_back(absl::StrFormat(
+        "The %d cells of the unstructured grid were put on %d x %d even columns of %.0f m. Each "
+        "column has the values of the nearest cell.",
+        even.model_columns.x, even.columns.x, even.columns.y, even.dx_m));
+  } else if (even.Resampled()) {
+    sentences.push_back(ResampledSentence(even));
+  }
   if (even.IsTooWide()) {
     sentences.push_back(absl::StrFormat(
         "The domain reaches %.0f km from its middle, and no flat map of it has true distances "

@@ -64,6 +64,9 @@ struct EvenColumns {
   double grid_north_rad = 0.0;  // the direction of the model's y axis at the middle,
                                 // counter-clockwise from true north
 
+  // True if the model's columns are the cells of an unstructured grid, in one row. Then each even
+  // column has the values of the nearest cell, and `mean_m` is the distance of the nearest cells.
+  bool unstructured = false;
   // The places of the even columns among the model's columns, x fastest. It is empty if the model's
   // columns are even already.
   std::vector<FromColumn> from;

@@ -88,6 +88,7 @@ class Finder {
   void Collect();
   absl::Status ChooseLevels();
   absl::Status CheckOneRun();
+  absl::Status FindCells();
   absl::StatusOr<GribLayers> FindTime(absl::Time time);
   absl::Status FindHydrometeors(absl::Time time, GribLayers& layers, std::vector<Found>& needed);
   absl::Status FindState(absl::Time time, std::vector<Found>& needed);
@@ -228,7 +229,26 @@ absl::Status Finder::CheckOneRun() {
   if (!grid.ok()) return base::Annotate(grid.status(), contents_.path);
   contents_.grid = *std::move(grid);
   for (const std::string& assumption : contents_.grid.assumptions) Assume(assumption);
-  return absl::OkStatus();
+  return contents_.grid.IsUnstructured() ? FindCells() : absl::OkStatus();
+}
+
+// Finds the places of the cells, which are fields on the same grid.
+absl::Status Finder::FindCells() {
+  for (const Candidate& candidate : candidates_) {
+    if (*candidate.Field().grid != *first_->grid) continue;
+    if (candidate.meaning.kind == GribKind::kCellLatitude) {
+      contents_.cell_latitude = candidate.place;
+    } else if (candidate.meaning.kind == GribKind::kCellLongitude) {
+      contents_.cell_longitude = candidate.place;
+    }
+  }
+  if (contents_.cell_latitude.field != nullptr && contents_.cell_longitude.field != nullptr) {
+    return absl::OkStatus();
+  }
+  return Refused(absl::StrCat(
+      "lies on the cells of ICON's unstructured ", contents_.grid.cells,
+      ", whose places are missing; add the files with the latitudes and longitudes of this grid's "
+      "cells (CLAT, 0/191/1, and CLON, 0/191/2)"));
 }
 
 // Returns whether the field is on a level of the storm's type, or on a half level between them.

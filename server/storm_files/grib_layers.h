@@ -78,6 +78,8 @@ struct GribContents {
   std::string path;               // of the storm, for errors
   std::vector<GribLayers> times;  // in ascending order
   grib::Grid grid;
+  GribPlace cell_latitude;  // of an unstructured grid, as is the next
+  GribPlace cell_longitude;
   grib::Origin origin;
   int process = 0;
   std::string member;  // empty if the files have no members

@@ -75,6 +75,8 @@ constexpr std::array kRows = {
     Row{{0, 2, 9}, Only(GribKind::kAscent), "DZDT", "W", "wz"},
     Row{{0, 2, 8}, Only(GribKind::kOmega), "VVEL", "OMEGA", "w"},
     Row{{0, 19, 11}, Only(GribKind::kTurbulentEnergy), "TKE", "TKE", "tke"},
+    Row{{0, 191, 1}, Only(GribKind::kCellLatitude), "GEOLAT", "CLAT", "tlat"},
+    Row{{0, 191, 2}, Only(GribKind::kCellLongitude), "GEOLON", "CLON", "tlon"},
 };
 
 const Row* RowOf(const grib::Parameter& parameter) {
@@ -196,6 +198,10 @@ std::string GribKindName(GribKind kind) {
       return named("vertical wind");
     case GribKind::kTurbulentEnergy:
       return named("turbulent energy");
+    case GribKind::kCellLatitude:
+      return named("latitude of the cells");
+    case GribKind::kCellLongitude:
+      return named("longitude of the cells");
   }
   return "";
 }

@@ -30,6 +30,8 @@ enum class GribKind {
   kAscent,              // m/s, geometric
   kOmega,               // Pa/s
   kTurbulentEnergy,     // m2/s2
+  kCellLatitude,        // in degrees, of each cell of an unstructured grid
+  kCellLongitude,
 };
 
 struct GribMeaning {

@@ -19,10 +19,12 @@ std::string PartText(const grib::Field& field) {
                       absl::BytesToHexString(absl::string_view(grid.data(), grid.size())));
 }
 
-// Returns whether the field does not change with time: a height on levels, or the ground's height.
+// Returns whether the field does not change with time: a height on levels, the ground's height, or
+// the places of cells.
 bool IsInvariant(const grib::Field& field, GribKind kind) {
   constexpr int kAtGround = 1;
-  return kind == GribKind::kGeometricHeight ||
+  return kind == GribKind::kGeometricHeight || kind == GribKind::kCellLatitude ||
+         kind == GribKind::kCellLongitude ||
          ((kind == GribKind::kGeopotential || kind == GribKind::kGeopotentialHeight) &&
           field.first.type == kAtGround);
 }

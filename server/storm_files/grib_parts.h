@@ -14,7 +14,8 @@ namespace thunderhead::storm_files {
 enum class GribPartKind {
   kWhole,      // hydrometeors and temperature on several levels: one or several whole times
   kFields,     // part of a time
-  kInvariant,  // heights of levels (HHL) or of the ground, which are parts of all times
+  kInvariant,  // heights of levels (HHL) or of the ground, or places of cells (CLAT, CLON), which
+               // are parts of all times
 };
 
 struct GribPart {

@@ -362,11 +362,13 @@ absl::StatusOr<ModelWind> GribSource::Wind() {
   wind.dx_m = domain_.dx_m;
   wind.dy_m = domain_.dy_m;
   wind.on_faces = false;
+  wind.in_order = !storm_->contents.grid.IsUnstructured();
   THUNDERHEAD_ASSIGN_OR_RETURN(wind.u_m_per_s, Read(layers_.wind_x));
   THUNDERHEAD_ASSIGN_OR_RETURN(wind.v_m_per_s, Read(layers_.wind_y));
   THUNDERHEAD_ASSIGN_OR_RETURN(wind.w_m_per_s, Ascent());
   const grib::Grid& grid = storm_->contents.grid;
-  if (grid.wind_along_grid) return wind;
+  wind.east_and_north = grid.IsUnstructured();
+  if (grid.wind_along_grid || grid.IsUnstructured()) return wind;
   THUNDERHEAD_ASSIGN_OR_RETURN(const Values angles, AxisAngles(grid));
   for (std::size_t i = 0; i < wind.u_m_per_s.size() && !angles.empty(); ++i) {
     const float angle = angles[i % angles.size()];
@@ -379,6 +381,10 @@ absl::StatusOr<ModelWind> GribSource::Wind() {
 }
 
 }  // namespace
+
+absl::StatusOr<std::vector<float>> ReadGribField(const GribStorm& storm, const GribPlace& place) {
+  return Decoder(storm).Read(place);
+}
 
 absl::StatusOr<std::unique_ptr<LayerSource>> OpenGribTime(std::shared_ptr<const GribStorm> storm,
                                                           std::size_t record) {

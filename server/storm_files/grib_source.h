@@ -30,6 +30,9 @@ struct GribStorm {
   std::shared_ptr<const EvenColumns> even;
 };
 
+// Returns the values of one field. Errors name the file and the field.
+absl::StatusOr<std::vector<float>> ReadGribField(const GribStorm& storm, const GribPlace& place);
+
 // Opens a time. Errors of the source name the file, the field and its level.
 absl::StatusOr<std::unique_ptr<LayerSource>> OpenGribTime(std::shared_ptr<const GribStorm> storm,
                                                           std::size_t record);

@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <iterator>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
+#include "base/memory_fit.h"
 #include "base/status.h"
+#include "glm/vec2.hpp"
 #include "grib/decompressed.h"
+#include "storm_files/cell_columns.h"
 #include "storm_files/even_columns.h"
 #include "storm_files/fields_on_heights.h"
 #include "storm_files/grib_columns.h"
@@ -37,6 +42,35 @@ std::string AboutText(const GribContents& contents) {
   return about;
 }
 
+// Places the cells of an unstructured grid by their latitudes and longitudes.
+absl::StatusOr<EvenColumns> PlaceGribCells(const GribStorm& storm) {
+  const GribContents& contents = storm.contents;
+  CellPlaces places;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> latitude_deg,
+                               ReadGribField(storm, contents.cell_latitude));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> longitude_deg,
+                               ReadGribField(storm, contents.cell_longitude));
+  places.latitude_deg.assign(latitude_deg.begin(), latitude_deg.end());
+  places.longitude_deg.assign(longitude_deg.begin(), longitude_deg.end());
+  return MakeEvenOfCells(places);
+}
+
+// Places the columns of the storm's grid. Running out of memory counts as an error of the input,
+// because a message of few bytes may have a huge grid.
+absl::StatusOr<EvenColumns> PlaceGribColumns(const GribStorm& storm) {
+  const grib::Grid& grid = storm.contents.grid;
+  constexpr std::size_t kColumn_bytes = sizeof(FromColumn) + sizeof(glm::dvec2);
+  THUNDERHEAD_RETURN_IF_ERROR(
+      base::CountThatFits("the grid", {grid.Points()}, kColumn_bytes).status());
+  try {
+    return grid.IsUnstructured() ? PlaceGribCells(storm) : MakeEven(PlacesOf(grid));
+  } catch (const std::bad_alloc&) {
+  } catch (const std::length_error&) {
+  }
+  return absl::ResourceExhaustedError(absl::StrCat(
+      "the places of its ", grid.Points(), " columns do not fit in memory; cut a smaller domain"));
+}
+
 }  // namespace
 
 GribInput GribFileAt(const std::string& path) {
@@ -56,11 +90,11 @@ absl::StatusOr<std::shared_ptr<const GribStorm>> MakeGribStorm(const std::string
   auto storm = std::make_shared<GribStorm>();
   THUNDERHEAD_ASSIGN_OR_RETURN(storm->contents, FindGribLayers(path, indexes));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRecords(path, storm->contents.times.size()));
-  absl::StatusOr<EvenColumns> even = MakeEven(PlacesOf(storm->contents.grid));
-  if (!even.ok()) return base::Annotate(even.status(), path);
-  storm->even = std::make_shared<const EvenColumns>(*std::move(even));
   storm->files = std::move(files);
   storm->indexes = std::move(indexes);
+  absl::StatusOr<EvenColumns> even = PlaceGribColumns(*storm);
+  if (!even.ok()) return base::Annotate(even.status(), path);
+  storm->even = std::make_shared<const EvenColumns>(*std::move(even));
   return storm;
 }
 

@@ -88,6 +88,13 @@ inline std::string GridOf(const LatLon& grid) {
          Number(grid.step, 4) + Number(grid.step, 4) + Number(grid.scanning, 1);
 }
 
+// Section 3 of ICON's triangles.
+inline std::string TrianglesOf(std::int64_t points) {
+  return Number(0, 1) + Number(points, 4) + Number(0, 2) + Number(101, 2) + Number(6, 1) +
+         Number(44, 3) + Number(1, 1) +
+         std::string("\xa2\x7b\x8d\xe6\x18\xc4\x11\xe4\x82\x0a\xb5\xb0\x98\xc6\xa5\xc0", 16);
+}
+
 inline std::string Indicator(int discipline, std::size_t sections_bytes) {
   return "GRIB" + Number(0, 2) + Number(discipline, 1) + Number(2, 1) +
          Number(static_cast<std::int64_t>(sections_bytes) + 20, 8);

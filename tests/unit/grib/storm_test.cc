@@ -11,12 +11,16 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/byte_source.h"
+#include "glm/geometric.hpp"
 #include "storm_files/grib_air.h"
 #include "storm_files/grib_parts.h"
 #include "storm_files/grib_storm.h"
 #include "storm_files/storm_format.h"
+#include "tests/support/earth_formulas.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/grib/messages.h"
+#include "tests/unit/storm_files/cell_meshes.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -421,6 +425,84 @@ TEST_F(GribStormTest, ReadsHeightsOfHalfLevels) {
   other[5] = 0.5F;
   EXPECT_THAT(ErrorOf(DescribeAlone(Write("mixed", Generalized(id, other)))),
               HasSubstr("which match the fields' uuidOfVGrid"));
+}
+
+// A storm on ICON's triangles. The places of its cells are fields, as are the others.
+TEST_F(GribStormTest, ReadsIconsTriangles) {
+  const auto mesh = thunderhead::testing::Triangles({60e3, 40e3}, 2500.0);
+  const volume::EarthPlace middle{48.0, 11.0};
+  const glm::dvec2 core_m(12e3, -7e3);
+  constexpr double kWidth_m = 8e3;
+  const auto points = static_cast<std::int64_t>(mesh.centres_m.size());
+  std::vector<float> latitudes;
+  std::vector<float> longitudes;
+  std::vector<float> cloud;
+  for (const glm::dvec2& at_m : mesh.centres_m) {
+    const auto place = thunderhead::testing::FromStereographic(at_m, middle);
+    latitudes.push_back(static_cast<float>(place.latitude_deg));
+    longitudes.push_back(static_cast<float>(place.longitude_deg));
+    const double distance = glm::distance(at_m, core_m) / kWidth_m;
+    cloud.push_back(static_cast<float>(1e-3 * std::exp(-distance * distance)));
+  }
+  Layout layout;
+  layout.edit = [&](Message& message) {
+    message.grid = grib::testing::TrianglesOf(points);
+    message.points = points;
+    if (message.category != 1 || message.number != 22) return true;
+    message.values = cloud;
+    message.step = std::exp2(-22.0F);
+    return true;
+  };
+  const auto place = [&](int number, const std::vector<float>& values, float minimum) {
+    Message message;
+    message.category = 191;
+    message.number = number;
+    message.forecast = 0;
+    message.level = {1, 0};
+    message.grid = grib::testing::TrianglesOf(points);
+    message.points = points;
+    message.values = values;
+    message.minimum = minimum;
+    message.step = std::exp2(-14.0F);
+    return BytesOf(message);
+  };
+  const std::string places = place(1, latitudes, 46.0F) + place(2, longitudes, 9.0F);
+  const std::string fields_alone = FileOf(layout);
+  const auto file = DescribeAlone(Write("icon", fields_alone + places));
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_NEAR(file->dx_m, mesh.spacing_m, 0.02 * mesh.spacing_m);
+  EXPECT_THAT(file->assumptions, Contains(HasSubstr("values of the nearest cell")));
+  const auto fields = file->reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  // Rain is the same everywhere, so it shows how many times as much cloud there is.
+  const std::size_t columns = static_cast<std::size_t>(file->cells.x) * file->cells.y;
+  double largest = 0.0;
+  double sum = 0.0;
+  glm::dvec2 centroid(0.0);
+  for (std::size_t i = 0; i < columns; ++i) {
+    const double path = PathAt(*fields, 0, i);
+    if (path > 0.0) largest = std::max(largest, path / PathAt(*fields, 1, i));
+    sum += path;
+    centroid += path * glm::dvec2(i % file->cells.x, i / file->cells.x);
+  }
+  // Rain reaches the edge of this small domain, and so its mass is kept less exactly.
+  EXPECT_NEAR(largest / (*std::ranges::max_element(cloud) * 16384.0 / 8.0), 1.0, 0.02);
+  const auto map =
+      volume::MapProjection::Of(file->projection, {*file->latitude_deg, *file->longitude_deg});
+  ASSERT_TRUE(map.ok()) << map.status();
+  const glm::dvec2 world_m =
+      (centroid / sum + 0.5 - 0.5 * glm::dvec2(file->cells)) * glm::dvec2(file->dx_m, file->dy_m);
+  const auto found = map->PlaceOf(world_m);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_LT(thunderhead::testing::Distance_m(
+                *found, thunderhead::testing::FromStereographic(core_m, middle)),
+            0.25 * mesh.spacing_m);
+  EXPECT_THAT(ErrorOf(DescribeAlone(Write("alone", fields_alone))),
+              HasSubstr("grid 44 (uuidOfHGrid a27b8de6-18c4-11e4-820a-b5b098c6a5c0), whose places "
+                        "are missing; add the files"));
+  const auto index = grib::ReadIndex(*grib::testing::BytesIn(places));
+  ASSERT_TRUE(index.ok()) << index.status();
+  EXPECT_EQ(GribPartOf(*index)->kind, GribPartKind::kInvariant);
 }
 
 TEST_F(GribStormTest, StatesThatHeightsReachHigherThanFields) {

@@ -188,6 +188,26 @@ TEST(CellColumns, LargeCellsAreFilled) {
   EXPECT_LE(even->columns.x * even->columns.y, 4 * static_cast<int>(mesh.centres_m.size()) + 16);
 }
 
+TEST(CellColumns, WideDomainsStateTheirErrors) {
+  const EarthPlace middle{48.0, 11.0};
+  const auto narrow = MakeEvenOfCells(PlacesOf(Triangles({60e3, 60e3}, 2500.0).centres_m, middle));
+  ASSERT_TRUE(narrow.ok()) << narrow.status();
+  EXPECT_EQ(AssumptionsOf(*narrow).size(), 1U);
+  // The corners are 2900 km from the middle.
+  const CellMesh mesh = Hexagons({4.3e6, 4.3e6}, 60e3);
+  const auto wide = MakeEvenOfCells(PlacesOf(mesh.centres_m, middle));
+  ASSERT_TRUE(wide.ok()) << wide.status();
+  double farthest_m = 0.0;
+  for (const glm::dvec2& at_m : mesh.centres_m) {
+    farthest_m = std::max(farthest_m, Distance_m(FromStereographic(at_m, middle), middle));
+  }
+  EXPECT_NEAR(wide->reach_m, farthest_m, 0.5 * mesh.spacing_m);
+  const double angle = wide->reach_m / testing::kEarth_m;
+  EXPECT_NEAR(wide->largest_scale, 2.0 / (1.0 + std::cos(angle)), 1e-9);
+  ASSERT_EQ(AssumptionsOf(*wide).size(), 2U);
+  EXPECT_THAT(AssumptionsOf(*wide)[1], HasSubstr("no flat map"));
+}
+
 TEST(CellColumns, RefusesWhatHasNoAreaOrIsTooWide) {
   const EarthPlace middle{48.0, 11.0};
   const auto expect = [](const CellPlaces& places, const std::string& what) {
@@ -218,7 +238,12 @@ TEST(CellColumns, RefusesWhatHasNoAreaOrIsTooWide) {
     meridian.longitude_deg.push_back(135.0);
   }
   expect(meridian, "no area");
-  expect(PlacesOf(Hexagons({2600e3, 2600e3}, 100e3).centres_m, middle), "cut a region");
+  CellPlaces wide;
+  for (int i = 0; i < 60 * 80; ++i) {
+    wide.latitude_deg.push_back(-40.0 + 2.0 * (i / 80));
+    wide.longitude_deg.push_back(-100.0 + 2.5 * (i % 80));
+  }
+  expect(wide, "farther than a hemisphere; cut a region");
   CellPlaces globe;
   for (int i = 0; i < 2000; ++i) {
     globe.latitude_deg.push_back(glm::degrees(std::asin(-1.0 + (i + 0.5) / 1000.0)));
