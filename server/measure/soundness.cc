@@ -27,7 +27,8 @@ void InspectRoot(float root, const char* where, Soundness* found) {
   if (std::isfinite(root) && root >= 0.0F) {
     found->least_light = std::min(found->least_light, std::exp(-depth));
   } else if (found->unsound.empty()) {
-    found->unsound = absl::StrFormat("square root of the sunlight's optical depth is %g %s", root, where);
+    found->unsound =
+        absl::StrFormat("square root of the sunlight's optical depth is %g %s", root, where);
   }
 }
 

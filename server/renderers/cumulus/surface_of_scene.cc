@@ -115,8 +115,9 @@ std::vector<scene::NotShown> NotShownByCumulus(const scene::Scene& scene,
       not_shown.push_back({Code::kFields, std::string(physics::NameOf(field.hydrometeor))});
     }
   }
-  not_shown.push_back(
-      {Code::kFineStructure, "structure inside the surface, and cloud with less extinction than the surface's threshold"});
+  not_shown.push_back({Code::kFineStructure,
+                       "structure inside the surface, and cloud with less extinction than the "
+                       "surface's threshold"});
   return not_shown;
 }
 
