@@ -10,7 +10,8 @@ COPY dev ./
 COPY deploy/packages deploy/packages
 RUN ./dev install runtime build web && rm -rf /var/lib/apt/lists/*
 COPY . .
-RUN ./dev build release && strip build/release/bin/thunderhead build/release/bin/thunderhead-reader
+RUN ./dev build release \
+    && strip build/release/bin/thunderhead build/release/bin/thunderhead-reader build/release/bin/thunderhead-vdb-reader
 
 FROM debian:bookworm-slim
 WORKDIR /opt/thunderhead
@@ -19,7 +20,8 @@ COPY deploy/packages deploy/packages
 RUN ./dev install runtime && rm -rf /var/lib/apt/lists/* dev deploy \
     && useradd --system --no-create-home thunderhead \
     && install --directory --mode=0700 --owner=thunderhead /var/lib/thunderhead
-COPY --from=build /src/build/release/bin/thunderhead /src/build/release/bin/thunderhead-reader bin/
+COPY --from=build /src/build/release/bin/thunderhead /src/build/release/bin/thunderhead-reader \
+    /src/build/release/bin/thunderhead-vdb-reader bin/
 COPY --from=build /src/client-web/dist share/thunderhead/page/
 COPY --from=build /src/samples/supercell-500m.nc /data/
 ENV PATH=/opt/thunderhead/bin:$PATH \

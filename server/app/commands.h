@@ -32,6 +32,7 @@ Command AddMeasureLook(CLI::App& measure);
 Command AddGenerate(CLI::App& app);
 Command AddFit(CLI::App& app);
 Command AddExport(CLI::App& app);
+Command AddImportVdb(CLI::App& app);
 Command AddLoad(CLI::App& app);
 
 }  // namespace thunderhead::app

@@ -90,6 +90,9 @@ std::string Table(const v1::StormDescription& storm) {
       grid.nz() * grid.dz_m() / 1e3);
   absl::StrAppendFormat(&text, "memory  %.1f MiB per time\n",
                         static_cast<double>(storm.bytes_per_time()) / (1 << 20));
+  if (!storm.run_start().empty()) {
+    absl::StrAppend(&text, "run     started ", storm.run_start(), "\n");
+  }
   if (storm.has_latitude_deg()) {
     absl::StrAppendFormat(&text, "middle  %.3f N %.3f E\n", storm.latitude_deg(),
                           storm.longitude_deg());

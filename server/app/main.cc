@@ -51,9 +51,9 @@ int Main(int argc, char** argv) {
   CLI::App app("Storms from weather models as they would look in the sky.", "thunderhead");
   app.set_version_flag("--version", "thunderhead " + base::Version());
   app.require_subcommand(1);
-  const std::array commands = {AddServe(app),   AddRender(app), AddSequence(app), AddWatch(app),
-                               AddInspect(app), AddFlux(app),   AddMeasure(app),  AddGenerate(app),
-                               AddFit(app),     AddExport(app), AddLoad(app)};
+  const std::array commands = {AddServe(app),   AddRender(app), AddSequence(app),  AddWatch(app),
+                               AddInspect(app), AddFlux(app),   AddMeasure(app),   AddGenerate(app),
+                               AddFit(app),     AddExport(app), AddImportVdb(app), AddLoad(app)};
   app.footer(runs::ExitCodesHelp());
   for (const Command& command : commands) command.app->footer(runs::ExitCodesHelp());
   if (const absl::Status status = CheckSubcommand(app, argc, argv); !status.ok()) {

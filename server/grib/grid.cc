@@ -1,11 +1,8 @@
 #include "grib/grid.h"
 
-#include <proj.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -13,11 +10,11 @@
 #include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "grib/octets.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::grib {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMicrodegrees = 1e-6;
 constexpr double kMillimetres = 1e-3;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -44,14 +41,6 @@ struct Earth {
   std::string Text() const {
     return IsSphere() ? absl::StrFormat("+R=%.10g", equator_m)
                       : absl::StrFormat("+a=%.12g +b=%.12g", equator_m, pole_m);
-  }
-  // Returns the radii of curvature along a meridian and along a parallel, each in m per radian.
-  GridMap::Point Radii_m(double latitude_deg) const {
-    const double sine = std::sin(latitude_deg * kDegree);
-    const double eccentricity2 = 1.0 - pole_m * pole_m / (equator_m * equator_m);
-    const double part = 1.0 - eccentricity2 * sine * sine;
-    const double across_m = equator_m / std::sqrt(part);
-    return {across_m * std::cos(latitude_deg * kDegree), across_m * (1.0 - eccentricity2) / part};
   }
 };
 
@@ -101,106 +90,6 @@ absl::StatusOr<Earth> EarthOf(const Octets& section) {
   return BadGrid("has an impossible radius of the Earth");
 }
 
-class LatitudeLongitude final : public GridMap {
- public:
-  explicit LatitudeLongitude(const Earth& earth) : earth_(earth) {}
-
-  Point PointOf(const Place& place) const override {
-    return {place.longitude_deg, place.latitude_deg};
-  }
-  Place PlaceOf(const Point& point) const override { return {point.y, point.x}; }
-  Point TrueLength_m(const Point& point) const override {
-    const Point radii_m = earth_.Radii_m(point.y);
-    return {radii_m.x * kDegree, radii_m.y * kDegree};
-  }
-
- private:
-  const Earth earth_;
-};
-
-// Latitudes and longitudes whose south pole is elsewhere. The coordinates are the rotated ones.
-class Rotated final : public GridMap {
- public:
-  Rotated(const Earth& earth, const Place& south_pole)
-      : radius_m_(earth.equator_m),
-        tilt_((90.0 + south_pole.latitude_deg) * kDegree),
-        longitude_deg_(south_pole.longitude_deg) {}
-
-  Point PointOf(const Place& place) const override {
-    return Turned({place.longitude_deg - longitude_deg_, place.latitude_deg}, -tilt_);
-  }
-  Place PlaceOf(const Point& point) const override {
-    const Point turned = Turned(point, tilt_);
-    return {turned.y, longitude_deg_ + turned.x};
-  }
-  Point TrueLength_m(const Point& point) const override {
-    return {radius_m_ * kDegree * std::cos(point.y * kDegree), radius_m_ * kDegree};
-  }
-
- private:
-  // Turns the sphere about the axis through longitudes 90 and -90, so that the place at longitude 0
-  // on the equator gets the latitude `angle`.
-  static Point Turned(const Point& point, double angle) {
-    const double longitude = point.x * kDegree;
-    const double latitude = point.y * kDegree;
-    const double x = std::cos(latitude) * std::cos(longitude);
-    const double y = std::cos(latitude) * std::sin(longitude);
-    const double z = std::sin(latitude);
-    const double up = std::clamp(z * std::cos(angle) + x * std::sin(angle), -1.0, 1.0);
-    return {std::atan2(y, x * std::cos(angle) - z * std::sin(angle)) / kDegree,
-            std::asin(up) / kDegree};
-  }
-
-  const double radius_m_;
-  const double tilt_;
-  const double longitude_deg_;
-};
-
-// A map projection in metres.
-class Projected final : public GridMap {
- public:
-  static std::shared_ptr<const Projected> Of(const std::string& projection) {
-    std::shared_ptr<Projected> map(new Projected);
-    map->context_ = proj_context_create();
-    if (map->context_ == nullptr) return nullptr;
-    proj_log_level(map->context_, PJ_LOG_NONE);
-    map->projection_ = proj_create(map->context_, projection.c_str());
-    return map->projection_ == nullptr ? nullptr : map;
-  }
-  ~Projected() override {
-    proj_destroy(projection_);
-    proj_context_destroy(context_);
-  }
-  Projected(const Projected&) = delete;
-  Projected& operator=(const Projected&) = delete;
-
-  Point PointOf(const Place& place) const override {
-    const PJ_COORD to = proj_trans(projection_, PJ_FWD, Radians(place));
-    if (proj_errno_reset(projection_) != 0) return {kNaN, kNaN};
-    return {to.xy.x, to.xy.y};
-  }
-  Place PlaceOf(const Point& point) const override {
-    const PJ_COORD to = proj_trans(projection_, PJ_INV, proj_coord(point.x, point.y, 0.0, 0.0));
-    if (proj_errno_reset(projection_) != 0) return {kNaN, kNaN};
-    return {to.lp.phi / kDegree, to.lp.lam / kDegree};
-  }
-  Point TrueLength_m(const Point& point) const override {
-    const PJ_FACTORS factors = proj_factors(projection_, Radians(PlaceOf(point)));
-    if (proj_errno_reset(projection_) != 0) return {kNaN, kNaN};
-    // All projections here are conformal, so the scale is the same in all directions.
-    return {1.0 / factors.parallel_scale, 1.0 / factors.parallel_scale};
-  }
-
- private:
-  Projected() = default;
-  static PJ_COORD Radians(const Place& place) {
-    return proj_coord(place.longitude_deg * kDegree, place.latitude_deg * kDegree, 0.0, 0.0);
-  }
-
-  PJ_CONTEXT* context_ = nullptr;
-  PJ* projection_ = nullptr;
-};
-
 // Reads the scanning mode (flag table 3.4).
 absl::Status ReadScanning(std::uint64_t mode, Grid& grid) {
   constexpr std::uint64_t kWestwards = 0x80;
@@ -236,30 +125,10 @@ absl::Status ReadSize(const Octets& section, Grid& grid) {
 }
 
 // Sets south_west from the first point in the file.
-void SetCorner(const GridMap::Point& first, Grid& grid) {
+void SetCorner(const glm::dvec2& first, Grid& grid) {
   grid.south_west = first;
   if (grid.from_east) grid.south_west.x -= grid.step.x * (grid.columns - 1);
   if (!grid.from_south) grid.south_west.y -= grid.step.y * (grid.rows - 1);
-}
-
-GridMap::Point MiddleOf(const Grid& grid) {
-  return {grid.south_west.x + 0.5 * grid.step.x * (grid.columns - 1),
-          grid.south_west.y + 0.5 * grid.step.y * (grid.rows - 1)};
-}
-
-// Sets the place of the middle and the true distances there.
-absl::Status SetMiddle(Grid& grid) {
-  const GridMap::Point middle = MiddleOf(grid);
-  const GridMap::Place place = grid.map->PlaceOf(middle);
-  const GridMap::Point length_m = grid.map->TrueLength_m(middle);
-  grid.latitude_deg = place.latitude_deg;
-  grid.longitude_deg = std::remainder(place.longitude_deg, 360.0);
-  grid.dx_m = grid.step.x * length_m.x;
-  grid.dy_m = grid.step.y * length_m.y;
-  const bool is_known = std::isfinite(grid.latitude_deg) && std::isfinite(grid.longitude_deg) &&
-                        grid.dx_m > 0.0 && grid.dy_m > 0.0 && std::isfinite(grid.dx_m) &&
-                        std::isfinite(grid.dy_m);
-  return is_known ? absl::OkStatus() : BadGrid("has no place in its map projection");
 }
 
 constexpr std::uint64_t kAlongGrid = 0x08;  // flag table 3.3, bit 5
@@ -319,26 +188,17 @@ absl::StatusOr<Grid> ReadLatitudeLongitude(const Octets& section, bool is_rotate
       grid.step.y, StepOf(section, 68, unit, std::abs(northwards_deg), grid.rows, "latitudes"));
   grid.wind_along_grid = (section.Unsigned(55, 1) & kAlongGrid) != 0;
   SetCorner({first_longitude_deg, first_latitude_deg}, grid);
-  const double middle_deg = MiddleOf(grid).y;
-  if (is_rotated) {
-    if (section.Unsigned(81, 4) != 0) return UnreadGrid("is turned about its rotated pole");
-    const GridMap::Place south_pole{angle(73), angle(77)};
-    grid.map = std::make_shared<Rotated>(earth, south_pole);
-    grid.projection = absl::StrFormat(
-        "+proj=ob_tran +o_proj=eqc +o_lat_p=%.10g +o_lon_p=0 +lon_0=%.10g +lat_ts=%.10g %s "
-        "+units=m +no_defs",
-        -south_pole.latitude_deg, std::remainder(south_pole.longitude_deg, 360.0), middle_deg,
-        earth.Text());
-    if (!earth.IsSphere()) return UnreadGrid("is rotated on an ellipsoid");
-  } else {
-    grid.map = std::make_shared<LatitudeLongitude>(earth);
-  }
-  THUNDERHEAD_RETURN_IF_ERROR(SetMiddle(grid));
   if (!is_rotated) {
-    grid.projection = absl::StrFormat(
-        "+proj=eqc +lat_ts=%.10g +lat_0=%.10g +lon_0=%.10g +x_0=0 +y_0=0 %s +units=m +no_defs",
-        grid.latitude_deg, grid.latitude_deg, grid.longitude_deg, earth.Text());
+    grid.projection = absl::StrCat("+proj=longlat ", earth.Text(), " +no_defs");
+    return grid;
   }
+  if (section.Unsigned(81, 4) != 0) return UnreadGrid("is turned about its rotated pole");
+  if (!earth.IsSphere()) return UnreadGrid("is rotated on an ellipsoid");
+  const double south_pole_deg = angle(73);
+  if (std::abs(south_pole_deg) > kPole_deg) return BadGrid("has a south pole beyond the Earth's");
+  grid.projection =
+      absl::StrFormat("+proj=ob_tran +o_proj=longlat +o_lat_p=%.10g +o_lon_p=0 +lon_0=%.10g %s",
+                      -south_pole_deg, std::remainder(angle(77), 360.0), earth.Text());
   return grid;
 }
 
@@ -358,17 +218,18 @@ absl::StatusOr<Grid> ReadProjected(const Octets& section, const ProjectedLayout&
   THUNDERHEAD_RETURN_IF_ERROR(ReadScanning(section.Unsigned(layout.scanning, 1), grid));
   THUNDERHEAD_ASSIGN_OR_RETURN(const Earth earth, EarthOf(section));
   grid.projection = absl::StrCat(projection, " +x_0=0 +y_0=0 ", earth.Text(), " +units=m +no_defs");
-  grid.map = Projected::Of(grid.projection);
-  if (grid.map == nullptr) {
+  const absl::StatusOr<volume::MapProjection> map = volume::MapProjection::Open(grid.projection);
+  if (!map.ok()) {
     return BadGrid(absl::StrCat("has an impossible map projection (", grid.projection, ")"));
   }
   grid.step = {kMillimetres * static_cast<double>(section.Unsigned(layout.dx, 4)),
                kMillimetres * static_cast<double>(section.Unsigned(layout.dy, 4))};
   grid.wind_along_grid = (section.Unsigned(47, 1) & kAlongGrid) != 0;
-  const GridMap::Place first{kMicrodegrees * static_cast<double>(section.Signed(39, 4)),
-                             kMicrodegrees * static_cast<double>(section.Signed(43, 4))};
-  SetCorner(grid.map->PointOf(first), grid);
-  THUNDERHEAD_RETURN_IF_ERROR(SetMiddle(grid));
+  const std::optional<glm::dvec2> first =
+      map->WorldOf({kMicrodegrees * static_cast<double>(section.Signed(39, 4)),
+                    kMicrodegrees * static_cast<double>(section.Signed(43, 4))});
+  if (!first.has_value()) return BadGrid("has no place in its map projection");
+  SetCorner(*first, grid);
   return grid;
 }
 
@@ -440,8 +301,7 @@ std::string NameOfTemplate(std::uint64_t number) {
     case 90:
       return "is a satellite's view";
     case 100:
-    case 101:
-      return "is unstructured (ICON's triangles)";
+      return "is unstructured (triangles of an icosahedron)";
     case 140:
       return "is on a Lambert map of equal areas";
     case 150:
@@ -452,6 +312,24 @@ std::string NameOfTemplate(std::uint64_t number) {
     default:
       return "is of a kind that is not known";
   }
+}
+
+// Returns that the grid consists of ICON's triangles, and which grid of ICON it is.
+absl::Status UnreadTriangles(const Octets& section) {
+  constexpr std::size_t kOctets = 35;
+  if (section.Count() < kOctets) return BadGrid("has too few numbers");
+  std::string uuid;
+  for (std::size_t octet = 20; octet <= kOctets; ++octet) {
+    const bool begins_part = octet == 24 || octet == 26 || octet == 28 || octet == 30;
+    absl::StrAppend(&uuid, begins_part ? "-" : "",
+                    absl::Hex(section.Unsigned(octet, 1), absl::kZeroPad2));
+  }
+  return absl::InvalidArgumentError(absl::StrCat(
+      "its grid is unstructured (template 3.101, ICON's triangles), and GRIB2 files do not have "
+      "the "
+      "places of its cells; convert it to netCDF with the grid file of the grid ",
+      section.Unsigned(16, 3), " (uuidOfHGrid ", uuid,
+      "), for example with cdo -f nc setgrid,GRID_FILE, and add the heights of the levels (HHL)"));
 }
 
 }  // namespace
@@ -471,6 +349,8 @@ absl::StatusOr<Grid> ReadGrid(std::span<const std::byte> section3) {
       return ReadPolarStereographic(section);
     case 30:
       return ReadLambert(section);
+    case 101:
+      return UnreadTriangles(section);
     default:
       return UnreadGrid(
           absl::StrCat(NameOfTemplate(number), " (template 3.", number, "), which is not read"));
@@ -494,26 +374,6 @@ std::vector<float> Arranged(const Grid& grid, std::vector<float> values) {
     arranged[y * columns + x] = values[i];
   }
   return arranged;
-}
-
-std::vector<float> AxisAngles(const Grid& grid) {
-  std::vector<float> angles;
-  if (dynamic_cast<const LatitudeLongitude*>(grid.map.get()) != nullptr) return angles;
-  angles.reserve(grid.Points());
-  constexpr double kShare = 0.01;  // of a cell, for the direction
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const GridMap::Point point{grid.south_west.x + grid.step.x * column,
-                                 grid.south_west.y + grid.step.y * row};
-      const GridMap::Place from = grid.map->PlaceOf(point);
-      const GridMap::Place to = grid.map->PlaceOf({point.x + kShare * grid.step.x, point.y});
-      const double north = to.latitude_deg - from.latitude_deg;
-      const double east = std::remainder(to.longitude_deg - from.longitude_deg, 360.0) *
-                          std::cos(from.latitude_deg * kDegree);
-      angles.push_back(static_cast<float>(std::atan2(north, east)));
-    }
-  }
-  return angles;
 }
 
 }  // namespace thunderhead::grib

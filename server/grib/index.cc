@@ -364,7 +364,15 @@ std::string NumbersOf(const Parameter& parameter) {
 }
 
 bool BeginsLikeGrib(std::string_view start) {
-  return start.substr(0, kLongestPreamble).find(kStart) != std::string_view::npos;
+  constexpr std::size_t kEditionAt = 7;    // bytes after the start of a message
+  constexpr unsigned char kFirstText = 8;  // a text has no smaller characters
+  const std::size_t last = std::min(start.size(), kLongestPreamble);
+  for (std::size_t at = start.find(kStart); at < last; at = start.find(kStart, at + 1)) {
+    if (at + kEditionAt >= start.size()) return false;
+    // Texts about GRIB files have the word, too.
+    if (static_cast<unsigned char>(start[at + kEditionAt]) < kFirstText) return true;
+  }
+  return false;
 }
 
 absl::StatusOr<Index> ReadIndex(const base::ByteSource& file) { return Reader(file).Read(); }

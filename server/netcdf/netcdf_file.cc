@@ -70,7 +70,9 @@ absl::Status OpenError(const std::string& path, int code) {
       return HeldByWriter(path);
     case NC_ENOTNC:
       return absl::InvalidArgumentError(
-          absl::StrCat(what, "is not a netCDF file; give the model's output file (wrfout_...)"));
+          absl::StrCat(what,
+                       "is not a netCDF file, and does not begin like a file of any other "
+                       "format; give a model's output file"));
     default:
       return absl::DataLossError(
           absl::StrCat(what, "cannot be opened as netCDF (", nc_strerror(code),

@@ -19,7 +19,6 @@
 #include "pipeline/sha256.h"
 #include "runs/local_service.h"
 #include "runs/picture_call.h"
-#include "storm_files/run_start.h"
 #include "storm_store/border_data.h"
 #include "storm_store/cached_storm_store.h"
 
@@ -38,7 +37,7 @@ pipeline::ProductKey KeyOf(const storm_store::CataloguedStorm& storm, int time_i
   const storm_files::StormFile& file = storm.files[source.file];
   pipeline::ProductKey key;
   key.valid = file.times[source.record];
-  key.run = storm_files::RunStart(file);
+  key.run = file.run_start;
   key.time_index = time_index;
   if (!key.run.has_value() && assume_run) {
     const storm_store::TimeSource& first = storm.sources.front();

@@ -57,7 +57,7 @@ Request RequestFor(Wanted wanted, const std::string& path, const std::vector<std
 
 ConfinedFiles::ConfinedFiles(const ConfinedOptions& options)
     : options_(options),
-      readers_(options.limits, *options.time, options.program, options.check_opened) {}
+      readers_(options.limits, *options.time, options.program, {.opened = options.check_opened}) {}
 
 absl::Status ConfinedFiles::Probe() {
   return readers_.Run(RequestFor(Wanted::kProbe, "a probe"), Reply::kProbed, options_.limits.time,

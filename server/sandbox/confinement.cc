@@ -109,6 +109,10 @@ absl::Status FilterCalls() {
   const std::unique_ptr<void, void (*)(scmp_filter_ctx)> filter(seccomp_init(SCMP_ACT_ERRNO(EPERM)),
                                                                 seccomp_release);
   if (filter == nullptr) return Impossible("seccomp_init", ENOMEM);
+  // Libraries may have started threads while they were loaded. The filter must hold for them, too.
+  if (const int error = seccomp_attr_set(filter.get(), SCMP_FLTATR_CTL_TSYNC, 1); error != 0) {
+    return Impossible("seccomp_attr_set", -error);
+  }
   if (const int error = AllowReading(filter.get()); error != 0) {
     return Impossible("seccomp_rule_add", -error);
   }

@@ -1,4 +1,4 @@
-// Confines this process, so that it can only process bytes that it already has in memory. The
+// Confines this process with all its threads, so that it can only process bytes that it already has in memory. The
 // process can no longer open files or sockets, start processes, gain privileges or load code, and
 // its memory and processor time are limited. This cannot be undone. The implementation uses Linux's
 // seccomp and resource limits, and needs neither root rights nor namespaces.

@@ -17,7 +17,15 @@ namespace thunderhead::sandbox {
 // The largest number of files that one reader gets at once.
 inline constexpr std::size_t kMostBundled = 20'000;
 
-enum class Wanted : std::uint8_t { kProbe, kDescription, kDescriptions, kVerticalGrid, kFields };
+// kOther is for programs that read files of other kinds than storm files.
+enum class Wanted : std::uint8_t {
+  kProbe,
+  kDescription,
+  kDescriptions,
+  kVerticalGrid,
+  kFields,
+  kOther
+};
 
 struct Request {
   Wanted wanted = Wanted::kProbe;
@@ -28,6 +36,7 @@ struct Request {
   std::uint8_t bundle = 0;
   std::vector<std::string> bundled;  // the paths of these files; not sent, as the bundle has them
   std::uint64_t record = 0;
+  std::string part;  // for kOther: the name of the part of the file that is wanted
   std::optional<storm_files::VerticalGrid> grid;
   std::uint64_t memory_bytes = 0;  // limit in bytes for reading, without the mapped file
   std::uint64_t shared_bytes = 0;  // size of the shared memory, which is an open descriptor; 0 if
@@ -45,7 +54,8 @@ enum class Reply : std::uint8_t {
   kDescription,
   kDescriptions,
   kGrid,
-  kFields
+  kFields,
+  kOther
 };
 
 // A line of the reader's log or, for Reply::kError, a status.
@@ -80,6 +90,7 @@ void Visit(Archive& archive, Request& request) {
   archive(request.path);
   archive(request.bundle);
   archive(request.record);
+  archive(request.part);
   VisitOptional(archive, request.grid);
   archive(request.memory_bytes);
   archive(request.shared_bytes);
@@ -104,7 +115,7 @@ void Visit(Archive& archive, storm_files::VerticalGrid& grid) {
 // `id`, `device` and `modified_ns`. Times are sent as seconds and nanoseconds since 1970.
 template <typename Archive>
 void Visit(Archive& archive, storm_files::StormFile& file) {
-  auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, latitude_deg,
+  auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, run_start, latitude_deg,
          longitude_deg, middles, projection, member, assumptions, part, parts, reader, version, id,
          device, modified_ns] = file;
   archive(cells);
@@ -128,6 +139,10 @@ void Visit(Archive& archive, storm_files::StormFile& file) {
   archive(about);
   archive(domain);
   archive(run);
+  std::optional<std::int64_t> run_start_s;
+  if (run_start.has_value()) run_start_s = absl::ToUnixSeconds(*run_start);
+  VisitOptional(archive, run_start_s);
+  if (run_start_s.has_value()) run_start = absl::FromUnixSeconds(*run_start_s);
   VisitOptional(archive, latitude_deg);
   VisitOptional(archive, longitude_deg);
   archive(middles);

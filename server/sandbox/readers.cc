@@ -212,11 +212,11 @@ void RestingReader::EndInTime() {
 }
 
 Readers::Readers(const ReaderLimits& limits, const base::TimeSource& time, std::string program,
-                 CheckOpened check_opened)
+                 FileChecks checks)
     : limits_(limits),
       time_(time),
       program_(std::move(program)),
-      check_opened_(std::move(check_opened)),
+      checks_(std::move(checks)),
       resting_(time) {}
 
 std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, bool has_rested,
@@ -264,7 +264,7 @@ absl::Status Readers::Run(Request request, Reply wanted, milliseconds patience,
     THUNDERHEAD_ASSIGN_OR_RETURN(program, ReaderProgram());
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<StartedReader> reader,
-                               StartedReader::Start(program, request, check_opened_, time_));
+                               StartedReader::Start(program, request, checks_, time_));
   return *Ask(std::move(reader), false, request, wanted, patience, checkpoint, take);
 }
 

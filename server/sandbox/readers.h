@@ -77,7 +77,7 @@ class Readers {
   using Take = std::function<absl::Status(Receiver& from_reader)>;
 
   explicit Readers(const ReaderLimits& limits, const base::TimeSource& time = base::SteadyTime(),
-                   std::string program = "", CheckOpened check_opened = {});
+                   std::string program = "", FileChecks checks = {});
 
   // Sends `request` to a reader and waits for its result, but no longer than `patience`. `wanted`
   // is the kind of reply that `take` receives. Errors of the file are returned unchanged.
@@ -95,7 +95,7 @@ class Readers {
   const ReaderLimits limits_;
   const base::TimeSource& time_;
   const std::string program_;
-  const CheckOpened check_opened_;
+  const FileChecks checks_;
   RestingReader resting_;
 };
 

@@ -24,7 +24,7 @@
 #include "base/status.h"
 #include "sandbox/archive.h"
 #include "sandbox/file_bundle.h"
-#include "sandbox/reader_main.h"
+#include "sandbox/reader_process.h"
 #include "storm_files/storm_format.h"
 
 namespace thunderhead::sandbox {
@@ -84,14 +84,13 @@ std::string PlaceOf(const base::FileDescriptor& file) {
   return std::filesystem::read_symlink(absl::StrCat("/proc/self/fd/", file.Get()), error).string();
 }
 
-// Opens a storm file and checks its place and its first bytes. A folder may hold thousands of files
-// of other kinds, and none of them needs a process.
-absl::StatusOr<base::FileDescriptor> OpenStormFile(const std::string& path,
-                                                   const CheckOpened& check_opened) {
-  static const storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
+// Opens a file and checks its place and its first bytes. A folder may hold thousands of files of
+// other kinds, and none of them needs a process.
+absl::StatusOr<base::FileDescriptor> OpenForReader(const std::string& path,
+                                                   const FileChecks& checks) {
   THUNDERHEAD_ASSIGN_OR_RETURN(base::FileDescriptor file, base::OpenRegularFile(path));
-  if (check_opened) THUNDERHEAD_RETURN_IF_ERROR(check_opened(path, PlaceOf(file)));
-  THUNDERHEAD_RETURN_IF_ERROR(formats.CheckStart(path, file.Get()));
+  if (checks.opened) THUNDERHEAD_RETURN_IF_ERROR(checks.opened(path, PlaceOf(file)));
+  THUNDERHEAD_RETURN_IF_ERROR(checks.start(path, file.Get()));
   return file;
 }
 
@@ -138,6 +137,11 @@ int Spawn(const std::string& program, const Descriptors& given, pid_t& process) 
 }
 
 }  // namespace
+
+absl::Status CheckStormStart(const std::string& path, int file) {
+  static const storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
+  return formats.CheckStart(path, file);
+}
 
 Child::~Child() {
   if (process_ <= 0) return;
@@ -197,11 +201,11 @@ bool StartedReader::Reads(const std::string& path, const std::vector<std::string
 
 absl::StatusOr<std::unique_ptr<StartedReader>> StartedReader::Start(const std::string& program,
                                                                     const Request& first,
-                                                                    const CheckOpened& check_opened,
+                                                                    const FileChecks& checks,
                                                                     const base::TimeSource& time) {
   FileBundle given;
   SharedArrays arrays;
-  const auto open = [&](const std::string& path) { return OpenStormFile(path, check_opened); };
+  const auto open = [&](const std::string& path) { return OpenForReader(path, checks); };
   if (first.bundle != 0) {
     THUNDERHEAD_ASSIGN_OR_RETURN(given, Bundle(first.bundled, open, first.memory_bytes));
   } else if (first.wanted != Wanted::kProbe) {

@@ -27,6 +27,18 @@ namespace thunderhead::sandbox {
 // folder since the path was checked. If the function is empty, every file may be read.
 using CheckOpened = std::function<absl::Status(const std::string& path, const std::string& place)>;
 
+// A function that checks the start of an opened file before a process is started to read it.
+using CheckStart = std::function<absl::Status(const std::string& path, int file)>;
+
+// Returns an error if a file begins like no storm file.
+absl::Status CheckStormStart(const std::string& path, int file);
+
+// The checks of an opened file.
+struct FileChecks {
+  CheckOpened opened = {};
+  CheckStart start = CheckStormStart;
+};
+
 // A child process. The destructor kills the process and collects its exit status.
 class Child {
  public:
@@ -76,11 +88,11 @@ class StartedReader {
  public:
   // Opens the file or the bundled files that `first` names, unless `first` is a probe. Then starts
   // `program` for them, with the limits of memory and processor time in `first`. Returns
-  // UNAVAILABLE if no process can be started. If a file cannot be opened or is not a storm file,
-  // the error names the file. `time` must outlive the reader.
+  // UNAVAILABLE if no process can be started. If a file cannot be opened or fails a check, the
+  // error names the file. `time` must outlive the reader.
   static absl::StatusOr<std::unique_ptr<StartedReader>> Start(const std::string& program,
                                                               const Request& first,
-                                                              const CheckOpened& check_opened,
+                                                              const FileChecks& checks,
                                                               const base::TimeSource& time);
 
   // Returns whether the reader's file was opened by `path`, or its files by `bundled`, and whether

@@ -44,7 +44,7 @@ bool IsUnstructured(const netcdf::NetcdfFile& file, const std::string& field,
                     const CfDimension& dimension) {
   if (dimension.length == 1) return false;
   const std::string lower = absl::AsciiStrToLower(dimension.name);
-  for (const char* name : {"ncells", "cell", "cells", "ncol", "n_face", "nmesh2d_face"}) {
+  for (const char* name : {"ncells", "cell", "cells", "n_face", "nmesh2d_face"}) {
     if (lower == name) return true;
   }
   bool latitude = false;
@@ -73,7 +73,7 @@ std::optional<CfDirection> FindDirection(const netcdf::NetcdfFile& file, const s
     dimension.coordinate = name;
     return direction;
   }
-  return DirectionOf({dimension.name, "", "", "", ""});
+  return DirectionOf({dimension.name, "", "", "", "", ""});
 }
 
 // Returns a variable of two dimensions that are among those of the field and have no direction yet,
@@ -98,12 +98,18 @@ std::optional<Names> DimensionsOfLongitude(const netcdf::NetcdfFile& file, const
   return std::nullopt;
 }
 
-absl::Status NoOrder(const netcdf::NetcdfFile& file, const std::string& field,
+// Returns whether a dimension holds the points of spectral elements, as in CAM-SE. They are points
+// of a quadrature, not cells.
+bool IsSpectral(const CfDimension& dimension) {
+  return dimension.length != 1 && absl::AsciiStrToLower(dimension.name) == "ncol";
+}
+
+absl::Status NoCells(const netcdf::NetcdfFile& file, const std::string& field,
                      const std::string& dimension) {
   return absl::InvalidArgumentError(absl::StrCat(
-      file.Path(), ": ", field, " lies on the unstructured grid '", dimension,
-      "' (triangles, hexagons or single columns), which is not read; remap it to a regular grid of "
-      "longitude and latitude first, for example with cdo remapcon or with convert_mpas"));
+      file.Path(), ": ", field, " lies on the points '", dimension,
+      "' of spectral elements, which are not cells and are not read; remap it to a regular grid of "
+      "longitude and latitude first, for example with cdo remapcon or with ncremap"));
 }
 
 absl::Status ExtraDimension(const netcdf::NetcdfFile& file, const std::string& variable,
@@ -121,7 +127,8 @@ std::vector<std::string> NamesIn(const std::string& attribute) {
 
 CfDescription DescribeCf(const netcdf::NetcdfFile& file, const std::string& variable) {
   const auto text = [&](const char* attribute) { return file.TextOrEmpty(variable, attribute); };
-  return {variable, text("standard_name"), text("units"), text("axis"), text("positive")};
+  return {variable,     text("standard_name"), text("units"),
+          text("axis"), text("positive"),      text("long_name")};
 }
 
 absl::StatusOr<CfDimensions> FindDimensions(const netcdf::NetcdfFile& file,
@@ -144,7 +151,13 @@ absl::StatusOr<CfDimensions> FindDimensions(const netcdf::NetcdfFile& file,
   };
   for (std::size_t i = 0; i < names.size(); ++i) {
     CfDimension dimension{names[i], "", shape[i]};
-    if (IsUnstructured(file, field, dimension)) return NoOrder(file, field, names[i]);
+    if (IsSpectral(dimension)) return NoCells(file, field, names[i]);
+    if (!has[0] && !has[1] && IsUnstructured(file, field, dimension)) {
+      take(CfDirection::kX, dimension);
+      take(CfDirection::kY, {dimension.name, "", 1});
+      found.unstructured = true;
+      continue;
+    }
     const auto direction = FindDirection(file, field, dimension);
     if (direction.has_value() && take(*direction, dimension)) continue;
     if (shape[i] == 1 && direction.has_value()) continue;
@@ -186,6 +199,7 @@ absl::StatusOr<CfVariable> Arrange(const netcdf::NetcdfFile& file, const std::st
         std::ranges::find(on.axes, names[i], [](const CfDimension& each) { return each.name; });
     if (axis != on.axes.end()) {
       arranged.places[static_cast<std::size_t>(axis - on.axes.begin())] = place;
+      if (on.unstructured && axis == on.axes.begin()) arranged.places[1] = place;
       continue;
     }
     if (shape[i] == 1) continue;
@@ -216,9 +230,10 @@ absl::StatusOr<std::vector<float>> ReadOnAxes(const netcdf::NetcdfFile& file,
   std::array<std::size_t, 3> lengths{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     lengths[axis] = order.cells[axis] + static_cast<std::size_t>(variable.more[axis]);
-    if (variable.places[axis] >= 0) {
-      count[static_cast<std::size_t>(variable.places[axis])] = lengths[axis];
-    }
+    // The cells of an unstructured grid are both x and y, with one row of y.
+    if (variable.places[axis] < 0) continue;
+    std::size_t& along = count[static_cast<std::size_t>(variable.places[axis])];
+    along = std::max(along, lengths[axis]);
   }
   if (variable.time >= 0) start[static_cast<std::size_t>(variable.time)] = record;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> read,

@@ -37,10 +37,12 @@ struct CfDimension {
 struct CfDimensions {
   std::array<CfDimension, 3> axes;  // x, y, z
   std::string time;                 // empty if the fields have no time
+  // True if the columns are the cells of an unstructured grid, along one dimension. That dimension
+  // is then both x and y, and y has the length 1.
+  bool unstructured = false;
 };
 
-// Finds the axes of a field. Errors name the file, the variable and what is missing. A field on
-// columns without an order (triangles, for example) is an error that says so.
+// Finds the axes of a field. Errors name the file, the variable and what is missing.
 absl::StatusOr<CfDimensions> FindDimensions(const netcdf::NetcdfFile& file,
                                             const std::string& field);
 

@@ -1,9 +1,11 @@
 #include "storm_files/cf_format.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/time.h"
 #include "base/status.h"
 #include "netcdf/netcdf_file.h"
 #include "storm_files/cf_metadata.h"
@@ -26,7 +28,23 @@ std::string RunOf(const CfMetadata& metadata) {
     absl::StrAppend(&run, " ", heights.faces_m.front(), " ",
                     depth_m / static_cast<double>(metadata.order.cells[2]));
   }
+  // Two forecasts of one time are two storms. A series of analyses is one storm, although each is a
+  // separate run.
+  if (metadata.run_start.has_value() && std::ranges::any_of(metadata.times, [&](absl::Time time) {
+        return time != *metadata.run_start;
+      })) {
+    absl::StrAppend(&run, " ", absl::FormatTime(*metadata.run_start, absl::UTCTimeZone()));
+  }
   return run;
+}
+
+void SetPlace(const EvenColumns& even, StormFile& file) {
+  // Rounding must not turn Greenwich into a place west of it.
+  constexpr double kRounding_deg = 1e-9;
+  const double longitude_deg = even.middle.longitude_deg;
+  file.longitude_deg = std::abs(longitude_deg) < kRounding_deg ? 0.0 : longitude_deg;
+  file.latitude_deg = even.middle.latitude_deg;
+  file.projection = even.projection;
 }
 
 class CfFormat final : public StormFormat {
@@ -64,6 +82,7 @@ class CfFormat final : public StormFormat {
     }
     file.about = metadata.source;
     file.run = RunOf(metadata);
+    file.run_start = metadata.run_start;
     file.assumptions = metadata.assumptions;
     if (places.even != nullptr) {
       const EvenColumns& even = *places.even;
@@ -72,12 +91,7 @@ class CfFormat final : public StormFormat {
         file.dx_m = even.dx_m;
         file.dy_m = even.dy_m;
       }
-      // Rounding must not turn Greenwich into a place west of it.
-      constexpr double kRounding_deg = 1e-9;
-      const double longitude_deg = even.middle.longitude_deg;
-      file.longitude_deg = std::abs(longitude_deg) < kRounding_deg ? 0.0 : longitude_deg;
-      file.latitude_deg = even.middle.latitude_deg;
-      file.projection = even.projection;
+      if (!even.projection.empty()) SetPlace(even, file);
     }
     file.reader =
         MakeRecordReader([metadata = std::make_shared<const CfMetadata>(std::move(metadata))](

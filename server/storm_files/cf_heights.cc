@@ -56,7 +56,7 @@ bool HoldsHeights(const CfDescription& variable) {
   }
   const std::string name = absl::AsciiStrToLower(variable.name);
   return OneOf(name, {"hhl", "hfl", "z_ifc", "z_mc", "zhval", "zghalf", "zgfull", "zg", "zgeo",
-                      "altitude", "alt", "height", "geopotential_height", "geopotential"});
+                      "altitude", "alt", "height", "geopotential_height", "geopotential", "zgrid"});
 }
 
 bool IsAboveGround(const netcdf::NetcdfFile& file, const std::string& variable,
@@ -212,6 +212,49 @@ std::vector<double> FacesOf(const TermValues& term, double lowest, double highes
   return faces;
 }
 
+std::optional<CfColumnValue> ColumnValue(const netcdf::NetcdfFile& file, const std::string& name,
+                                         const CfDimensions& dimensions, const char* unit) {
+  if (!file.HasVariable(name)) return std::nullopt;
+  const auto variable = Arrange(file, name, dimensions);
+  const auto conversion = ConversionOf(file.TextOrEmpty(name, "units"), unit);
+  if (!variable.ok() || !conversion.has_value() || variable->places[2] >= 0 ||
+      variable->more != std::array<int, 3>{0, 0, 0}) {
+    return std::nullopt;
+  }
+  return CfColumnValue{*variable, conversion->scale};
+}
+
+// A term b * surface, before its faces are known.
+struct SurfaceValues {
+  TermValues b;
+  CfColumnValue surface;
+};
+
+// Returns z = a + the sum of b * surface, with a in m. The lowest face is the ground, and the
+// highest is flat.
+CfHeights LinearHeights(const Parametric& coordinate, TermValues a,
+                        std::vector<SurfaceValues> surfaces) {
+  CfHeights heights;
+  heights.kind = CfHeightKind::kLinear;
+  heights.name = coordinate.name;
+  heights.reversed = a.middles.front() > a.middles.back();
+  const auto upwards = [&](TermValues& term) {
+    if (!heights.reversed) return;
+    std::ranges::reverse(term.middles);
+    std::ranges::reverse(term.faces);
+  };
+  upwards(a);
+  const std::size_t last = a.middles.size() - 1;
+  const double top =
+      last > 0 ? 1.5 * a.middles[last] - 0.5 * a.middles[last - 1] : 2.0 * a.middles[last];
+  heights.a = FacesOf(a, 0.0, top);
+  for (SurfaceValues& each : surfaces) {
+    upwards(each.b);
+    heights.surfaces.push_back({FacesOf(each.b, 1.0, 0.0), std::move(each.surface)});
+  }
+  return heights;
+}
+
 // Reads z = a + b * orog (hybrid height), with a in m.
 absl::StatusOr<CfHeights> ReadHybridHeight(const netcdf::NetcdfFile& file,
                                            const Parametric& coordinate, std::size_t layers,
@@ -228,32 +271,57 @@ absl::StatusOr<CfHeights> ReadHybridHeight(const netcdf::NetcdfFile& file,
   THUNDERHEAD_ASSIGN_OR_RETURN(TermValues b,
                                ReadTerm(file, Term(coordinate.terms, "b"),
                                         Term(coordinate.terms_at_faces, "b"), layers, 1.0));
-  CfHeights heights;
-  heights.kind = CfHeightKind::kLinear;
-  heights.name = coordinate.name;
-  heights.reversed = a.middles.front() > a.middles.back();
-  if (heights.reversed) {
-    for (auto* values : {&a.middles, &a.faces, &b.middles, &b.faces}) std::ranges::reverse(*values);
-  }
-  const std::size_t last = layers - 1;
-  const double top =
-      layers > 1 ? 1.5 * a.middles[last] - 0.5 * a.middles[last - 1] : 2.0 * a.middles[last];
-  // The lowest face is the ground, and the highest is flat.
-  heights.a = FacesOf(a, 0.0, top);
-  heights.b = FacesOf(b, 1.0, 0.0);
-  return heights;
+  return LinearHeights(coordinate, std::move(a), {{std::move(b), *terrain}});
 }
 
-std::optional<CfColumnValue> ColumnValue(const netcdf::NetcdfFile& file, const std::string& name,
-                                         const CfDimensions& dimensions, const char* unit) {
+// Returns the only value of a term in m.
+std::optional<double> HeightOfTop(const netcdf::NetcdfFile& file, const std::string& name) {
   if (!file.HasVariable(name)) return std::nullopt;
-  const auto variable = Arrange(file, name, dimensions);
-  const auto conversion = ConversionOf(file.TextOrEmpty(name, "units"), unit);
-  if (!variable.ok() || !conversion.has_value() || variable->places[2] >= 0 ||
-      variable->more != std::array<int, 3>{0, 0, 0}) {
-    return std::nullopt;
+  const auto values = file.ReadDoubles(name);
+  const auto metres = MetresIn(file.TextOrEmpty(name, "units"));
+  if (!values.ok() || values->size() != 1 || !metres.has_value()) return std::nullopt;
+  const double top_m = values->front() * *metres;
+  return top_m > 0.0 ? std::optional(top_m) : std::nullopt;
+}
+
+// Reads z = a ztop + b1 zsurf1 + b2 zsurf2 (smooth level vertical coordinate, SLEVE).
+absl::StatusOr<CfHeights> ReadSleve(const netcdf::NetcdfFile& file, const Parametric& coordinate,
+                                    const CfDimensions& dimensions) {
+  const std::size_t layers = dimensions.axes[2].length;
+  const auto read = [&](const char* term, double scale) -> absl::StatusOr<TermValues> {
+    const std::string name = Term(coordinate.terms, term);
+    if (!file.HasVariable(name)) return LacksTerm(file, coordinate, term);
+    return ReadTerm(file, name, Term(coordinate.terms_at_faces, term), layers, scale);
+  };
+  const std::optional<double> top_m = HeightOfTop(file, Term(coordinate.terms, "ztop"));
+  if (!top_m.has_value()) return LacksTerm(file, coordinate, "ztop");
+  THUNDERHEAD_ASSIGN_OR_RETURN(TermValues a, read("a", *top_m));
+  std::vector<SurfaceValues> surfaces;
+  for (const auto& [b, surface] : {std::pair{"b1", "zsurf1"}, std::pair{"b2", "zsurf2"}}) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(TermValues values, read(b, 1.0));
+    auto column = ColumnValue(file, Term(coordinate.terms, surface), dimensions, "m");
+    if (!column.has_value()) return LacksTerm(file, coordinate, surface);
+    surfaces.push_back({std::move(values), *std::move(column)});
   }
-  return CfColumnValue{*variable, conversion->scale};
+  return LinearHeights(coordinate, std::move(a), std::move(surfaces));
+}
+
+// Reads Meso-NH's z = s + orog (1 - s / height). Its faces are half-way between the layers.
+absl::StatusOr<CfHeights> ReadGalChen(const netcdf::NetcdfFile& file, const Parametric& coordinate,
+                                      const CfDimensions& dimensions) {
+  const std::optional<double> top_m = HeightOfTop(file, Term(coordinate.terms, "height"));
+  if (!top_m.has_value()) return LacksTerm(file, coordinate, "height");
+  auto ground = ColumnValue(file, Term(coordinate.terms, "orog"), dimensions, "m");
+  if (!ground.has_value()) return LacksTerm(file, coordinate, "orog");
+  const std::string name = Term(coordinate.terms, "s");
+  if (!file.HasVariable(name)) return LacksTerm(file, coordinate, "s");
+  const double metres = MetresIn(file.TextOrEmpty(name, "units")).value_or(1.0);
+  THUNDERHEAD_ASSIGN_OR_RETURN(TermValues a,
+                               ReadTerm(file, name, "", dimensions.axes[2].length, metres));
+  TermValues b;
+  for (const double each : a.middles) b.middles.push_back(1.0 - each / *top_m);
+  for (const double each : a.faces) b.faces.push_back(1.0 - each / *top_m);
+  return LinearHeights(coordinate, std::move(a), {{std::move(b), *std::move(ground)}});
 }
 
 // Reads p = ap + b * ps (hybrid sigma pressure) or its forms with p0 and ptop.
@@ -331,13 +399,23 @@ absl::StatusOr<CfHeights> ReadParametric(const netcdf::NetcdfFile& file,
     }
     return ReadHybridHeight(file, coordinate, dimensions.axes[2].length, orography);
   }
+  if (coordinate.standard_name == "atmosphere_sleve_coordinate") {
+    return ReadSleve(file, coordinate, dimensions);
+  }
+  if (coordinate.standard_name.empty() && !Term(coordinate.terms, "s").empty() &&
+      !Term(coordinate.terms, "height").empty()) {
+    return ReadGalChen(file, coordinate, dimensions);
+  }
   if (coordinate.standard_name == "atmosphere_hybrid_sigma_pressure_coordinate" ||
       coordinate.standard_name == "atmosphere_sigma_coordinate") {
     return ReadHybridPressure(file, coordinate, dimensions);
   }
   return NoHeights(
       file, coordinate.name,
-      absl::StrCat("is the ", coordinate.standard_name, ", whose formula is not read here"));
+      absl::StrCat("is the ",
+                   coordinate.standard_name.empty() ? std::string("coordinate of a model")
+                                                    : coordinate.standard_name,
+                   ", whose formula is not read here"));
 }
 
 // Returns what a vertical coordinate counts that is not metres, or nothing if it is a height.
@@ -422,7 +500,11 @@ absl::StatusOr<CfHeights> ReadCfHeights(const netcdf::NetcdfFile& file,
   }
   const CfDimension& z = dimensions.axes[2];
   if (z.coordinate.empty()) {
-    return NoHeights(file, z.name, "has no coordinate variable, so the heights are not known");
+    return NoHeights(file, z.name,
+                     z.name == "nVertLevels"
+                         ? "has no heights (MPAS writes them to zgrid in the init or static file: "
+                           "add it, for example with ncks -A -v zgrid)"
+                         : "has no coordinate variable, so the heights are not known");
   }
   // COSMO and ICON number their levels and keep the heights in HHL, often in another file.
   if (const auto why = WhyNoHeight(file, z.coordinate); why.has_value()) {
@@ -448,8 +530,8 @@ std::optional<CfColumnValue> FindTerrain(const netcdf::NetcdfFile& file,
       const bool altitude = described.standard_name == "surface_altitude";
       const bool geopotential = described.standard_name == "surface_geopotential";
       const bool model = described.standard_name.empty() &&
-                         OneOf(name, {"zs", "hsurf", "HSURF", "HGT", "hgt", "orog", "topo", "FIS",
-                                      "PHIS", "topography_c", "zsurf"});
+                         OneOf(name, {"zs", "ZS", "hsurf", "HSURF", "HGT", "hgt", "orog", "topo",
+                                      "FIS", "PHIS", "topography_c", "zsurf"});
       if (by_name ? !model : !altitude && !geopotential) continue;
       const auto variable = Arrange(file, name, dimensions);
       const bool fits = variable.ok() && variable->places[0] >= 0 && variable->places[1] >= 0 &&

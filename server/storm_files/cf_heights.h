@@ -25,8 +25,14 @@ enum class CfHeightKind {
   kAboveGround,  // faces above the surface
   kMiddles,      // an array of heights of the layers' middles
   kFaces,        // an array of heights of the faces
-  kLinear,       // a + b * terrain
+  kLinear,       // a + the sum of b * surface, of one or two surfaces
   kPressure,     // pressure a + b * surface pressure, and heights by the hydrostatic equation
+};
+
+// A term b * surface of the height of a face.
+struct CfSurfaceTerm {
+  std::vector<double> b;  // at the faces, upwards, one more than layers
+  CfColumnValue surface;
 };
 
 // The heights of layers, in the order of the file if not said otherwise.
@@ -38,9 +44,10 @@ struct CfHeights {
   std::optional<CfVariable> array;  // of kMiddles and kFaces
   double scale = 1.0;               // of the array, to m
   bool above_ground = false;        // of the array
-  // The terms a and b of kLinear and kPressure at the faces, upwards, one more than layers.
-  std::vector<double> a;  // in m or Pa
-  std::vector<double> b;
+  // The term a of kLinear and kPressure at the faces, upwards, one more than layers.
+  std::vector<double> a;                // in m or Pa
+  std::vector<CfSurfaceTerm> surfaces;  // of kLinear: heights of the ground, or parts of them
+  std::vector<double> b;                // of kPressure, like a
   std::optional<CfColumnValue> surface_pressure;  // of kPressure
   // The terms of kPressure at the layers' middles, upwards.
   std::vector<double> a_middle;

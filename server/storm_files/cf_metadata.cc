@@ -9,6 +9,10 @@
 #include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
+#include "storm_files/cf_air.h"
+#include "storm_files/cf_cells.h"
+#include "storm_files/cf_checks.h"
+#include "storm_files/cf_models.h"
 #include "storm_files/cf_times.h"
 #include "storm_files/units.h"
 
@@ -21,37 +25,17 @@ std::vector<CfDescription> Describe(const netcdf::NetcdfFile& file) {
   return descriptions;
 }
 
-absl::Status WrongUnits(const netcdf::NetcdfFile& file, const CfDescription& variable,
-                        const std::string& wanted) {
-  return absl::InvalidArgumentError(absl::StrCat(
-      file.Path(), ": ", variable.name,
-      variable.units.empty() ? " has no units" : absl::StrCat(" has units '", variable.units, "'"),
-      " where ", wanted, " is needed; convert it, or add its units attribute"));
-}
-
 absl::Status CheckQuantityUnits(const netcdf::NetcdfFile& file, const CfDescription& variable,
                                 const CfQuantity& quantity) {
   if (quantity.known_units) return absl::OkStatus();
+  if (const std::string advice = AdviceOnUnits(file);
+      HasNoUnits(variable.units) && !advice.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": ", variable.name, " has no units; ", advice));
+  }
   return WrongUnits(
       file, variable,
       quantity.quantity == volume::Quantity::kExtinction ? "'m-1'" : "'kg kg-1' or 'kg m-3'");
-}
-
-bool OnAllAxes(const CfVariable& variable) {
-  return std::ranges::none_of(variable.places, [](int place) { return place < 0; });
-}
-
-bool OnCells(const CfVariable& variable) { return variable.more == std::array<int, 3>{0, 0, 0}; }
-
-// Returns how a variable lies on the fields' cells. An error says why it cannot be used.
-absl::StatusOr<CfVariable> ArrangeOnCells(const netcdf::NetcdfFile& file,
-                                          const std::string& variable, const CfMetadata& metadata) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(CfVariable arranged, Arrange(file, variable, metadata.dimensions));
-  if (OnAllAxes(arranged) && OnCells(arranged)) return arranged;
-  return absl::InvalidArgumentError(absl::StrCat(
-      file.Path(), ": ", variable, " does not lie on ", metadata.dimensions.axes[0].name, ", ",
-      metadata.dimensions.axes[1].name, " and ", metadata.dimensions.axes[2].name, ", as ",
-      metadata.fields.front().variable.name, " does; put all on one grid"));
 }
 
 // Finds the axes of the first variable that has them all. The error is that of the first variable.
@@ -69,11 +53,28 @@ absl::Status FindAxes(const netcdf::NetcdfFile& file, const std::vector<CfDescri
   return first;
 }
 
-// Returns whether a variable lacks an axis, like a column total or a profile.
-bool HasFewerAxes(const netcdf::NetcdfFile& file, const std::string& variable,
-                  const CfMetadata& metadata) {
-  const auto arranged = Arrange(file, variable, metadata.dimensions);
-  return arranged.ok() && !OnAllAxes(*arranged);
+bool HoldsAnyOf(const std::vector<CfField>& fields, MixedWater mixed) {
+  const std::vector<physics::Hydrometeor> hydrometeors = HydrometeorsIn(mixed);
+  return std::ranges::any_of(fields, [&](const CfField& field) {
+    return std::ranges::find(hydrometeors, field.quantity.hydrometeor) != hydrometeors.end();
+  });
+}
+
+// Adds the hydrometeors that share a variable, unless the file also has one of them alone.
+void AddMixtures(const std::vector<CfField>& mixtures, CfMetadata* metadata) {
+  const std::vector<CfField> alone = metadata->fields;
+  for (const CfField& mixture : mixtures) {
+    if (HoldsAnyOf(alone, mixture.quantity.mixed)) {
+      metadata->assumptions.push_back(
+          absl::StrCat(mixture.variable.name,
+                       " is left out, because the file also has the hydrometeors in it."));
+      continue;
+    }
+    for (const physics::Hydrometeor hydrometeor : HydrometeorsIn(mixture.quantity.mixed)) {
+      metadata->fields.push_back(mixture);
+      metadata->fields.back().quantity.hydrometeor = hydrometeor;
+    }
+  }
 }
 
 // Finds the hydrometeors, or the extinction alone if there is one, because it includes all of them.
@@ -90,6 +91,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
   }
   if (candidates.empty()) return absl::OkStatus();
   THUNDERHEAD_RETURN_IF_ERROR(FindAxes(file, candidates, metadata));
+  std::vector<CfField> mixtures;
   for (const CfDescription& variable : candidates) {
     const CfQuantity quantity = *QuantityOf(variable);
     if (HasFewerAxes(file, variable.name, *metadata)) continue;
@@ -100,6 +102,10 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
       return absl::InvalidArgumentError(
           absl::StrCat(file.Path(), ": ", variable.name, " lies on the faces between the cells of ",
                        candidates.front().name, "; put all on one grid"));
+    }
+    if (quantity.mixed != MixedWater::kNone) {
+      mixtures.push_back({std::move(arranged), quantity});
+      continue;
     }
     const auto same = [&](const CfField& field) {
       return field.quantity.hydrometeor == quantity.hydrometeor &&
@@ -113,6 +119,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
     }
     fields.push_back({std::move(arranged), quantity});
   }
+  AddMixtures(mixtures, metadata);
   const auto extinction = std::ranges::find_if(fields, [](const CfField& field) {
     return field.quantity.quantity == volume::Quantity::kExtinction;
   });
@@ -126,87 +133,25 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
   return absl::OkStatus();
 }
 
-bool Has(const CfMetadata& metadata, AirVariable variable) {
-  return std::ranges::any_of(
-      metadata.air, [variable](const CfAirField& field) { return field.air.variable == variable; });
-}
-
-// Takes the variables of the air. First those on all axes are taken, and then profiles along z for
-// what is still missing, such as the base state of an anelastic model.
-absl::Status TakeAir(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& variables,
-                     bool profiles, CfMetadata* metadata) {
-  for (const CfDescription& variable : variables) {
-    const std::optional<CfAir> air = AirVariableOf(variable);
-    if (!air.has_value() || Has(*metadata, air->variable)) continue;
-    const auto shape = file.Shape(variable.name);
-    const auto arranged = Arrange(file, variable.name, metadata->dimensions);
-    if (!shape.ok() || (!profiles && shape->size() < 3)) continue;
-    if (profiles && (!arranged.ok() || arranged->places[2] < 0 || arranged->places[0] >= 0 ||
-                     arranged->places[1] >= 0 || !OnCells(*arranged))) {
-      continue;
-    }
-    if (!profiles && HasFewerAxes(file, variable.name, *metadata)) continue;
-    if (!air->known_units) return WrongUnits(file, variable, "kg m-3, Pa, K or kg kg-1");
-    if (HasNoUnits(variable.units)) {
-      spdlog::warn("{}: {} has no units; taken to be in kg m-3, Pa, K or kg kg-1", file.Path(),
-                   variable.name);
-      metadata->assumptions.push_back(absl::StrCat(
-          variable.name, " has no units; it is taken to be in kg m-3, Pa, K or kg kg-1."));
-    }
-    if (profiles) {
-      metadata->assumptions.push_back(
-          absl::StrCat("The air's ", variable.name, " is the same in all columns."));
-      metadata->air.push_back({*arranged, *air});
-      continue;
-    }
-    THUNDERHEAD_ASSIGN_OR_RETURN(CfVariable on_cells,
-                                 ArrangeOnCells(file, variable.name, *metadata));
-    metadata->air.push_back({std::move(on_cells), *air});
-  }
+// Places the cells of an unstructured grid, in one row.
+absl::Status ReadCells(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
+  const auto& [cells, row, layers] = metadata->dimensions.axes;
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      metadata->places,
+      PlaceCells(file, metadata->fields.front().variable.name, metadata->dimensions));
+  metadata->x.dimension = cells.name;
+  metadata->x.unit = CfAxisUnit::kNone;
+  metadata->x.cells = static_cast<int>(cells.length);
+  metadata->y = metadata->x;
+  metadata->y.cells = 1;
+  metadata->order.cells = {cells.length, 1, layers.length};
   return absl::OkStatus();
-}
-
-// Finds the variables needed to convert mixing ratios to masses per volume, and to compute heights.
-absl::Status FindAir(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& variables,
-                     CfMetadata* metadata) {
-  const auto ratio = std::ranges::find_if(metadata->fields, [](const CfField& field) {
-    return field.quantity.quantity == volume::Quantity::kMixingRatio;
-  });
-  const bool hydrostatic = metadata->heights.kind == CfHeightKind::kPressure;
-  if (ratio == metadata->fields.end() && !hydrostatic) return absl::OkStatus();
-  THUNDERHEAD_RETURN_IF_ERROR(TakeAir(file, variables, false, metadata));
-  THUNDERHEAD_RETURN_IF_ERROR(TakeAir(file, variables, true, metadata));
-  const bool warm = Has(*metadata, AirVariable::kTemperature) ||
-                    Has(*metadata, AirVariable::kPotentialTemperature);
-  if (hydrostatic && !warm) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        file.Path(), ": the heights of ", metadata->heights.name,
-        " follow from pressure and temperature, and the file lacks air_temperature (K); add it, or "
-        "an array of heights"));
-  }
-  if (ratio == metadata->fields.end()) return absl::OkStatus();
-  const bool pressure = hydrostatic || Has(*metadata, AirVariable::kPressure);
-  if (Has(*metadata, AirVariable::kDensity) || (pressure && warm)) return absl::OkStatus();
-  const auto deviation = std::ranges::find_if(variables, [](const CfDescription& variable) {
-    return absl::StrContains(variable.standard_name, "difference_of_air_pressure") ||
-           (variable.standard_name.empty() &&
-            (variable.name == "PP" || variable.name == "pp" || variable.name == "prspert"));
-  });
-  const std::string reason =
-      deviation == variables.end()
-          ? ""
-          : absl::StrCat(" (", deviation->name,
-                         " is only the deviation from a reference pressure: write the whole "
-                         "pressure too)");
-  return absl::InvalidArgumentError(absl::StrCat(
-      file.Path(), ": ", ratio->variable.name, " is per kg of air, and the file lacks the air's ",
-      "density", reason, "; add air_density (kg m-3), or air_pressure (Pa) with air_temperature ",
-      "(K), or give masses in kg m-3"));
 }
 
 // Reads the horizontal axes. If the domain is only one cell wide along one axis, that width is
 // assumed to be the cell size along the other axis.
 absl::Status ReadColumns(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
+  if (metadata->dimensions.unstructured) return ReadCells(file, metadata);
   const auto& [x_on, y_on, z_on] = metadata->dimensions.axes;
   const auto read = [&](const CfDimension& on, CfDirection direction, double single,
                         CfAxis* axis) -> absl::Status {
@@ -263,7 +208,7 @@ void FindWind(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& 
     const std::optional<CfWind> wind = WindVariableOf(variable);
     if (!wind.has_value()) continue;
     const auto shape = file.Shape(variable.name);
-    if (!shape.ok() || shape->size() < 3) continue;
+    if (!shape.ok() || shape->size() < RankOf(*metadata)) continue;
     absl::StatusOr<CfVariable> arranged = ArrangeWind(file, variable, *wind, *metadata);
     if (!arranged.ok()) {
       spdlog::warn("the motion of the air is read without {}: {}", variable.name,
@@ -312,6 +257,30 @@ absl::Status CheckArrayAgainstTerrain(const netcdf::NetcdfFile& file, CfMetadata
     break;
   }
   return absl::OkStatus();
+}
+
+// Sets what variables mean by the model that wrote them, where their names do not say it.
+void ApplyModel(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
+  const bool icon = file.TextAttribute("", "uuidOfHGrid").has_value() ||
+                    file.NumberAttribute("", "number_of_grid_used").has_value();
+  const bool per_kg = std::ranges::any_of(metadata->fields, [](const CfField& field) {
+    return field.quantity.quantity == volume::Quantity::kMixingRatio;
+  });
+  if (icon && per_kg) {
+    for (CfField& field : metadata->fields) field.quantity.of_moist_air = true;
+    for (CfAirField& field : metadata->air) {
+      if (field.air.variable == AirVariable::kVapour) field.air.of_moist_air = true;
+    }
+    metadata->assumptions.push_back(
+        "Masses per kg are those per kg of the whole air, as in all files of ICON.");
+  }
+  if (IsMpas(file) && Has(*metadata, AirVariable::kDensity)) {
+    // Without humidity, the density counts as that of dry air.
+    std::erase_if(metadata->air, [](const CfAirField& field) {
+      return field.air.variable == AirVariable::kVapour;
+    });
+    metadata->assumptions.push_back("The air's density is that of dry air, as in MPAS.");
+  }
 }
 
 // Returns the only group with fields, or the root.
@@ -367,13 +336,19 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root) {
       metadata.heights,
       ReadCfHeights(file, metadata.dimensions, metadata.terrain, metadata.assumptions));
   metadata.order.reversed[2] = metadata.heights.reversed;
+  if (const auto& surfaces = metadata.heights.surfaces;
+      !metadata.terrain.has_value() && surfaces.size() == 1) {
+    metadata.terrain = surfaces.front().surface;
+  }
   THUNDERHEAD_RETURN_IF_ERROR(CheckArrayAgainstTerrain(file, &metadata));
-  THUNDERHEAD_RETURN_IF_ERROR(FindAir(file, variables, &metadata));
+  THUNDERHEAD_RETURN_IF_ERROR(FindCfAir(file, variables, &metadata));
+  ApplyModel(file, &metadata);
   FindWind(file, variables, &metadata);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       CfTimes times,
       ReadCfTimes(file, metadata.fields.front().variable.name, metadata.dimensions.time));
   metadata.times = std::move(times.times);
+  metadata.run_start = times.run_start;
   for (std::vector<std::string>* more : {&metadata.places.assumptions, &times.assumptions}) {
     metadata.assumptions.insert(metadata.assumptions.end(), more->begin(), more->end());
   }

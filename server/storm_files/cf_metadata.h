@@ -15,6 +15,7 @@
 #include "storm_files/cf_heights.h"
 #include "storm_files/cf_names.h"
 #include "storm_files/cf_places.h"
+#include "storm_files/reference_atmosphere.h"
 
 namespace thunderhead::storm_files {
 
@@ -42,11 +43,13 @@ struct CfMetadata {
   CfPlaces places;
   CfHeights heights;
   CfOrder order;
-  std::vector<absl::Time> times;  // at least one; in year 1 if the file gives no dates
-  std::vector<CfField> fields;    // the hydrometeors in the order of physics::kHydrometeors, or
-                                  // only the extinction
-  std::vector<CfAirField> air;    // only the variables that are needed to convert mixing ratios to
-                                  // mass per volume, or to compute heights
+  std::vector<absl::Time> times;        // at least one; in year 1 if the file gives no dates
+  std::optional<absl::Time> run_start;  // when the model run began, if the file says so
+  std::vector<CfField> fields;  // the hydrometeors in the order of physics::kHydrometeors, or
+                                // only the extinction
+  std::vector<CfAirField> air;  // only the variables that are needed to convert mixing ratios to
+                                // mass per volume, or to compute heights
+  std::optional<ReferenceAtmosphere> reference;  // of AirVariable::kPressureDeviation
   // Turbulent energy, and either all three components of the wind or none.
   std::vector<CfWindField> wind;
   std::optional<CfColumnValue> terrain;

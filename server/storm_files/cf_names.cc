@@ -17,6 +17,7 @@ using physics::Hydrometeor;
 struct Named {
   std::string_view name;
   Hydrometeor hydrometeor;
+  std::string_view long_name = {};  // if not empty, the long_name must contain it, in small letters
 };
 
 // Substances X in standard names such as "mass_fraction_of_X_in_air" and "X_mixing_ratio".
@@ -40,26 +41,79 @@ constexpr std::array kSubstances = {
 
 // Variable names that cloud models commonly use, for variables without a standard name.
 constexpr std::array kVariables = {
-    Named{"qc", Hydrometeor::kCloud},       Named{"qcloud", Hydrometeor::kCloud},
-    Named{"ql", Hydrometeor::kCloud},       Named{"clw", Hydrometeor::kCloud},
-    Named{"lwc", Hydrometeor::kCloud},      Named{"qr", Hydrometeor::kRain},
-    Named{"qrain", Hydrometeor::kRain},     Named{"rwc", Hydrometeor::kRain},
-    Named{"qi", Hydrometeor::kIce},         Named{"qice", Hydrometeor::kIce},
-    Named{"cli", Hydrometeor::kIce},        Named{"iwc", Hydrometeor::kIce},
-    Named{"qs", Hydrometeor::kSnow},        Named{"qsnow", Hydrometeor::kSnow},
-    Named{"swc", Hydrometeor::kSnow},       Named{"qg", Hydrometeor::kGraupel},
-    Named{"qgraup", Hydrometeor::kGraupel}, Named{"qgraupel", Hydrometeor::kGraupel},
-    Named{"qh", Hydrometeor::kHail},        Named{"qhail", Hydrometeor::kHail},
-    Named{"qhl", Hydrometeor::kHail},       Named{"clwc", Hydrometeor::kCloud},
-    Named{"ciwc", Hydrometeor::kIce},       Named{"crwc", Hydrometeor::kRain},
-    Named{"cswc", Hydrometeor::kSnow},      Named{"clwmr", Hydrometeor::kCloud},
-    Named{"q_liquid", Hydrometeor::kCloud}, Named{"q_ice", Hydrometeor::kIce},
+    Named{"qc", Hydrometeor::kCloud},
+    Named{"qcloud", Hydrometeor::kCloud},
+    Named{"ql", Hydrometeor::kCloud},
+    Named{"clw", Hydrometeor::kCloud},
+    Named{"lwc", Hydrometeor::kCloud},
+    Named{"qr", Hydrometeor::kRain},
+    Named{"qrain", Hydrometeor::kRain},
+    Named{"rwc", Hydrometeor::kRain},
+    Named{"qi", Hydrometeor::kIce},
+    Named{"qice", Hydrometeor::kIce},
+    Named{"cli", Hydrometeor::kIce},
+    Named{"iwc", Hydrometeor::kIce},
+    Named{"qs", Hydrometeor::kSnow},
+    Named{"qsnow", Hydrometeor::kSnow},
+    Named{"swc", Hydrometeor::kSnow},
+    Named{"qg", Hydrometeor::kGraupel},
+    Named{"qgraup", Hydrometeor::kGraupel},
+    Named{"qgraupel", Hydrometeor::kGraupel},
+    Named{"qh", Hydrometeor::kHail},
+    Named{"qhail", Hydrometeor::kHail},
+    Named{"qhl", Hydrometeor::kHail},
+    Named{"clwc", Hydrometeor::kCloud},
+    Named{"ciwc", Hydrometeor::kIce},
+    Named{"crwc", Hydrometeor::kRain},
+    Named{"cswc", Hydrometeor::kSnow},
+    Named{"clwmr", Hydrometeor::kCloud},
+    Named{"q_liquid", Hydrometeor::kCloud},
+    Named{"q_ice", Hydrometeor::kIce},
+    // DALES
+    Named{"plw", Hydrometeor::kRain, "precipitating liquid"},
+    Named{"pli", Hydrometeor::kSnow, "precipitating ice"},
+    // Meso-NH
+    Named{"rct", Hydrometeor::kCloud},
+    Named{"rrt", Hydrometeor::kRain},
+    Named{"rit", Hydrometeor::kIce},
+    Named{"rst", Hydrometeor::kSnow},
+    Named{"rgt", Hydrometeor::kGraupel},
+    Named{"rht", Hydrometeor::kHail},
+    // MONC
+    Named{"q_cloud_liquid_mass", Hydrometeor::kCloud},
+    Named{"q_rain_mass", Hydrometeor::kRain},
+    Named{"q_ice_mass", Hydrometeor::kIce},
+    Named{"q_cloud_ice_mass", Hydrometeor::kIce},
+    Named{"q_snow_mass", Hydrometeor::kSnow},
+    Named{"q_graupel_mass", Hydrometeor::kGraupel},
+    // UCLA-LES, whose names say little
+    Named{"l", Hydrometeor::kCloud, "liquid water mixing ratio"},
+    Named{"r", Hydrometeor::kRain, "rain-water mixing ratio"},
+    Named{"rice", Hydrometeor::kIce, "ice mixing ratio"},
+    Named{"rsnow", Hydrometeor::kSnow, "snow mixing ratio"},
+    Named{"rgrp", Hydrometeor::kGraupel, "graupel mixing ratio"},
+    Named{"rhail", Hydrometeor::kHail, "hail mixing ratio"},
+};
+
+// Variables of SAM that hold several hydrometeors.
+struct NamedMixture {
+  std::string_view name;
+  std::string_view long_name;  // in small letters
+  MixedWater mixed;
+};
+constexpr std::array kMixtures = {
+    NamedMixture{"qn", "non-precipitating condensate", MixedWater::kCloud},
+    NamedMixture{"qp", "precipitating water", MixedWater::kPrecipitation},
 };
 
 template <std::size_t count>
 std::optional<Hydrometeor> Find(const std::array<Named, count>& table, std::string_view name) {
   const auto at = std::ranges::find(table, name, &Named::name);
   return at == table.end() ? std::nullopt : std::optional(at->hydrometeor);
+}
+
+bool Says(const std::string& lower_long_name, std::string_view phrase) {
+  return absl::StrContains(lower_long_name, absl::string_view(phrase.data(), phrase.size()));
 }
 
 bool IsOneOf(std::string_view text, std::initializer_list<std::string_view> list) {
@@ -77,6 +131,9 @@ std::optional<CfQuantity> FromStandardName(const std::string& standard_name) {
   } else if (absl::ConsumePrefix(&substance, "mass_concentration_of_")) {
     quantity.quantity = volume::Quantity::kMassConcentration;
     absl::ConsumeSuffix(&substance, "_in_air");
+  } else if (absl::ConsumePrefix(&substance, "specific_") &&
+             absl::ConsumeSuffix(&substance, "_content")) {
+    quantity.of_moist_air = true;
   } else if (!absl::ConsumeSuffix(&substance, "_mixing_ratio")) {
     return std::nullopt;
   }
@@ -84,6 +141,37 @@ std::optional<CfQuantity> FromStandardName(const std::string& standard_name) {
   if (!hydrometeor.has_value()) return std::nullopt;
   quantity.hydrometeor = *hydrometeor;
   return quantity;
+}
+
+// Returns the quantity of a variable without a standard name.
+std::optional<CfQuantity> FromName(const CfDescription& variable) {
+  const std::string name = absl::AsciiStrToLower(variable.name);
+  const std::string long_name = absl::AsciiStrToLower(variable.long_name);
+  CfQuantity quantity;
+  // DALES writes specific contents, and says so here.
+  quantity.of_moist_air = Says(long_name, "mass fraction") || Says(long_name, "specific humidity");
+  for (const Named& each : kVariables) {
+    if (each.name != name || !Says(long_name, each.long_name)) continue;
+    quantity.hydrometeor = each.hydrometeor;
+    return quantity;
+  }
+  for (const NamedMixture& each : kMixtures) {
+    if (each.name != name || !Says(long_name, each.long_name)) continue;
+    quantity.mixed = each.mixed;
+    return quantity;
+  }
+  return std::nullopt;
+}
+
+// Returns whether a variable holds something else than its name says: the liquid water potential
+// temperature, which UCLA-LES calls t, or a deviation from a base state.
+bool IsOtherThanNamed(const CfDescription& variable) {
+  const std::string long_name = absl::AsciiStrToLower(variable.long_name);
+  for (const char* phrase : {"liquid", "virtual", "equivalent", "perturbation", "deviation",
+                             "anomaly", "tendency", "total water"}) {
+    if (Says(long_name, phrase)) return true;
+  }
+  return false;
 }
 
 // Returns whether a unit without a dimension may be that of a mass ratio. Shares such as "%" and
@@ -116,25 +204,38 @@ void ApplyUnits(const std::string& units, CfQuantity* quantity) {
   }
 }
 
+// Returns whether only the variable's name says what it holds. ICON repeats some names in the
+// attribute standard_name.
+bool HasPlainName(const CfDescription& variable) {
+  return variable.standard_name.empty() ||
+         absl::EqualsIgnoreCase(variable.standard_name, variable.name);
+}
+
 std::optional<AirVariable> AirByName(const CfDescription& variable) {
   const std::string& standard = variable.standard_name;
   const std::string name = absl::AsciiStrToLower(variable.name);
-  const bool plain = standard.empty();
+  if (standard == "difference_of_air_pressure_from_model_reference" ||
+      (standard.empty() && IsOneOf(name, {"pp", "prspert"}))) {
+    return AirVariable::kPressureDeviation;
+  }
+  const bool plain = HasPlainName(variable) && !IsOtherThanNamed(variable);
   if (standard == "air_density" ||
-      (plain && IsOneOf(name, {"rho", "air_density", "rhoa", "rhobf", "rhoref", "rhob", "dn0"}))) {
+      (plain && IsOneOf(name, {"rho", "air_density", "rhoa", "rhobf", "rhof", "rhoref", "rhob",
+                               "rhon", "dn0"}))) {
     return AirVariable::kDensity;
   }
-  if (standard == "air_pressure" || (plain && IsOneOf(name, {"p", "prs", "pres", "pressure"}))) {
+  if (standard == "air_pressure" ||
+      (plain && IsOneOf(name, {"p", "prs", "pres", "pressure", "pabst"}))) {
     return AirVariable::kPressure;
   }
   if (standard == "air_temperature" || (plain && IsOneOf(name, {"t", "ta", "temp", "tabs"}))) {
     return AirVariable::kTemperature;
   }
-  if (standard == "air_potential_temperature" || (plain && IsOneOf(name, {"th", "theta"}))) {
+  if (standard == "air_potential_temperature" || (plain && IsOneOf(name, {"th", "theta", "tht"}))) {
     return AirVariable::kPotentialTemperature;
   }
   if (IsOneOf(standard, {"specific_humidity", "humidity_mixing_ratio"}) ||
-      (plain && IsOneOf(name, {"qv", "qvapor", "q", "hus"}))) {
+      (plain && IsOneOf(name, {"qv", "qvapor", "q", "hus", "rvt", "q_vapour"}))) {
     return AirVariable::kVapour;
   }
   return std::nullopt;
@@ -143,20 +244,20 @@ std::optional<AirVariable> AirByName(const CfDescription& variable) {
 std::optional<WindVariable> WindByName(const CfDescription& variable) {
   const std::string& standard = variable.standard_name;
   const std::string name = absl::AsciiStrToLower(variable.name);
-  const bool plain = standard.empty();
+  const bool plain = HasPlainName(variable);
   if (IsOneOf(standard, {"eastward_wind", "x_wind", "grid_eastward_wind"}) ||
-      (plain && IsOneOf(name, {"u", "ua", "uinterp", "u_wind"}))) {
+      (plain && IsOneOf(name, {"u", "ua", "uinterp", "u_wind", "ureconstructzonal"}))) {
     return WindVariable::kEastward;
   }
   if (IsOneOf(standard, {"northward_wind", "y_wind", "grid_northward_wind"}) ||
-      (plain && IsOneOf(name, {"v", "va", "vinterp", "v_wind"}))) {
+      (plain && IsOneOf(name, {"v", "va", "vinterp", "v_wind", "ureconstructmeridional"}))) {
     return WindVariable::kNorthward;
   }
   if (standard == "upward_air_velocity" ||
       (plain && IsOneOf(name, {"w", "wa", "winterp", "w_wind"}))) {
     return WindVariable::kUpward;
   }
-  if (standard == "specific_turbulent_kinetic_energy_of_air" ||
+  if (IsOneOf(standard, {"specific_turbulent_kinetic_energy_of_air", "turbulent_kinetic_energy"}) ||
       (plain && IsOneOf(name, {"tke", "tke_pbl"}))) {
     return WindVariable::kTurbulentEnergy;
   }
@@ -187,11 +288,10 @@ std::optional<CfQuantity> QuantityOf(const CfDescription& variable) {
       absl::StartsWith(variable.standard_name, "volume_extinction_coefficient_in_air")) {
     quantity.emplace();
     quantity->quantity = volume::Quantity::kExtinction;
-  } else if (!variable.standard_name.empty()) {
+  } else if (!HasPlainName(variable)) {
     quantity = FromStandardName(variable.standard_name);
-  } else if (const auto hydrometeor = Find(kVariables, name); hydrometeor.has_value()) {
-    quantity.emplace();
-    quantity->hydrometeor = *hydrometeor;
+  } else {
+    quantity = FromName(variable);
   }
   if (quantity.has_value()) ApplyUnits(variable.units, &*quantity);
   return quantity;
@@ -202,9 +302,8 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
   if (!kind.has_value()) return std::nullopt;
   CfAir air;
   air.variable = *kind;
-  air.of_moist_air =
-      variable.standard_name == "specific_humidity" ||
-      (variable.standard_name.empty() && IsOneOf(variable.name, {"q", "hus", "qv_s"}));
+  air.of_moist_air = variable.standard_name == "specific_humidity" ||
+                     (HasPlainName(variable) && IsOneOf(variable.name, {"q", "hus", "qv_s"}));
   const auto use = [&](std::string_view unit) {
     if (HasNoUnits(variable.units)) return true;
     const std::optional<UnitConversion> conversion = ConversionOf(variable.units, unit);
@@ -218,6 +317,7 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
       air.known_units = use("kg m-3");
       break;
     case AirVariable::kPressure:
+    case AirVariable::kPressureDeviation:
       air.known_units = use("Pa");
       break;
     case AirVariable::kTemperature:
@@ -238,8 +338,8 @@ std::optional<CfWind> WindVariableOf(const CfDescription& variable) {
   const std::optional<UnitConversion> conversion =
       ConversionOf(variable.units, energy ? "m2 s-2" : "m s-1");
   const bool known = conversion.has_value() && conversion->offset == 0.0;
-  const bool true_east =
-      variable.standard_name == "eastward_wind" || variable.standard_name == "northward_wind";
+  const bool true_east = IsOneOf(variable.standard_name, {"eastward_wind", "northward_wind"}) ||
+                         absl::StartsWith(variable.name, "uReconstruct");
   return CfWind{*kind, known, known ? conversion->scale : 1.0, true_east};
 }
 
@@ -280,15 +380,19 @@ std::optional<CfDirection> DirectionOf(const CfDescription& coordinate) {
                      "ny", "nj", "njp1", "south_north"})) {
     return CfDirection::kY;
   }
-  if (IsOneOf(name, {"z", "zh", "zc", "zf", "zt", "zm", "zw", "height", "altitude", "alt", "lev",
-                     "level", "nz", "nk", "nkp1", "zu_3d", "zw_3d", "bottom_top", "hybrid"})) {
+  if (IsOneOf(name, {"z",          "zh",     "zc",          "zf",           "zt",    "zm",
+                     "zn",         "zw",     "height",      "altitude",     "alt",   "lev",
+                     "level",      "nz",     "nk",          "nkp1",         "zu_3d", "zw_3d",
+                     "bottom_top", "hybrid", "nvertlevels", "nvertlevelsp1"})) {
     return CfDirection::kZ;
   }
   // CDO numbers equal names: "height_2". ICON and COSMO call their levels so.
   for (const char* prefix : {"height_", "lev_", "level", "generalvertical", "plev", "z_"}) {
     if (absl::StartsWith(name, prefix)) return CfDirection::kZ;
   }
-  if (IsOneOf(name, {"t", "time"})) return CfDirection::kTime;
+  if (IsOneOf(name, {"t", "time"}) || absl::StartsWith(name, "time_series")) {
+    return CfDirection::kTime;
+  }
   return std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "storm_files/mixed_water.h"
 #include "volume/hydrometeor_fields.h"
 
 namespace thunderhead::storm_files {
@@ -17,6 +18,7 @@ struct CfDescription {
   std::string units;
   std::string axis;
   std::string positive;
+  std::string long_name;
 };
 
 // Returns whether a `units` attribute is absent or blank.
@@ -30,13 +32,21 @@ struct CfQuantity {
   double scale = 1.0;
   bool of_moist_air = false;  // true for a mixing ratio per mass of moist air instead of dry air
   bool known_units = true;    // false if the name is recognised but the units cannot be converted
+  MixedWater mixed = MixedWater::kNone;  // the hydrometeors that share the variable
 };
 
 // Returns nothing if the variable is neither a hydrometeor nor extinction.
 std::optional<CfQuantity> QuantityOf(const CfDescription& variable);
 
-// Variables of the state of the air.
-enum class AirVariable { kDensity, kPressure, kTemperature, kPotentialTemperature, kVapour };
+// Variables of the state of the air. A deviation of pressure is that from a reference atmosphere.
+enum class AirVariable {
+  kDensity,
+  kPressure,
+  kPressureDeviation,
+  kTemperature,
+  kPotentialTemperature,
+  kVapour
+};
 
 struct CfAir {
   AirVariable variable = AirVariable::kDensity;

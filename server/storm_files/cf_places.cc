@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -151,10 +152,15 @@ std::optional<Attributes> MappingOf(const netcdf::NetcdfFile& file, const std::s
 }
 
 // Returns the columns of a grid of longitude and latitude.
-ColumnPlaces PlacesInDegrees(const CfAxis& x, const CfAxis& y) {
+ColumnPlaces PlacesInDegrees(const netcdf::NetcdfFile& file, const std::string& field,
+                             const CfAxis& x, const CfAxis& y) {
+  std::string name;
+  const std::optional<Attributes> mapping = MappingOf(file, field, name);
+  std::string earth = mapping.has_value() ? EarthFigureOf(*mapping) : "";
+  if (earth.empty()) earth = absl::StrFormat("+R=%.10g", kCfEarthRadius_m);
   ColumnPlaces places;
   places.columns = {x.cells, y.cells};
-  places.projection = absl::StrFormat("+proj=longlat +R=%.10g +no_defs", kCfEarthRadius_m);
+  places.projection = absl::StrCat("+proj=longlat ", earth, " +no_defs");
   places.step = {x.Spacing(), y.Spacing()};
   places.first = glm::dvec2(x.faces.front(), y.faces.front()) + 0.5 * places.step;
   return places;
@@ -226,11 +232,9 @@ absl::Status MakeColumnsEven(const netcdf::NetcdfFile& file, const ColumnPlaces&
                              CfPlaces& places) {
   absl::StatusOr<EvenColumns> even = MakeEven(columns);
   if (!even.ok()) return base::Annotate(even.status(), file.Path());
-  places.dx_m = even->mean_m.x;
-  places.dy_m = even->mean_m.y;
-  if (std::string sentence = AssumptionOf(*even); !sentence.empty()) {
-    places.assumptions.push_back(std::move(sentence));
-  }
+  places.dx_m = even->ModelSpacing_m().x;
+  places.dy_m = even->ModelSpacing_m().y;
+  std::ranges::copy(AssumptionsOf(*even), std::back_inserter(places.assumptions));
   places.even = std::make_shared<const EvenColumns>(*std::move(even));
   return absl::OkStatus();
 }
@@ -314,7 +318,7 @@ absl::StatusOr<CfPlaces> PlaceColumns(const netcdf::NetcdfFile& file, const std:
                                       const CfDimensions& dimensions, CfAxis& x, CfAxis& y) {
   CfPlaces places;
   if (IsEarthDegrees(file, x, y)) {
-    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, PlacesInDegrees(x, y), places));
+    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, PlacesInDegrees(file, field, x, y), places));
     return places;
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckSameUnits(file, x, y));

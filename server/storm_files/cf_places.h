@@ -17,7 +17,7 @@ namespace thunderhead::storm_files {
 inline constexpr double kCfEarthRadius_m = 6.371e6;
 
 struct CfPlaces {
-  double dx_m = 0.0;  // true distance between neighbouring columns along x, the mean of the domain
+  double dx_m = 0.0;  // distance between neighbouring columns along x (ModelSpacing_m of `even`)
   double dy_m = 0.0;
   // The columns of the storm, even in true metres. Null for an idealised run, whose own columns are
   // even.

@@ -77,6 +77,8 @@ class CfSource final : public LayerSource {
   absl::StatusOr<std::vector<float>> ReadAir(const CfAirField& field) const;
   absl::StatusOr<std::vector<float>> FacesOfArray(const std::vector<float>& terrain_m) const;
   absl::StatusOr<std::vector<float>> HydrostaticFaces(const std::vector<float>& terrain_m);
+  absl::StatusOr<std::vector<float>> LinearFaces() const;
+  absl::Status AddReference(std::vector<float>& pressure_Pa);
 
   const std::shared_ptr<const CfMetadata> shared_metadata_;
   const CfMetadata& metadata_ = *shared_metadata_;
@@ -144,6 +146,25 @@ absl::StatusOr<std::vector<float>> CfSource::HydrostaticFaces(const std::vector<
       face_pressure_Pa, VirtualTemperature_K(Temperature(state), state.vapour_kg_per_kg), ground_m);
 }
 
+// Returns the faces of layers whose heights are linear in one or two surfaces.
+absl::StatusOr<std::vector<float>> CfSource::LinearFaces() const {
+  const CfHeights& heights = metadata_.heights;
+  const std::size_t columns = domain_.Columns();
+  std::vector<float> heights_m;
+  for (const double a_m : heights.a) {
+    heights_m.insert(heights_m.end(), columns, static_cast<float>(a_m));
+  }
+  for (const CfSurfaceTerm& term : heights.surfaces) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> surface_m, ReadColumns(term.surface));
+    for (std::size_t i = 0; i < heights_m.size(); ++i) {
+      const float each_m = surface_m[i % columns];
+      if (std::isnan(each_m)) continue;
+      heights_m[i] += static_cast<float>(term.b[i / columns] * each_m);
+    }
+  }
+  return heights_m;
+}
+
 absl::StatusOr<std::vector<float>> CfSource::InterfaceHeights_m() {
   const CfHeights& heights = metadata_.heights;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> terrain_m, Terrain_m());
@@ -165,16 +186,13 @@ absl::StatusOr<std::vector<float>> CfSource::InterfaceHeights_m() {
       }
       break;
     case CfHeightKind::kAboveGround:
-    case CfHeightKind::kLinear:
       heights_m.resize(faces * columns);
       for (std::size_t i = 0; i < heights_m.size(); ++i) {
-        const std::size_t face = i / columns;
-        const bool linear = heights.kind == CfHeightKind::kLinear;
-        heights_m[i] =
-            static_cast<float>(linear ? heights.a[face] + heights.b[face] * ground_m(i % columns)
-                                      : heights.faces_m[face] + ground_m(i % columns));
+        heights_m[i] = static_cast<float>(heights.faces_m[i / columns] + ground_m(i % columns));
       }
       break;
+    case CfHeightKind::kLinear:
+      return LinearFaces();
   }
   return heights_m;
 }
@@ -186,6 +204,16 @@ absl::StatusOr<std::vector<float>> CfSource::ReadAir(const CfAirField& field) co
   return values;
 }
 
+// Adds the pressure of the reference atmosphere at the middles of the layers.
+absl::Status CfSource::AddReference(std::vector<float>& pressure_Pa) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> faces_m, InterfaceHeights_m());
+  for (std::size_t i = 0; i < pressure_Pa.size(); ++i) {
+    const double middle_m = 0.5 * (faces_m[i] + faces_m[i + domain_.Columns()]);
+    pressure_Pa[i] += static_cast<float>(metadata_.reference->Pressure_Pa(middle_m));
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<LayerState> CfSource::Air() {
   LayerState state;
   for (const CfAirField& field : metadata_.air) {
@@ -195,6 +223,10 @@ absl::StatusOr<LayerState> CfSource::Air() {
         state.air_density_kg_per_m3 = std::move(values);
         break;
       case AirVariable::kPressure:
+        state.pressure_Pa = std::move(values);
+        break;
+      case AirVariable::kPressureDeviation:
+        THUNDERHEAD_RETURN_IF_ERROR(AddReference(values));
         state.pressure_Pa = std::move(values);
         break;
       case AirVariable::kTemperature:
@@ -225,6 +257,12 @@ absl::StatusOr<LayerAmounts> CfSource::Amounts(std::size_t field) {
   const CfField& from = metadata_.fields[field];
   LayerAmounts read;
   THUNDERHEAD_ASSIGN_OR_RETURN(read.amounts, ReadScaled(from.variable, from.quantity.scale));
+  if (from.quantity.mixed == MixedWater::kNone) return read;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LayerState state, Air());
+  const std::vector<float> temperature_K = Temperature(state);
+  for (std::size_t i = 0; i < read.amounts.size(); ++i) {
+    read.amounts[i] *= ShareOf(from.quantity.mixed, from.quantity.hydrometeor, temperature_K[i]);
+  }
   return read;
 }
 
@@ -281,6 +319,7 @@ absl::StatusOr<ModelWind> CfSource::Wind() {
   wind.dx_m = domain_.dx_m;
   wind.dy_m = domain_.dy_m;
   wind.on_faces = false;
+  wind.in_order = !metadata_.dimensions.unstructured;
   wind.east_and_north =
       domain_.even != nullptr && std::ranges::any_of(metadata_.wind, [](const CfWindField& field) {
         return field.wind.variable == WindVariable::kEastward && field.wind.true_east;

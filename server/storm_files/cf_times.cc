@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -230,15 +231,40 @@ absl::StatusOr<std::vector<double>> ReadTimeValues(const netcdf::NetcdfFile& fil
       absl::StrCat(file.Path(), ": the coordinate ", name, " has missing values; fill them in"));
 }
 
+// Returns the forecast_reference_time of each time, or one for all of them. It is empty if the file
+// has none.
+absl::StatusOr<std::vector<absl::Time>> ReadReferenceTimes(const netcdf::NetcdfFile& file,
+                                                           const std::string& dimension) {
+  const auto reference = FindNamed(file, dimension, "forecast_reference_time");
+  if (!reference.has_value()) return std::vector<absl::Time>();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> values, file.ReadDoubles(*reference));
+  auto times = DecodeCfTimes(values, file.TextOrEmpty(*reference, "units"),
+                             file.TextOrEmpty(*reference, "calendar"));
+  if (times.ok()) return times;
+  return base::Annotate(times.status(), absl::StrCat(file.Path(), ": the coordinate ", *reference));
+}
+
+// Returns when the run began. A reference time that cannot be read is reported and left out,
+// because the storm can be shown without it.
+std::optional<absl::Time> RunStartOf(const netcdf::NetcdfFile& file, const std::string& dimension) {
+  const auto references = ReadReferenceTimes(file, dimension);
+  if (!references.ok()) {
+    spdlog::warn("{}", std::string(references.status().message()));
+    return std::nullopt;
+  }
+  if (references->empty() ||
+      std::ranges::adjacent_find(*references, std::not_equal_to<>()) != references->end()) {
+    return std::nullopt;
+  }
+  return references->front();
+}
+
 // Reads times that are the sum of a reference time and a period, as files made from GRIB have them.
 // Returns nothing if the file has no such pair.
 absl::StatusOr<std::optional<std::vector<absl::Time>>> ReadReferenceAndPeriod(
     const netcdf::NetcdfFile& file, const std::string& dimension, std::size_t records) {
-  const auto reference = FindNamed(file, dimension, "forecast_reference_time");
   const auto period = FindNamed(file, dimension, "forecast_period");
-  if (!reference.has_value() || !period.has_value()) {
-    return std::optional<std::vector<absl::Time>>();
-  }
+  if (!period.has_value()) return std::optional<std::vector<absl::Time>>();
   const std::optional<UnitConversion> seconds =
       ConversionOf(file.TextOrEmpty(*period, "units"), "s");
   if (!seconds.has_value()) {
@@ -246,23 +272,43 @@ absl::StatusOr<std::optional<std::vector<absl::Time>>> ReadReferenceAndPeriod(
         absl::StrCat(file.Path(), ": the coordinate ", *period, " has units '",
                      file.TextOrEmpty(*period, "units"), "' where a unit of time is needed"));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<double> from, file.ReadDoubles(*reference));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<absl::Time> times, ReadReferenceTimes(file, dimension));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<double> after, file.ReadDoubles(*period));
-  if (from.size() == 1) from.resize(records, from[0]);
+  if (times.size() == 1) times.resize(records, times[0]);
   if (after.size() == 1) after.resize(records, after[0]);
-  if (from.size() != records || after.size() != records) {
+  if (times.size() != records || after.size() != records) {
     return std::optional<std::vector<absl::Time>>();
   }
-  auto times = DecodeCfTimes(from, file.TextOrEmpty(*reference, "units"),
-                             file.TextOrEmpty(*reference, "calendar"));
-  if (!times.ok()) {
-    return base::Annotate(times.status(),
-                          absl::StrCat(file.Path(), ": the coordinate ", *reference));
-  }
   for (std::size_t i = 0; i < records; ++i) {
-    (*times)[i] += absl::Milliseconds(std::llround((*seconds)(after[i]) / kMillisecond_s));
+    times[i] += absl::Milliseconds(std::llround((*seconds)(after[i]) / kMillisecond_s));
   }
-  return std::optional(*std::move(times));
+  return std::optional(std::move(times));
+}
+
+// Reads times that are written as text, as MPAS writes them ("2013-05-20_18:00:00" in xtime).
+// Returns nothing if the file has none.
+absl::StatusOr<std::optional<std::vector<absl::Time>>> ReadWrittenTimes(
+    const netcdf::NetcdfFile& file, const std::string& dimension, std::size_t records) {
+  constexpr const char* kName = "xtime";
+  constexpr std::size_t kLongest = 1000;  // characters; MPAS has 64
+  const auto on = file.Dimensions(kName);
+  const auto shape = file.Shape(kName);
+  const bool along = on.ok() && shape.ok() && on->size() == 2 && on->front() == dimension &&
+                     shape->front() == records && shape->back() <= kLongest;
+  if (!along) return std::optional<std::vector<absl::Time>>();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> rows, file.ReadRows(kName));
+  std::vector<absl::Time> times;
+  for (const std::string& row : rows) {
+    const std::string text(absl::StripAsciiWhitespace(row));
+    const std::optional<absl::Time> time = ParseDateTime(text);
+    if (!time.has_value()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(file.Path(), ": ", kName, " has the time '", absl::CEscape(text),
+                       "' where one such as 2013-05-20_18:00:00 is needed; correct it"));
+    }
+    times.push_back(*time);
+  }
+  return std::optional(std::move(times));
 }
 
 // Returns the date from which PALM and other models count, if the file gives it apart from the
@@ -286,7 +332,7 @@ void ReportOrder(const std::string& name, CfTimes& read) {
 
 absl::StatusOr<CfTimes> TimesWithoutDate(const netcdf::NetcdfFile& file, std::string reason) {
   spdlog::warn("{}: {}", file.Path(), reason);
-  return CfTimes{{StartWithoutDate()}, {std::move(reason)}};
+  return CfTimes{{StartWithoutDate()}, {std::move(reason)}, {}};
 }
 
 }  // namespace
@@ -332,8 +378,10 @@ absl::StatusOr<CfTimes> ReadCfTimes(const netcdf::NetcdfFile& file, const std::s
   const std::optional<std::string> name = FindTime(file, variable, dimension);
   if (!name.has_value()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(auto times, ReadReferenceAndPeriod(file, dimension, records));
-    if (times.has_value()) return CfTimes{*std::move(times), {}};
-    if (records == 1) return CfTimes{{StartWithoutDate()}, {}};
+    if (times.has_value()) return CfTimes{*std::move(times), {}, RunStartOf(file, dimension)};
+    THUNDERHEAD_ASSIGN_OR_RETURN(times, ReadWrittenTimes(file, dimension, records));
+    if (times.has_value()) return CfTimes{*std::move(times), {}, {}};
+    if (records == 1) return CfTimes{{StartWithoutDate()}, {}, {}};
     return absl::InvalidArgumentError(absl::StrCat(
         file.Path(), ": the dimension ", dimension, " has no coordinate variable ", dimension,
         ", so its times are not known; add one with units such as 'seconds "
@@ -347,6 +395,11 @@ absl::StatusOr<CfTimes> ReadCfTimes(const netcdf::NetcdfFile& file, const std::s
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> values,
                                ReadTimeValues(file, *name, records));
   const std::string calendar = file.TextOrEmpty(*name, "calendar");
+  // MicroHH counts "seconds since start".
+  constexpr absl::string_view kSinceStart = " since start";
+  if (absl::EndsWithIgnoreCase(units, kSinceStart)) {
+    units.resize(units.size() - kSinceStart.size());
+  }
   CfTimes read;
   if (!absl::StrContains(absl::AsciiStrToLower(units), " since ") &&
       !absl::StrContains(units, " as %")) {
@@ -365,6 +418,7 @@ absl::StatusOr<CfTimes> ReadCfTimes(const netcdf::NetcdfFile& file, const std::s
                                      std::string(times.status().message())));
   }
   read.times = *std::move(times);
+  read.run_start = RunStartOf(file, dimension);
   const Calendar known = *CalendarOf(calendar);
   if (known != Calendar::kStandard && known != Calendar::kGregorian) {
     read.assumptions.push_back(absl::StrCat("The dates are those of the file's calendar ",

@@ -2,6 +2,7 @@
 // scalar one, in any calendar of CF.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace thunderhead::storm_files {
 struct CfTimes {
   std::vector<absl::Time> times;         // one for each record; in year 1 if the file has no dates
   std::vector<std::string> assumptions;  // sentences for the user
+  // The forecast_reference_time, which is when the model run began. It is absent if the file has
+  // none, or several.
+  std::optional<absl::Time> run_start;
 };
 
 // Reads the times of a variable. `dimension` is the name of its time dimension, or empty if it has

@@ -98,8 +98,13 @@ std::optional<WrittenDate> TakeDate(Scanner& text) {
   return WrittenDate{before_christ ? -*year : *year, *month, *day, {}};
 }
 
-// Takes a time of day: "18", "18:00" or "18:00:00.5".
-std::optional<absl::Duration> TakeTimeOfDay(Scanner& text) {
+// Takes a time of day: "18", "18:00" or "18:00:00.5", and if `compact` also "1800".
+std::optional<absl::Duration> TakeTimeOfDay(Scanner& text, bool compact) {
+  if (compact && text.Digits() == 4) {
+    const int number = *text.TakeNumber(4);
+    if (number / 100 > 23 || number % 100 > 59) return std::nullopt;
+    return absl::Hours(number / 100) + absl::Minutes(number % 100);
+  }
   const std::optional<int> hour = text.TakeNumber(2);
   if (!hour.has_value() || *hour > 23) return std::nullopt;
   absl::Duration time = absl::Hours(*hour);
@@ -142,7 +147,7 @@ std::optional<WrittenDate> ParseForm(std::string_view text, bool as_udunits) {
   if (!has_clock && scanner.TakeBlanks()) has_clock = scanner.Digits() > 0;
   bool after_blanks = false;
   if (has_clock) {
-    const std::optional<absl::Duration> clock = TakeTimeOfDay(scanner);
+    const std::optional<absl::Duration> clock = TakeTimeOfDay(scanner, as_udunits);
     if (!clock.has_value()) return std::nullopt;
     date->since_midnight = *clock;
     after_blanks = scanner.TakeBlanks();

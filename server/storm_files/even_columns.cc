@@ -13,6 +13,7 @@
 #include "base/status.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
+#include "glm/gtc/constants.hpp"
 #include "glm/trigonometric.hpp"
 #include "storm_files/column_raster.h"
 #include "storm_files/model_columns.h"
@@ -31,6 +32,9 @@ constexpr int kSamples = 65;
 // A latitude or longitude that is stored as a float is known to a metre. Distances between such
 // places are measured over this length.
 constexpr double kMeasured_m = 4000.0;
+
+double Least(const glm::dvec2& each) { return std::min(each.x, each.y); }
+double Largest(const glm::dvec2& each) { return std::max(each.x, each.y); }
 
 absl::Status BeyondTheMap() {
   return absl::InvalidArgumentError(
@@ -61,6 +65,15 @@ struct Distances {
   }
 };
 
+// A map on which the columns of a wide domain can be.
+struct WideMap {
+  std::string projection;
+  double least_scale = 1.0;
+  double largest_scale = 1.0;
+
+  double Error() const { return std::max(largest_scale - 1.0, 1.0 - least_scale); }
+};
+
 // Returns a stereographic projection whose scale is true at `middle`.
 std::string StereographicAt(const EarthPlace& middle, const std::string& earth) {
   return absl::StrFormat(
@@ -71,34 +84,36 @@ std::string StereographicAt(const EarthPlace& middle, const std::string& earth) 
 class Evener {
  public:
   Evener(const ModelColumns& model, const EarthPlace& middle, MapProjection local)
-      : model_(model), middle_(middle), local_(std::move(local)) {
-    const volume::EarthFigure figure = local_.Figure();
-    const double flattening =
-        figure.inverse_flattening > 0.0 ? 1.0 / figure.inverse_flattening : 0.0;
-    earth_m_ = figure.semi_major_m * (1.0 - flattening / 3.0);
-  }
+      : model_(model), middle_(middle), local_(std::move(local)), earth_(local_.Figure()) {}
 
   absl::StatusOr<EvenColumns> Make(const EvenOptions& options);
 
  private:
   double Distance_m(const EarthPlace& a, const EarthPlace& b) const {
-    return GreatCircle_m(a, b, earth_m_);
+    return ShortDistance_m(a, b, earth_);
   }
+  template <typename Visit>
+  absl::Status VisitSteps(int axis, Visit visit) const;
   absl::StatusOr<Distances> Measure(int axis) const;
+  absl::Status MeasureScale(WideMap& wide) const;
   int Span(int axis) const;
   absl::StatusOr<double> GridNorth_rad() const;
-  std::optional<std::string> EvenProjection(const EvenColumns& even) const;
-  bool Fits(const std::string& projection, const EvenColumns& even) const;
+  glm::dvec2 StepOn(const MapProjection& map, int axis) const;
+  std::string TrueAtMiddle(const std::string& projection) const;
+  absl::Status Keep(const std::string& projection, EvenColumns& even) const;
+  bool KeepIfEven(EvenColumns& even) const;
   absl::StatusOr<double> Reach_m() const;
+  std::vector<WideMap> ConformalMaps() const;
+  absl::Status MakeWide(EvenColumns& even) const;
   absl::StatusOr<ColumnMesh> MeshOn(const MapProjection& map, const EvenColumns& even) const;
   void ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m, EvenColumns& even) const;
   static absl::StatusOr<EvenColumns> Follow(const EvenColumns& like, EvenColumns even);
-  absl::Status Resample(const EvenOptions& options, EvenColumns& even) const;
+  absl::Status Resample(const EvenColumns* like, EvenColumns& even) const;
 
   const ModelColumns& model_;
   const EarthPlace middle_;
   const MapProjection local_;  // stereographic around the middle
-  double earth_m_ = 0.0;       // mean radius of the Earth
+  const volume::EarthFigure earth_;
 };
 
 // Returns the number of columns over which the distance between neighbours is measured.
@@ -112,15 +127,15 @@ int Evener::Span(int axis) const {
   return static_cast<int>(std::clamp(span, 1.0, model_.Count()[axis] - 1.0));
 }
 
-absl::StatusOr<Distances> Evener::Measure(int axis) const {
+// Calls `visit` with two places `span` columns apart along an axis, and with that span, all over
+// the domain.
+template <typename Visit>
+absl::Status Evener::VisitSteps(int axis, Visit visit) const {
   const int span = Span(axis);
   const int other = 1 - axis;
   const bool whole = !model_.IsProjected();
   const glm::ivec2& count = model_.Count();
   const double first = whole ? 0.0 : -0.5;
-  Distances distances;
-  double sum_m = 0.0;
-  int samples = 0;
   for (const double across : Spread(0.0, count[other] - 1.0, count[other], whole)) {
     for (const double along :
          Spread(first, first + count[axis] - (whole ? 1.0 + span : 1.0), count[axis], whole)) {
@@ -132,25 +147,54 @@ absl::StatusOr<Distances> Evener::Measure(int axis) const {
       const std::optional<EarthPlace> a = model_.PlaceAt(from);
       const std::optional<EarthPlace> b = model_.PlaceAt(to);
       if (!a.has_value() || !b.has_value()) return BeyondTheMap();
-      const double distance_m = Distance_m(*a, *b) / span;
-      if (!std::isfinite(distance_m)) return BeyondTheMap();
-      distances.shortest_m = std::min(distances.shortest_m, distance_m);
-      distances.longest_m = std::max(distances.longest_m, distance_m);
-      sum_m += distance_m;
-      ++samples;
-      const std::optional<glm::dvec2> from_m = local_.WorldOf(*a);
-      const std::optional<glm::dvec2> to_m = local_.WorldOf(*b);
-      if (!from_m.has_value() || !to_m.has_value()) continue;
-      const glm::dvec2 way_m = *to_m - *from_m;
-      const double turn = axis == 0 ? std::atan2(way_m.y, way_m.x) : std::atan2(-way_m.x, way_m.y);
-      distances.largest_turn = std::max(distances.largest_turn, std::abs(turn));
+      visit(*a, *b, span);
     }
   }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<Distances> Evener::Measure(int axis) const {
+  Distances distances;
+  double sum_m = 0.0;
+  int samples = 0;
+  const auto measure = [&](const EarthPlace& a, const EarthPlace& b, int span) {
+    const double distance_m = Distance_m(a, b) / span;
+    distances.shortest_m = std::min(distances.shortest_m, distance_m);
+    distances.longest_m = std::max(distances.longest_m, distance_m);
+    sum_m += distance_m;
+    ++samples;
+    const std::optional<glm::dvec2> from_m = local_.WorldOf(a);
+    const std::optional<glm::dvec2> to_m = local_.WorldOf(b);
+    if (!from_m.has_value() || !to_m.has_value()) return;
+    const glm::dvec2 way_m = *to_m - *from_m;
+    const double turn = axis == 0 ? std::atan2(way_m.y, way_m.x) : std::atan2(-way_m.x, way_m.y);
+    distances.largest_turn = std::max(distances.largest_turn, std::abs(turn));
+  };
+  THUNDERHEAD_RETURN_IF_ERROR(VisitSteps(axis, measure));
   distances.mean_m = sum_m / samples;
+  if (!std::isfinite(distances.mean_m)) return BeyondTheMap();
   if (distances.mean_m > 0.0) return distances;
   return absl::InvalidArgumentError(
       absl::StrCat("all columns along ", axis == 0 ? "x" : "y",
                    " are at the same place; correct their latitudes and longitudes"));
+}
+
+// Measures lengths on a map that has no edge within the domain.
+absl::Status Evener::MeasureScale(WideMap& wide) const {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection map, MapProjection::Open(wide.projection));
+  bool is_on_map = true;
+  const auto measure = [&](const EarthPlace& a, const EarthPlace& b, int /*span*/) {
+    const std::optional<glm::dvec2> from_m = map.WorldOf(a);
+    const std::optional<glm::dvec2> to_m = map.WorldOf(b);
+    const double distance_m = Distance_m(a, b);
+    is_on_map = is_on_map && from_m.has_value() && to_m.has_value();
+    if (!is_on_map || distance_m == 0.0) return;
+    const double scale = glm::distance(*from_m, *to_m) / distance_m;
+    wide.least_scale = std::min(wide.least_scale, scale);
+    wide.largest_scale = std::max(wide.largest_scale, scale);
+  };
+  for (const int axis : {0, 1}) THUNDERHEAD_RETURN_IF_ERROR(VisitSteps(axis, measure));
+  return is_on_map ? absl::OkStatus() : BeyondTheMap();
 }
 
 absl::StatusOr<double> Evener::GridNorth_rad() const {
@@ -166,39 +210,86 @@ absl::StatusOr<double> Evener::GridNorth_rad() const {
   return std::atan2(-way_m.x, way_m.y);
 }
 
-// Returns whether the model's columns are at multiples of the distances in the plane of
-// `projection`. They are compared at the corners of the domain.
-bool Evener::Fits(const std::string& projection, const EvenColumns& even) const {
-  const absl::StatusOr<MapProjection> map = MapProjection::Open(projection);
-  if (!map.ok()) return false;
-  const std::optional<glm::dvec2> middle_m = map->WorldOf(middle_);
-  if (!middle_m.has_value()) return false;
-  const glm::dvec2 half = 0.5 * glm::dvec2(model_.Count());
-  for (const glm::dvec2 side :
-       {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(-1, 1), glm::dvec2(1, 1)}) {
-    const glm::dvec2 offset_m = side * half * glm::dvec2(even.dx_m, even.dy_m);
-    const std::optional<EarthPlace> computed = map->PlaceOf(*middle_m + offset_m);
-    const std::optional<EarthPlace> actual = model_.PlaceAt(model_.MiddlePosition() + side * half);
-    if (!computed.has_value() || !actual.has_value()) return false;
-    const double off_m = Distance_m(*computed, *actual);
-    if (!(off_m <= kEven * glm::length(offset_m))) return false;
-  }
-  return true;
+// Returns the way from column to column along an axis, in the middle of the domain and in the plane
+// of `map`. It is NaN if the middle is not on the map.
+glm::dvec2 Evener::StepOn(const MapProjection& map, int axis) const {
+  glm::dvec2 half(0.0);
+  half[axis] = 0.5;
+  const std::optional<EarthPlace> from = model_.PlaceAt(model_.MiddlePosition() - half);
+  const std::optional<EarthPlace> to = model_.PlaceAt(model_.MiddlePosition() + half);
+  const auto plane_m = [&](const std::optional<EarthPlace>& place) {
+    const std::optional<glm::dvec2> at_m = place.has_value() ? map.WorldOf(*place) : std::nullopt;
+    return at_m.value_or(glm::dvec2(std::nan("")));
+  };
+  return plane_m(to) - plane_m(from);
 }
 
-// Returns the projection in which the model's own columns are even, or nothing if they are not.
-std::optional<std::string> Evener::EvenProjection(const EvenColumns& even) const {
-  if (!model_.IsProjected()) {
-    std::string projection = StereographicAt(middle_, model_.Earth());
-    return Fits(projection, even) ? std::optional(std::move(projection)) : std::nullopt;
-  }
-  if (Fits(model_.Projection(), even)) return model_.Projection();
-  const ProjectionWords words(model_.Projection());
+// Returns a projection whose scale is true at the middle of the domain, and which otherwise equals
+// that of the model.
+std::string Evener::TrueAtMiddle(const std::string& projection) const {
+  const ProjectionWords words(projection);
   const double y_deg =
       words.Number("lat_0").value_or(0.0) +
       glm::degrees(model_.PlaneAt(model_.MiddlePosition()).y / words.Number("R").value_or(1.0));
-  std::string scaled = WithTrueScaleAt(model_.Projection(), middle_, y_deg);
-  return Fits(scaled, even) ? std::optional(std::move(scaled)) : std::nullopt;
+  std::string scaled = WithTrueScaleAt(projection, middle_, y_deg);
+  if (scaled != projection || !IsConformal(words)) return scaled;
+  // Without a latitude of true scale, the projection has a factor.
+  ProjectionWords unscaled = words;
+  for (const char* const name : {"k", "k_0", "lat_ts"}) unscaled.Remove(name);
+  const absl::StatusOr<MapProjection> map = MapProjection::Open(unscaled.Joined());
+  if (!map.ok()) return projection;
+  const double true_m = glm::length(StepOn(local_, 0));
+  unscaled.Set("k_0", true_m / glm::length(StepOn(*map, 0)));
+  return unscaled.Joined();
+}
+
+// Keeps the model's own columns, which are even in the plane of `projection`. INVALID_ARGUMENT if
+// they are not: a column would be a quarter of a column from its place.
+absl::Status Evener::Keep(const std::string& projection, EvenColumns& even) const {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection map, MapProjection::Of(projection, middle_));
+  even.columns = model_.Count();
+  if (model_.IsProjected()) {
+    even.dx_m = StepOn(map, 0).x;
+    even.dy_m = StepOn(map, 1).y;
+  } else {
+    even.dx_m = even.mean_m.x;
+    even.dy_m = even.mean_m.y;
+  }
+  even.projection = projection;
+  const glm::dvec2 spacing_m(even.dx_m, even.dy_m);
+  even.least_scale = std::min(1.0, Least(spacing_m / even.longest_m));
+  even.largest_scale = std::max(1.0, Largest(spacing_m / even.shortest_m));
+  even.largest_error = std::max(even.largest_scale - 1.0, 1.0 - even.least_scale);
+  // Columns that were given one by one are known to a few metres. A grid may end at a pole.
+  constexpr double kRounding_m = 4.0;
+  constexpr double kNearEdge = 0.98;
+  const double most_m = std::max(kRounding_m, 0.25 * Least(spacing_m));
+  const glm::dvec2 half = kNearEdge * model_.MiddlePosition();
+  for (const glm::dvec2 side :
+       {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(-1, 1), glm::dvec2(1, 1)}) {
+    const std::optional<EarthPlace> computed = map.PlaceOf(side * half * spacing_m);
+    const std::optional<EarthPlace> actual = model_.PlaceAt(model_.MiddlePosition() + side * half);
+    if (!computed.has_value() || !actual.has_value()) return BeyondTheMap();
+    if (!(Distance_m(*computed, *actual) <= most_m)) {
+      return absl::InvalidArgumentError("the columns are not even on the map");
+    }
+  }
+  return absl::OkStatus();
+}
+
+// Keeps the model's own columns if they are even in a projection whose lengths are true. Returns
+// false if they are not.
+bool Evener::KeepIfEven(EvenColumns& even) const {
+  const auto keep = [&](const std::string& projection) {
+    EvenColumns kept = even;
+    if (!Keep(projection, kept).ok()) return false;
+    const glm::dvec2 off = glm::abs(glm::dvec2(kept.dx_m, kept.dy_m) / kept.mean_m - 1.0);
+    if (!(Largest(off) <= kEven) || kept.IsTooWide()) return false;
+    even = std::move(kept);
+    return true;
+  };
+  if (!model_.IsProjected()) return keep(StereographicAt(middle_, model_.Earth()));
+  return keep(model_.Projection()) || keep(TrueAtMiddle(model_.Projection()));
 }
 
 // Returns the distance of the middle from the farthest edge of the domain.
@@ -208,10 +299,80 @@ absl::StatusOr<double> Evener::Reach_m() const {
     for (const double y : Spread(-0.5, model_.Count().y - 0.5, model_.Count().y + 1, false)) {
       const std::optional<EarthPlace> place = model_.PlaceAt({x, y});
       if (!place.has_value()) return BeyondTheMap();
-      reach_m = std::max(reach_m, Distance_m(middle_, *place));
+      reach_m = std::max(reach_m, GreatCircle_m(middle_, *place, MeanRadius_m(earth_)));
     }
   }
   return reach_m;
+}
+
+// Returns conformal projections with north up and true scale at the middle, without those that have
+// an edge within the domain.
+std::vector<WideMap> Evener::ConformalMaps() const {
+  double south_deg = middle_.latitude_deg;
+  double north_deg = middle_.latitude_deg;
+  const auto extend = [&](const EarthPlace& from, const EarthPlace& to, int /*span*/) {
+    south_deg = std::min({south_deg, from.latitude_deg, to.latitude_deg});
+    north_deg = std::max({north_deg, from.latitude_deg, to.latitude_deg});
+  };
+  if (!VisitSteps(1, extend).ok()) return {};
+  const std::string rest = absl::StrFormat(" +lon_0=%.10g +x_0=0 +y_0=0 %s +units=m +no_defs",
+                                           middle_.longitude_deg, model_.Earth());
+  std::vector<std::string> projections = {StereographicAt(middle_, model_.Earth())};
+  // A cone touches the Earth between the domain's south and north (Snyder, page 107), and is not
+  // nearly a plane or a cylinder.
+  constexpr double kFarthest_deg = 80.0;
+  constexpr double kNearest_deg = 5.0;
+  constexpr double kShare = 1.0 / 6.0;
+  const double touches_deg = 0.5 * (south_deg + north_deg);
+  if (std::max(-south_deg, north_deg) < kFarthest_deg) {
+    projections.push_back(absl::StrFormat("+proj=merc +lat_ts=%.10g", middle_.latitude_deg) + rest);
+    if (std::abs(touches_deg) > kNearest_deg) {
+      const std::string lambert =
+          absl::StrFormat("+proj=lcc +lat_1=%.10g +lat_2=%.10g +lat_0=%.10g",
+                          glm::mix(south_deg, north_deg, kShare),
+                          glm::mix(north_deg, south_deg, kShare), middle_.latitude_deg);
+      projections.push_back(WithTrueScaleAt(lambert + rest, middle_, 0.0));
+    }
+  }
+  std::vector<WideMap> maps;
+  for (std::string& projection : projections) {
+    WideMap map{std::move(projection)};
+    if (MeasureScale(map).ok()) maps.push_back(std::move(map));
+  }
+  return maps;
+}
+
+// Makes the columns of a domain on which no flat map has true distances everywhere.
+absl::Status Evener::MakeWide(EvenColumns& even) const {
+  constexpr double kGoodMap = 0.2;
+  const bool is_map = model_.IsProjected();
+  EvenColumns kept = even;
+  const absl::Status keeps = is_map ? Keep(TrueAtMiddle(model_.Projection()), kept)
+                                    : absl::InvalidArgumentError("the columns have no map");
+  const bool is_conformal = is_map && IsConformal(ProjectionWords(model_.Projection()));
+  if (keeps.ok() && is_conformal && kept.largest_error <= kGoodMap) {
+    even = std::move(kept);
+    return absl::OkStatus();
+  }
+  const double quarter_m = glm::half_pi<double>() * MeanRadius_m(earth_);
+  const std::vector<WideMap> maps =
+      even.reach_m < quarter_m ? ConformalMaps() : std::vector<WideMap>();
+  const auto best = std::ranges::min_element(maps, {}, &WideMap::Error);
+  if (keeps.ok() && (best == maps.end() || (is_conformal && kept.largest_error <= best->Error()))) {
+    even = std::move(kept);
+    return absl::OkStatus();
+  }
+  if (best == maps.end()) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "the domain reaches %.0f km from its middle, and no flat map of it is of use; cut a region "
+        "of at most %.0f km from its middle to its corners",
+        even.reach_m / 1e3, quarter_m / 1e3));
+  }
+  even.projection = best->projection;
+  even.least_scale = best->least_scale;
+  even.largest_scale = best->largest_scale;
+  even.largest_error = best->Error();
+  return Resample(nullptr, even);
 }
 
 // Returns the positions of the model's columns on a map. Between columns of a projection that are
@@ -281,33 +442,25 @@ void Evener::ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m,
     constexpr double kLeastStep = 1.001;
     spacing_m *= std::max(std::sqrt(count.x * count.y / most), kLeastStep);
   }
+  // Around the middle of a domain with north up, the columns are then those of the model, and
+  // interpolation smooths little there.
   even.columns = glm::ivec2(columns());
+  even.columns += (even.columns + model_.Count()) % 2;
   even.dx_m = spacing_m.x;
   even.dy_m = spacing_m.y;
 }
 
-absl::Status Evener::Resample(const EvenOptions& options, EvenColumns& even) const {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const double reach_m, Reach_m());
-  // The scale of a stereographic projection at an angle c from its centre is 1 / cos(c / 2)^2.
-  const double cosine = std::cos(0.5 * reach_m / earth_m_);
-  even.largest_error = 1.0 / (cosine * cosine) - 1.0;
-  if (!(even.largest_error <= options.largest_error)) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "the domain reaches %.0f km from its middle, so distances on a flat grid would be wrong by "
-        "up to %.1f %%; cut a region of at most %.0f km from its middle to its corners",
-        reach_m / 1e3, 100.0 * even.largest_error,
-        2e-3 * earth_m_ * std::acos(1.0 / std::sqrt(1.0 + options.largest_error))));
-  }
-  const bool follows = options.like != nullptr;
-  even.projection = follows ? options.like->projection : StereographicAt(middle_, model_.Earth());
+// Resamples the columns to a grid in the projection of `even`, or to that of another time.
+absl::Status Evener::Resample(const EvenColumns* like, EvenColumns& even) const {
+  if (like != nullptr) even.projection = like->projection;
   THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection map, MapProjection::Open(even.projection));
   const std::optional<glm::dvec2> middle_m = map.WorldOf(middle_);
   if (!middle_m.has_value()) return BeyondTheMap();
   THUNDERHEAD_ASSIGN_OR_RETURN(const ColumnMesh mesh, MeshOn(map, even));
-  if (follows) {
-    even.columns = options.like->columns;
-    even.dx_m = options.like->dx_m;
-    even.dy_m = options.like->dy_m;
+  if (like != nullptr) {
+    even.columns = like->columns;
+    even.dx_m = like->dx_m;
+    even.dy_m = like->dy_m;
   } else {
     ChooseGrid(mesh, *middle_m, even);
   }
@@ -326,10 +479,12 @@ absl::Status Evener::Resample(const EvenOptions& options, EvenColumns& even) con
 // Gives the columns the distances and the projection of `like`, whose columns are even.
 absl::StatusOr<EvenColumns> Evener::Follow(const EvenColumns& like, EvenColumns even) {
   const glm::dvec2 like_m(like.dx_m, like.dy_m);
-  const glm::dvec2 errors = glm::max(like_m / even.shortest_m - 1.0, 1.0 - like_m / even.longest_m);
-  even.largest_error = std::max(errors.x, errors.y);
+  even.least_scale = std::min(1.0, Least(like_m / even.longest_m));
+  even.largest_scale = std::max(1.0, Largest(like_m / even.shortest_m));
+  even.largest_error = std::max(even.largest_scale - 1.0, 1.0 - even.least_scale);
   constexpr double kMost = 0.01;
-  if (!(even.largest_error <= kMost) || like.model_columns != even.model_columns) {
+  const double most = like.IsTooWide() ? like.largest_error + kMost : kMost;
+  if (!(even.largest_error <= most) || like.model_columns != even.model_columns) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "the columns are %.0f m by %.0f m apart on average, and %.0f m by %.0f m at the first "
         "time; read the times as separate storms",
@@ -355,21 +510,44 @@ absl::StatusOr<EvenColumns> Evener::Make(const EvenOptions& options) {
   // Columns without a projection must also be at right angles, with north up.
   const bool upright = model_.IsProjected() || std::max(x.largest_turn, y.largest_turn) <= kEven;
   if (options.like != nullptr && !options.like->Resampled()) return Follow(*options.like, even);
-  if (x.AreEven() && y.AreEven() && upright && options.like == nullptr) {
-    even.columns = model_.Count();
-    even.dx_m = x.mean_m;
-    even.dy_m = y.mean_m;
-    const auto error = [](const Distances& each) {
-      return std::max(each.longest_m / each.mean_m - 1.0, 1.0 - each.shortest_m / each.mean_m);
-    };
-    even.largest_error = std::max(error(x), error(y));
-    if (std::optional<std::string> projection = EvenProjection(even); projection.has_value()) {
-      even.projection = *std::move(projection);
-      return even;
-    }
+  if (x.AreEven() && y.AreEven() && upright && options.like == nullptr && KeepIfEven(even)) {
+    return even;
   }
-  THUNDERHEAD_RETURN_IF_ERROR(Resample(options, even));
+  THUNDERHEAD_ASSIGN_OR_RETURN(even.reach_m, Reach_m());
+  // The scale of a stereographic projection at an angle c from its centre is 1 / cos(c / 2)^2.
+  const double cosine = std::cos(0.5 * even.reach_m / MeanRadius_m(earth_));
+  even.largest_scale = 1.0 / (cosine * cosine);
+  even.largest_error = even.largest_scale - 1.0;
+  if (options.like == nullptr && even.IsTooWide()) {
+    THUNDERHEAD_RETURN_IF_ERROR(MakeWide(even));
+  } else {
+    even.projection = StereographicAt(middle_, model_.Earth());
+    THUNDERHEAD_RETURN_IF_ERROR(Resample(options.like, even));
+  }
   return even;
+}
+
+// Returns "The columns were resampled to even distances of ...".
+std::string ResampledSentence(const EvenColumns& even) {
+  const std::string dx = absl::StrFormat("%.0f m", even.dx_m);
+  const std::string dy = absl::StrFormat("%.0f m", even.dy_m);
+  const auto range = [&](int axis) {
+    return absl::StrFormat("%.0f to %.0f m", even.shortest_m[axis], even.longest_m[axis]);
+  };
+  const std::string ranges = range(0) == range(1)
+                                 ? range(0)
+                                 : absl::StrCat(range(0), " along x and ", range(1), " along y");
+  return absl::StrCat("The columns were resampled to even distances of ",
+                      dx == dy ? dx : absl::StrCat(dx, " by ", dy),
+                      ", because the true distances between the model's columns are ", ranges, ".");
+}
+
+// Returns a scale in percent, rounded away from 100 to a tenth.
+std::string PercentText(double scale) {
+  constexpr double kBeyondUse = 10.0;
+  if (!(scale <= kBeyondUse)) return "more than 1000 %";
+  const double tenths = 1000.0 * scale;
+  return absl::StrFormat("%.1f %%", 0.1 * (scale < 1.0 ? std::floor(tenths) : std::ceil(tenths)));
 }
 
 }  // namespace
@@ -383,19 +561,17 @@ absl::StatusOr<EvenColumns> MakeEven(const ColumnPlaces& places, const EvenOptio
   return Evener(model, *middle, std::move(local)).Make(options);
 }
 
-std::string AssumptionOf(const EvenColumns& even) {
-  if (!even.Resampled()) return "";
-  const std::string dx = absl::StrFormat("%.0f m", even.dx_m);
-  const std::string dy = absl::StrFormat("%.0f m", even.dy_m);
-  const auto range = [&](int axis) {
-    return absl::StrFormat("%.0f to %.0f m", even.shortest_m[axis], even.longest_m[axis]);
-  };
-  const std::string ranges = range(0) == range(1)
-                                 ? range(0)
-                                 : absl::StrCat(range(0), " along x and ", range(1), " along y");
-  return absl::StrCat("The columns were resampled to even distances of ",
-                      dx == dy ? dx : absl::StrCat(dx, " by ", dy),
-                      ", because the true distances between the model's columns are ", ranges, ".");
+std::vector<std::string> AssumptionsOf(const EvenColumns& even) {
+  std::vector<std::string> sentences;
+  if (even.Resampled()) sentences.push_back(ResampledSentence(even));
+  if (even.IsTooWide()) {
+    sentences.push_back(absl::StrFormat(
+        "The domain reaches %.0f km from its middle, and no flat map of it has true distances "
+        "everywhere: distances on the map are true in the middle, and %s to %s of the true ones "
+        "elsewhere.",
+        even.reach_m / 1e3, PercentText(even.least_scale), PercentText(even.largest_scale)));
+  }
+  return sentences;
 }
 
 }  // namespace thunderhead::storm_files

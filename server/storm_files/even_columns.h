@@ -43,7 +43,8 @@ struct FromColumn {
                                  // the other members describe the nearest place inside.
 };
 
-// Columns whose distances are `dx_m` and `dy_m` everywhere, to `largest_error`.
+// Columns whose distances are `dx_m` and `dy_m` on a flat map. They are true distances everywhere
+// to 1 %, or if the domain is too wide for that, to `largest_error`.
 struct EvenColumns {
   glm::ivec2 columns{0};
   double dx_m = 0.0;
@@ -51,8 +52,11 @@ struct EvenColumns {
   // The projection in which the columns are even, in PROJ's notation, with true scale at the
   // middle. Its y axis is the columns' y axis.
   std::string projection;
-  volume::EarthPlace middle;    // the middle of the model's domain and of the even columns
-  double largest_error = 0.0;   // of the distance between neighbouring columns, as a share of it
+  volume::EarthPlace middle;   // the middle of the model's domain and of the even columns
+  double reach_m = 0.0;        // distance from the middle to the farthest edge; 0 if not measured
+  double least_scale = 1.0;    // lengths on the map as a share of the true ones: the least share in
+  double largest_scale = 1.0;  // the domain, and the largest
+  double largest_error = 0.0;  // the larger deviation of these shares from 1
   glm::ivec2 model_columns{0};  // the number of the model's own columns
   glm::dvec2 shortest_m{0.0};   // the true distances between the model's columns along its own x
   glm::dvec2 longest_m{0.0};    // and y axes: the shortest, the longest
@@ -67,27 +71,34 @@ struct EvenColumns {
   std::vector<float> model_areas;
 
   bool Resampled() const { return !from.empty(); }
+  // Returns whether no flat map has true distances in the whole domain.
+  bool IsTooWide() const { return largest_error > 0.01; }
+  // Returns the distances between the model's own columns, or their means if they are resampled.
+  glm::dvec2 ModelSpacing_m() const { return Resampled() ? mean_m : glm::dvec2(dx_m, dy_m); }
 };
 
 struct EvenOptions {
-  // The largest error that is accepted for resampled columns. Distances in one plane are right to
-  // 1 % up to about 1270 km from its middle.
-  double largest_error = 0.01;
   // If set, resampled columns get its projection, number and distances. It describes another time
   // of a domain that moves.
   const EvenColumns* like = nullptr;
 };
 
-// Returns columns that are even in true metres. If the distances between all neighbouring columns,
-// along x and along y, are within 0.5 % of their means, the model's columns stay as they are.
-// Otherwise the even columns are a grid with north up in a stereographic projection whose centre is
-// the middle of the model's domain. Its columns are as far apart as the model's are on average, or
-// farther if there would be more than twice as many. INVALID_ARGUMENT if the places are not usable,
-// or if the domain is too large for the accepted error.
+// Returns columns that are even in true metres.
+// - If the distances between all neighbouring columns, along x and along y, are within 0.5 % of
+//   their means, the model's columns stay as they are.
+// - Otherwise the even columns are a grid with north up in a stereographic projection whose centre
+//   is the middle of the model's domain. Its columns are as far apart as the model's are on
+//   average, or farther if there would be more than twice as many.
+// - Distances on one flat map are right to 1 % up to about 1270 km from its middle. The columns of
+//   a wider domain stay on the model's map if that is conformal and its distances are right to
+//   20 %. Otherwise they are resampled to the conformal map with the smallest errors. If the domain
+//   is wider than a hemisphere, the model's map is the only one.
+// INVALID_ARGUMENT if the places are not usable, or if a domain wider than a hemisphere has no map.
 absl::StatusOr<EvenColumns> MakeEven(const ColumnPlaces& places, const EvenOptions& options = {});
 
-// Returns a sentence for users that says what was done with the model's columns. It is empty if
-// they were not resampled.
-std::string AssumptionOf(const EvenColumns& even);
+// Returns sentences for users that say what was done with the model's columns, and how far
+// distances are from true ones. It is empty if the columns are as the model has them, with true
+// distances.
+std::vector<std::string> AssumptionsOf(const EvenColumns& even);
 
 }  // namespace thunderhead::storm_files

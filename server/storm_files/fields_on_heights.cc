@@ -389,7 +389,7 @@ absl::Status TimeReader::ReadMotion(volume::HydrometeorFields& result) {
   THUNDERHEAD_RETURN_IF_ERROR(Advance());
   THUNDERHEAD_ASSIGN_OR_RETURN(const ModelWind wind, source_.Wind());
   if (!wind.u_m_per_s.empty()) {
-    if (energy.variable.empty()) {
+    if (energy.variable.empty() && wind.in_order) {
       energy.energy_m2_per_s2 = EnergyOfDeformation(WindInCells(wind, air_.interface_height_m));
       motion.source = volume::TurbulenceSource::kDeformation;
     }

@@ -5,6 +5,7 @@
 #include "base/status.h"
 #include "grib/decompressed.h"
 #include "grib/index.h"
+#include "grib/listing.h"
 #include "grib/values.h"
 #include "storm_files/grib_parts.h"
 #include "storm_files/grib_storm.h"
@@ -22,6 +23,13 @@ class GribFormat final : public StormFormat {
     // A netCDF file that was made from GRIB names it in attributes.
     if (netcdf::NetcdfFile::BeginsLikeNetcdf(start)) return false;
     return grib::BeginsLikeGrib(start) || grib::BeginsCompressed(start);
+  }
+
+  // The listing of a compressed file has offsets in the plain one.
+  absl::Status CheckNeighbours(const std::string& path, std::string_view start,
+                               std::uint64_t size_bytes) const override {
+    if (!grib::BeginsLikeGrib(start)) return absl::OkStatus();
+    return grib::CheckListing(path, size_bytes);
   }
 
   absl::Status PrepareBeforeConfinement() const override {

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -93,10 +94,14 @@ class Finder {
   absl::Status ShareLevels(std::vector<Found>& needed, std::size_t amounts, GribLayers& layers);
   absl::Status ShareModelLevels(const std::vector<Found>& needed, const std::set<double>& all,
                                 GribLayers& layers);
+  std::set<double> LevelsOfState(absl::Time time) const;
+  absl::Status CheckLastLevel(const GribLayers& layers) const;
   absl::Status FindHeights(absl::Time time, GribLayers& layers);
   absl::Status FindIsobaricHeights(absl::Time time, GribLayers& layers);
   absl::Status FindHydrostatic(absl::Time time, GribLayers& layers);
   absl::Status FindHalfHeights(GribLayers& layers);
+  GribSeries Optional(const Found& found, const std::vector<double>& levels,
+                      const GribLayers& layers);
   absl::Status FindSurface(absl::Time time, GribLayers& layers);
   absl::Status FindMotion(absl::Time time, GribLayers& layers);
 
@@ -132,9 +137,6 @@ class Finder {
     if (std::ranges::find(all, sentence) == all.end()) all.push_back(std::move(sentence));
   }
   GribSeries Series(const Found& found, const std::vector<double>& levels) const;
-  static bool Covers(const Found& found, const std::vector<double>& levels) {
-    return std::ranges::all_of(levels, [&](double level) { return found.levels.contains(level); });
-  }
 
   const GribIndexes& files_;
   GribContents contents_;
@@ -331,6 +333,22 @@ absl::Status Finder::FindState(absl::Time time, std::vector<Found>& needed) {
   return absl::OkStatus();
 }
 
+// Returns the levels of temperature, humidity, pressure and heights at `time`. If a file was cut
+// short between two messages, these may have more levels than the hydrometeors.
+std::set<double> Finder::LevelsOfState(absl::Time time) const {
+  constexpr std::array kState = {GribKind::kTemperature,       GribKind::kSpecificHumidity,
+                                 GribKind::kVapourRatio,       GribKind::kRelativeHumidity,
+                                 GribKind::kPressure,          GribKind::kGeometricHeight,
+                                 GribKind::kGeopotentialHeight};
+  std::set<double> levels;
+  for (const Candidate& candidate : candidates_) {
+    if (std::ranges::find(kState, candidate.meaning.kind) == kState.end()) continue;
+    const grib::Field& field = candidate.Field();
+    if (IsOnLevel(field, false) && field.Valid() == time) levels.insert(field.first.value);
+  }
+  return levels;
+}
+
 // Model levels must be complete, because each is a part of the column.
 absl::Status Finder::ShareModelLevels(const std::vector<Found>& needed, const std::set<double>& all,
                                       GribLayers& layers) {
@@ -356,7 +374,11 @@ absl::Status Finder::ShareLevels(std::vector<Found>& needed, std::size_t amounts
   for (std::size_t i = 0; i < amounts; ++i) {
     for (const auto& [level, place] : needed[i].levels) all.insert(level);
   }
-  if (type_ != kIsobaricSurface) return ShareModelLevels(needed, all, layers);
+  const std::set<double> of_state = LevelsOfState(layers.time);
+  if (type_ != kIsobaricSurface) {
+    all.insert(of_state.begin(), of_state.end());
+    return ShareModelLevels(needed, all, layers);
+  }
   std::set<double> shared = all;
   for (const Found& found : needed) {
     std::erase_if(shared, [&](double level) { return !found.levels.contains(level); });
@@ -365,6 +387,10 @@ absl::Status Finder::ShareLevels(std::vector<Found>& needed, std::size_t amounts
     return Refused("has hydrometeors, temperature and humidity together on fewer than two levels");
   }
   std::vector<std::string> left_out;
+  // Between the shared levels, temperature may be on levels that no hydrometeor is on.
+  for (const double level : of_state) {
+    if (level < *shared.begin() || level > *shared.rbegin()) all.insert(level);
+  }
   for (const double level : all) {
     if (shared.contains(level)) continue;
     if (level < *shared.begin() || level > *shared.rbegin()) {
@@ -479,10 +505,33 @@ absl::Status Finder::FindHalfHeights(GribLayers& layers) {
     return Missing(absl::StrCat("every field of ", LevelName(type_, half_levels.back())),
                    layers.time);
   }
+  // The first of the levels is the highest. A file may have the lower levels only.
+  if (found.levels.begin()->first < half_levels.front()) {
+    Assume(absl::StrCat("The storm ends at ", LevelName(type_, layers.levels.front()),
+                        ", because no field is on the levels above, whose heights are given."));
+  }
   layers.heights = Series(found, half_levels);
   layers.heights.on_half_levels = true;
   layers.vertical = GribVertical::kHalfHeights;
   return absl::OkStatus();
+}
+
+// Returns an error if the coefficients of hybrid levels (pv) have more levels than the fields. They
+// are those of half levels, with the share of the surface pressure from 0 to 1.
+absl::Status Finder::CheckLastLevel(const GribLayers& layers) const {
+  if ((type_ != kHybrid && type_ != kHybridPressure) || first_->vertical == nullptr) {
+    return absl::OkStatus();
+  }
+  const std::vector<float>& numbers = first_->vertical->numbers;
+  const std::size_t half_levels = numbers.size() / 2;
+  if (half_levels < 2 || numbers.size() % 2 != 0) return absl::OkStatus();
+  const std::span shares = std::span(numbers).subspan(half_levels);
+  const bool are_shares =
+      std::ranges::all_of(shares, [](float share) { return share >= 0.0F && share <= 1.0F; }) &&
+      std::max(shares.front(), shares.back()) == 1.0F;
+  const double next = layers.levels.back() + 1.0;
+  if (!are_shares || next >= static_cast<double>(half_levels)) return absl::OkStatus();
+  return Missing(absl::StrCat("every field of ", LevelName(type_, next)), layers.time);
 }
 
 absl::Status Finder::FindHydrostatic(absl::Time time, GribLayers& layers) {
@@ -544,6 +593,9 @@ absl::Status Finder::FindHeights(absl::Time time, GribLayers& layers) {
     }
   }
   if (layers.heights.Empty()) return FindHydrostatic(time, layers);
+  if (layers.vertical == GribVertical::kHeights) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckLastLevel(layers));
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(const Found pressure, LevelsOf(GribKind::kPressure, time));
   if (pressure.levels.empty()) {
     return Missing(absl::StrCat(GribKindName(GribKind::kPressure), " of ",
@@ -558,6 +610,18 @@ absl::Status Finder::FindHeights(absl::Time time, GribLayers& layers) {
   return absl::OkStatus();
 }
 
+// Returns a field that a storm does not need. It is left out if a level is missing.
+GribSeries Finder::Optional(const Found& found, const std::vector<double>& levels,
+                            const GribLayers& layers) {
+  for (const double level : levels) {
+    if (found.levels.empty() || found.levels.contains(level)) continue;
+    Assume(absl::StrCat(Described(found), " is not used, because ", LevelName(type_, level),
+                        " is missing at ", TimeText(layers.time), "."));
+    return GribSeries();
+  }
+  return found.levels.empty() ? GribSeries() : Series(found, levels);
+}
+
 // Finds wind and turbulence, which a storm does not need. They are left out if a level is missing.
 // ICON has the vertical wind and the turbulence on half levels.
 absl::Status Finder::FindMotion(absl::Time time, GribLayers& layers) {
@@ -567,8 +631,7 @@ absl::Status Finder::FindMotion(absl::Time time, GribLayers& layers) {
     if (!series.Empty()) return absl::OkStatus();
     const std::vector<double>& levels = on_half_levels ? half_levels : layers.levels;
     THUNDERHEAD_ASSIGN_OR_RETURN(const Found found, LevelsOf(kind, time, on_half_levels));
-    if (found.levels.empty() || !Covers(found, levels)) return absl::OkStatus();
-    series = Series(found, levels);
+    series = Optional(found, levels, layers);
     series.on_half_levels = on_half_levels;
     return absl::OkStatus();
   };
@@ -598,9 +661,7 @@ absl::StatusOr<GribLayers> Finder::FindTime(absl::Time time) {
                                    return candidate.meaning.kind == GribKind::kNumber &&
                                           candidate.meaning.hydrometeor == hydrometeor.hydrometeor;
                                  }));
-    if (!numbers.levels.empty() && Covers(numbers, layers.levels)) {
-      hydrometeor.numbers = Series(numbers, layers.levels);
-    }
+    hydrometeor.numbers = Optional(numbers, layers.levels, layers);
   }
   layers.temperature = Series(needed[amounts], layers.levels);
   if (needed.size() > amounts + 1) layers.humidity = Series(needed[amounts + 1], layers.levels);

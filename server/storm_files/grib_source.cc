@@ -14,6 +14,7 @@
 #include "grib/decompressed.h"
 #include "grib/values.h"
 #include "storm_files/grib_air.h"
+#include "storm_files/grib_columns.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -148,8 +149,9 @@ GribSource::GribSource(std::shared_ptr<const GribStorm> storm, std::size_t recor
   domain_.time = layers_.time;
   domain_.cells = {contents.grid.columns, contents.grid.rows,
                    static_cast<int>(layers_.levels.size())};
-  domain_.dx_m = contents.grid.dx_m;
-  domain_.dy_m = contents.grid.dy_m;
+  domain_.even = storm_->even;
+  domain_.dx_m = domain_.even->ModelSpacing_m().x;
+  domain_.dy_m = domain_.even->ModelSpacing_m().y;
   domain_.on_terrain =
       layers_.vertical == GribVertical::kHalfHeights || !layers_.surface_height.Empty();
   domain_.microphysics = contents.model.microphysics;
@@ -365,7 +367,7 @@ absl::StatusOr<ModelWind> GribSource::Wind() {
   THUNDERHEAD_ASSIGN_OR_RETURN(wind.w_m_per_s, Ascent());
   const grib::Grid& grid = storm_->contents.grid;
   if (grid.wind_along_grid) return wind;
-  const Values angles = grib::AxisAngles(grid);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Values angles, AxisAngles(grid));
   for (std::size_t i = 0; i < wind.u_m_per_s.size() && !angles.empty(); ++i) {
     const float angle = angles[i % angles.size()];
     const float east = wind.u_m_per_s[i];

@@ -9,6 +9,7 @@
 
 #include "absl/status/statusor.h"
 #include "base/byte_source.h"
+#include "storm_files/even_columns.h"
 #include "storm_files/grib_layers.h"
 #include "storm_files/layer_source.h"
 
@@ -26,6 +27,7 @@ struct GribStorm {
   std::vector<GribInput> files;
   GribIndexes indexes;    // of each file
   GribContents contents;  // refers to the indexes
+  std::shared_ptr<const EvenColumns> even;
 };
 
 // Opens a time. Errors of the source name the file, the field and its level.

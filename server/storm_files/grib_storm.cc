@@ -1,6 +1,7 @@
 #include "storm_files/grib_storm.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -8,7 +9,9 @@
 #include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "grib/decompressed.h"
+#include "storm_files/even_columns.h"
 #include "storm_files/fields_on_heights.h"
+#include "storm_files/grib_columns.h"
 #include "storm_files/grib_parts.h"
 
 namespace thunderhead::storm_files {
@@ -53,6 +56,9 @@ absl::StatusOr<std::shared_ptr<const GribStorm>> MakeGribStorm(const std::string
   auto storm = std::make_shared<GribStorm>();
   THUNDERHEAD_ASSIGN_OR_RETURN(storm->contents, FindGribLayers(path, indexes));
   THUNDERHEAD_RETURN_IF_ERROR(CheckRecords(path, storm->contents.times.size()));
+  absl::StatusOr<EvenColumns> even = MakeEven(PlacesOf(storm->contents.grid));
+  if (!even.ok()) return base::Annotate(even.status(), path);
+  storm->even = std::make_shared<const EvenColumns>(*std::move(even));
   storm->files = std::move(files);
   storm->indexes = std::move(indexes);
   return storm;
@@ -62,21 +68,24 @@ StormFile DescribeGribStorm(std::shared_ptr<const GribStorm> storm) {
   const GribContents& contents = storm->contents;
   StormFile file;
   file.path = contents.path;
-  file.cells = {contents.grid.columns, contents.grid.rows,
+  const EvenColumns& even = *storm->even;
+  file.cells = {even.columns.x, even.columns.y,
                 static_cast<int>(contents.times.front().levels.size())};
-  file.dx_m = contents.grid.dx_m;
-  file.dy_m = contents.grid.dy_m;
+  file.dx_m = even.dx_m;
+  file.dy_m = even.dy_m;
   for (const GribLayers& layers : contents.times) file.times.push_back(layers.time);
   for (const GribHydrometeor& hydrometeor : contents.times.front().hydrometeors) {
     file.fields.push_back(hydrometeor.hydrometeor);
   }
   file.about = AboutText(contents);
   file.run = absl::StrCat(GribRunOf(contents.origin), ", process ", contents.process);
+  file.run_start = contents.origin.reference;
   file.member = contents.member;
-  file.latitude_deg = contents.grid.latitude_deg;
-  file.longitude_deg = contents.grid.longitude_deg;
-  file.projection = contents.grid.projection;
+  file.latitude_deg = even.middle.latitude_deg;
+  file.longitude_deg = even.middle.longitude_deg;
+  file.projection = even.projection;
   file.assumptions = contents.assumptions;
+  std::ranges::copy(AssumptionsOf(even), std::back_inserter(file.assumptions));
   file.reader = MakeRecordReader(
       [storm = std::move(storm)](std::size_t record) { return OpenGribTime(storm, record); });
   return file;

@@ -15,6 +15,7 @@
 #include "base/status.h"
 #include "glm/gtc/constants.hpp"
 #include "glm/trigonometric.hpp"
+#include "storm_files/true_scale.h"
 #include "volume/map_projection.h"
 #include "volume/projection_text.h"
 
@@ -404,6 +405,18 @@ absl::StatusOr<GridMapping> ReadGridMapping(const Attributes& attributes, const 
     map.AddEarth();
   }
   return map.Finish();
+}
+
+std::string EarthFigureOf(const Attributes& attributes) {
+  Composer earth(attributes, {});
+  if (!earth.Has("earth_radius") && !earth.Has("semi_major_axis") &&
+      !earth.Has("reference_ellipsoid_name")) {
+    return "";
+  }
+  earth.Start("merc");  // any projection of an ellipsoid
+  earth.AddEarth();
+  const absl::StatusOr<GridMapping> mapping = earth.Finish();
+  return mapping.ok() ? EarthOf(mapping->projection) : "";
 }
 
 }  // namespace thunderhead::storm_files

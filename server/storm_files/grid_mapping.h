@@ -62,4 +62,8 @@ struct MappedGrid {
 // attribute. The caller adds the names of the file and the variable.
 absl::StatusOr<GridMapping> ReadGridMapping(const Attributes& attributes, const MappedGrid& grid);
 
+// Returns the figure of the Earth that the attributes of a grid mapping variable give, in PROJ's
+// notation, such as "+a=6378137 +rf=298.25". It is empty if they give none that can be used.
+std::string EarthFigureOf(const Attributes& attributes);
+
 }  // namespace thunderhead::storm_files

@@ -57,6 +57,27 @@ double GreatCircle_m(const volume::EarthPlace& a, const volume::EarthPlace& b, d
   return 2.0 * radius_m * std::asin(std::sqrt(std::min(square, 1.0)));
 }
 
+double MeanRadius_m(const volume::EarthFigure& earth) {
+  const double flattening = earth.inverse_flattening > 0.0 ? 1.0 / earth.inverse_flattening : 0.0;
+  return earth.semi_major_m * (1.0 - flattening / 3.0);
+}
+
+// Turns the straight line through the Earth into an arc of the mean curvature.
+double ShortDistance_m(const volume::EarthPlace& a, const volume::EarthPlace& b,
+                       const volume::EarthFigure& earth) {
+  if (earth.inverse_flattening == 0.0) return GreatCircle_m(a, b, earth.semi_major_m);
+  const double flattening = 1.0 / earth.inverse_flattening;
+  const double eccentricity2 = flattening * (2.0 - flattening);
+  const auto position_m = [&](const volume::EarthPlace& place) {
+    const glm::dvec3 up = Direction(place.latitude_deg, place.longitude_deg);
+    const double normal_m = earth.semi_major_m / std::sqrt(1.0 - eccentricity2 * up.z * up.z);
+    return normal_m * up * glm::dvec3(1.0, 1.0, 1.0 - eccentricity2);
+  };
+  const double chord_m = glm::distance(position_m(a), position_m(b));
+  const double diameter_m = 2.0 * MeanRadius_m(earth);
+  return diameter_m * std::asin(std::min(chord_m / diameter_m, 1.0));
+}
+
 absl::StatusOr<ModelColumns> ModelColumns::Of(const ColumnPlaces& places) {
   if (std::min(places.columns.x, places.columns.y) < 1) {
     return absl::InvalidArgumentError("the model has no columns");
@@ -76,12 +97,13 @@ absl::Status ModelColumns::CheckProjected() {
     return absl::InvalidArgumentError(absl::StrCat("the steps between columns are ", step.x,
                                                    " and ", step.y, ", not above 0; correct them"));
   }
+  earth_ = EarthOf(places_.projection);
   if (IsInDegrees(ProjectionWords(places_.projection))) {
     ToMetres(places_);
     const double radius_m = ProjectionWords(places_.projection).Number("R").value_or(0.0);
     pole_m_ = radius_m * glm::radians(90.0);
   }
-  earth_ = EarthOf(places_.projection);
+  if (earth_.empty()) earth_ = EarthOf(places_.projection);
   if (earth_.empty()) {
     return absl::InvalidArgumentError(
         absl::StrCat("the map projection '", places_.projection,

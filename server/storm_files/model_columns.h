@@ -14,6 +14,14 @@ namespace thunderhead::storm_files {
 // Returns the distance between two places on a sphere, along a great circle.
 double GreatCircle_m(const volume::EarthPlace& a, const volume::EarthPlace& b, double radius_m);
 
+// Returns the mean radius of the Earth.
+double MeanRadius_m(const volume::EarthFigure& earth);
+
+// Returns the distance between two places on an ellipsoid or a sphere. On an ellipsoid it is
+// accurate to 0.01 % up to some hundred kilometres.
+double ShortDistance_m(const volume::EarthPlace& a, const volume::EarthPlace& b,
+                       const volume::EarthFigure& earth);
+
 // Positions are in columns: (0, 0) is the centre of the south-western column, and x and y grow by 1
 // from column to column.
 class ModelColumns {

@@ -72,6 +72,7 @@ struct StormFile {
   int domain = 1;                            // number of the nested grid, counted from 1
   std::string run;                           // text that is the same for all files of one run, and
                                              // different for other runs
+  std::optional<absl::Time> run_start;       // when the model run began, if the file says so
   std::optional<double> latitude_deg;        // latitude of the middle of the domain
   std::optional<double> longitude_deg;
   // The middle of the domain at each record, if the domain moves (a moving nest). Otherwise empty.

@@ -1,5 +1,6 @@
 #include "storm_files/storm_format.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "base/memory_fit.h"
 #include "base/status.h"
 #include "base/utf8.h"
+#include "storm_files/vdb_start.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -70,8 +72,17 @@ absl::Status StormFormats::CheckStart(const std::string& path, int file) const {
   std::string start(UnknownFile::kStart_bytes, '\0');
   const ssize_t count = pread(file, start.data(), start.size(), 0);
   start.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
-  const bool known =
-      std::ranges::any_of(formats_, [&](const auto& format) { return format->MayBegin(start); });
+  if (BeginsLikeVdb(start)) return RefuseVdb(path);
+  struct stat information = {};
+  const bool has_size = fstat(file, &information) == 0;
+  bool known = false;
+  for (const std::shared_ptr<const StormFormat>& format : formats_) {
+    if (!format->MayBegin(start)) continue;
+    known = true;
+    if (!has_size) continue;
+    THUNDERHEAD_RETURN_IF_ERROR(
+        format->CheckNeighbours(path, start, static_cast<std::uint64_t>(information.st_size)));
+  }
   // NetCDF files may be locked by their writer.
   const bool checked = known && !netcdf::NetcdfFile::BeginsLikeNetcdf(start);
   return checked ? absl::OkStatus() : netcdf::NetcdfFile::CheckStart(path, file);

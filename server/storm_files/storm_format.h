@@ -2,6 +2,7 @@
 // built_in_formats.cc lists all formats.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -74,6 +75,14 @@ class StormFormat {
   // is checked elsewhere.
   virtual bool MayBegin(std::string_view start) const;
 
+  // Checks a file of `size_bytes` bytes, which begins with `start`, against other files of its
+  // folder. Returns an error if they show that it is not whole. It is called where files may be
+  // opened.
+  virtual absl::Status CheckNeighbours(const std::string& /*path*/, std::string_view /*start*/,
+                                       std::uint64_t /*size_bytes*/) const {
+    return absl::OkStatus();
+  }
+
   // Loads the files that the format's libraries need, for a process that then may open no file.
   virtual absl::Status PrepareBeforeConfinement() const { return absl::OkStatus(); }
 
@@ -113,7 +122,8 @@ class StormFormats {
   void LeaveTo(Elsewhere elsewhere) { elsewhere_ = std::move(elsewhere); }
 
   // Checks an open file before a process is started to read it. Returns an error if it begins like
-  // no format's files. Returns UNAVAILABLE while another program writes it and has locked it.
+  // no format's files, or if other files of its folder show that it is not whole. Returns
+  // UNAVAILABLE while another program writes it and has locked it.
   absl::Status CheckStart(const std::string& path, int file) const;
 
   // Prepares each format that may read a file that begins with these bytes

@@ -18,42 +18,63 @@ namespace {
 // The latitude in radians beyond which a Lambert projection has no scale.
 constexpr double kPole = glm::half_pi<double>() - 1e-6;
 
-// Returns the logarithm of a Lambert projection's reciprocal scale at a latitude, up to a constant.
-// `cone` is the projection's cone constant.
-double LogScale(double latitude, double cone) {
-  return std::log(std::cos(latitude)) +
-         cone * std::log(std::tan(glm::quarter_pi<double>() + latitude / 2.0));
+// The eccentricity of the Earth in a projection's text, 0 for a sphere.
+double EccentricityOf(const std::string& projection) {
+  const absl::StatusOr<volume::MapProjection> map = volume::MapProjection::Open(projection);
+  const double inverse = map.ok() ? map->Figure().inverse_flattening : 0.0;
+  return inverse > 0.0 ? std::sqrt((2.0 - 1.0 / inverse) / inverse) : 0.0;
 }
 
-double ConeOf(double first, double second) {
-  if (std::abs(first - second) < 1e-9) return std::sin(first);
-  const auto stretched = [](double latitude) {
-    return std::log(std::tan(glm::quarter_pi<double>() + latitude / 2.0));
-  };
-  return std::log(std::cos(first) / std::cos(second)) / (stretched(second) - stretched(first));
-}
-
-// Returns the other latitude at which a Lambert projection has the same scale as at `latitude`.
-double Conjugate(double latitude, double cone) {
-  // The scale is least at the latitude whose sine is the cone constant.
-  const double middle = std::asin(std::clamp(cone, -1.0, 1.0));
-  const double wanted = LogScale(latitude, cone);
-  double near = middle;
-  double far = latitude < middle ? kPole : -kPole;
-  constexpr int kBisections = 100;
-  for (int i = 0; i < kBisections; ++i) {
-    const double half = 0.5 * (near + far);
-    (LogScale(half, cone) > wanted ? near : far) = half;
+// The scale of a Lambert projection, by latitudes in radians.
+class LambertScale {
+ public:
+  LambertScale(double first, double second, double eccentricity) : eccentricity_(eccentricity) {
+    const bool is_tangent = std::abs(first - second) < 1e-9;
+    cone_ = is_tangent ? std::sin(first)
+                       : (LogParallel(first) - LogParallel(second)) /
+                             (LogStretched(second) - LogStretched(first));
   }
-  return 0.5 * (near + far);
-}
 
-void SetParallels(const volume::EarthPlace& middle, ProjectionWords& words) {
+  // Returns the other latitude with the same scale as at `latitude`.
+  double Conjugate(double latitude) const {
+    // The scale is least at the latitude whose sine is the cone constant.
+    double near = std::asin(std::clamp(cone_, -1.0, 1.0));
+    double far = latitude < near ? kPole : -kPole;
+    const double wanted = LogReciprocal(latitude);
+    constexpr int kBisections = 100;
+    for (int i = 0; i < kBisections; ++i) {
+      const double half = 0.5 * (near + far);
+      (LogReciprocal(half) > wanted ? near : far) = half;
+    }
+    return 0.5 * (near + far);
+  }
+
+ private:
+  // Returns the logarithm of a parallel's radius in the Earth's radii (Snyder, equation 14-15).
+  double LogParallel(double latitude) const {
+    const double sine = eccentricity_ * std::sin(latitude);
+    return std::log(std::cos(latitude)) - 0.5 * std::log(1.0 - sine * sine);
+  }
+  // Returns the logarithm of the reciprocal of Snyder's t (equation 15-9).
+  double LogStretched(double latitude) const {
+    return std::log(std::tan(glm::quarter_pi<double>() + latitude / 2.0)) -
+           eccentricity_ * std::atanh(eccentricity_ * std::sin(latitude));
+  }
+  // Returns the logarithm of the projection's reciprocal scale, up to a constant.
+  double LogReciprocal(double latitude) const {
+    return LogParallel(latitude) + cone_ * LogStretched(latitude);
+  }
+
+  double eccentricity_;
+  double cone_ = 0.0;
+};
+
+void SetParallels(const volume::EarthPlace& middle, double eccentricity, ProjectionWords& words) {
   const double first_deg = words.Number("lat_1").value_or(0.0);
   const double second_deg = words.Number("lat_2").value_or(first_deg);
   const double latitude = std::clamp(glm::radians(middle.latitude_deg), -kPole, kPole);
-  const double cone = ConeOf(glm::radians(first_deg), glm::radians(second_deg));
-  const double other = Conjugate(latitude, cone);
+  const LambertScale scale(glm::radians(first_deg), glm::radians(second_deg), eccentricity);
+  const double other = scale.Conjugate(latitude);
   words.Set("lat_1", glm::degrees(std::min(latitude, other)));
   words.Set("lat_2", glm::degrees(std::max(latitude, other)));
 }
@@ -126,22 +147,30 @@ bool IsInDegrees(const ProjectionWords& words) {
   return std::ranges::find(kDegrees, kind) != kDegrees.end();
 }
 
+bool IsConformal(const ProjectionWords& words) {
+  constexpr std::array kConformal = {"lcc", "merc", "stere", "tmerc"};
+  return std::ranges::find(kConformal, words.Text("proj")) != kConformal.end();
+}
+
 std::string WithTrueScaleAt(const std::string& projection, const volume::EarthPlace& middle,
                             double middle_y_deg) {
   ProjectionWords words(projection);
   const bool rotated = words.Text("proj") == "ob_tran";
   const std::string kind = words.Text(rotated ? "o_proj" : "proj");
-  const bool polar = std::abs(words.Number("lat_0").value_or(0.0)) == 90.0;
-  if (!words.Has("R") || words.Has("k_0") || words.Has("k")) return projection;
+  const double pole_deg = words.Number("lat_0").value_or(0.0);
+  // PROJ takes a latitude of true scale as one of the pole's own hemisphere.
+  const bool polar = std::abs(pole_deg) == 90.0 && pole_deg * middle.latitude_deg >= 0.0;
   if (kind == "lcc" && words.Has("lat_1")) {
-    SetParallels(middle, words);
+    SetParallels(middle, EccentricityOf(projection), words);
   } else if (kind == "merc" || (kind == "stere" && polar)) {
     words.Set("lat_ts", middle.latitude_deg);
-  } else if (kind == "eqc") {
+  } else if (kind == "eqc" && words.Has("R")) {
     words.Set("lat_ts", middle_y_deg);
+    return words.Joined();
   } else {
     return projection;
   }
+  for (const char* const scale : {"k", "k_0"}) words.Remove(scale);
   return words.Joined();
 }
 

@@ -1,5 +1,5 @@
 // Rewrites map projections in PROJ's notation, so that lengths in their plane are true at the
-// middle of a domain. This code is text and arithmetic, and does not use PROJ.
+// middle of a domain. This code is text and arithmetic. PROJ only gives the figure of the Earth.
 #pragma once
 
 #include <optional>
@@ -41,10 +41,14 @@ std::string EarthOf(std::string_view projection);
 // possibly of a grid with a rotated pole.
 bool IsInDegrees(const ProjectionWords& words);
 
+// Returns whether the scale of the projection is the same in all directions at each place.
+bool IsConformal(const ProjectionWords& words);
+
 // Returns a projection that differs from `projection` only in its scale, which is 1 at `middle`.
 // The latitude of the middle in a grid with a rotated pole is `middle_y_deg`. This works for lcc,
-// merc, polar stere and eqc on a sphere. For other projections it returns `projection` itself.
-// Formulas: Snyder 1987 (USGS Professional Paper 1395), equations 15-1 to 15-3.
+// merc, and polar stere in the hemisphere of its pole, and for eqc on a sphere. For other
+// projections it returns `projection` itself. Formulas: Snyder 1987 (USGS Professional Paper 1395),
+// equations 15-1 to 15-3 and 14-15, 15-8 and 15-9.
 std::string WithTrueScaleAt(const std::string& projection, const volume::EarthPlace& middle,
                             double middle_y_deg);
 

@@ -85,10 +85,12 @@ constexpr std::array kUnitSpellings = {
     UnitSpelling{"kg kg^-1", "kg/kg"},
 };
 
-// Returns the unit of a text, or null. Exponents may be in brackets, as in "g.m^(-3)".
+// Returns the unit of a text, or null. Exponents may be in brackets, as in "g.m^(-3)" and in MPAS's
+// "kg m^{-3}".
 OwnedUnit ParseUnitSpelling(std::string_view units) {
   std::string text(absl::StripAsciiWhitespace(absl::string_view(units.data(), units.size())));
   if (text.empty() || text.size() > kLongestUnits) return {nullptr, ut_free};
+  std::erase_if(text, [](char c) { return c == '{' || c == '}'; });
   const auto known =
       std::ranges::find(kUnitSpellings, std::string_view(text), &UnitSpelling::written);
   if (known != kUnitSpellings.end()) return ParseUnit(std::string(known->meant));

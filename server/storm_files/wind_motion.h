@@ -23,6 +23,8 @@ struct ModelWind {
   // True if u is the wind to the east and v to the north, false if they are along the x and y axes
   // of the model's columns.
   bool east_and_north = false;
+  // False if cells that follow one another are not neighbours (those of an unstructured grid).
+  bool in_order = true;
   std::vector<float> u_m_per_s;
   std::vector<float> v_m_per_s;
   std::vector<float> w_m_per_s;

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/status.h"
+#include "storm_files/date_time.h"
 #include "storm_files/even_columns.h"
 #include "storm_files/fields_on_heights.h"
 #include "storm_files/wrf_metadata.h"
@@ -30,13 +31,13 @@ void DescribeColumns(const WrfMetadata& metadata, StormFile& file) {
     file.cells = {even.columns.x, even.columns.y, metadata.cells.z};
     file.dx_m = even.dx_m;
     file.dy_m = even.dy_m;
-    file.assumptions.push_back(AssumptionOf(even));
   } else if (glm::dvec2(file.dx_m, file.dy_m) != nominal_m) {
     file.assumptions.push_back(absl::StrFormat(
         "The columns are %.0f m by %.0f m apart, as their latitudes and longitudes say; DX and DY, "
         "which are lengths on the model's map, are %.0f m and %.0f m.",
         file.dx_m, file.dy_m, nominal_m.x, nominal_m.y));
   }
+  std::ranges::copy(AssumptionsOf(even), std::back_inserter(file.assumptions));
 }
 
 class WrfFormat final : public StormFormat {
@@ -74,6 +75,7 @@ class WrfFormat final : public StormFormat {
     }
     file.domain = metadata.domain;
     file.run = metadata.simulation_start;
+    file.run_start = ParseDateTime(metadata.simulation_start);
     if (metadata.place.middle.has_value()) {
       file.latitude_deg = metadata.place.middle->latitude_deg;
       file.longitude_deg = metadata.place.middle->longitude_deg;

@@ -15,6 +15,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
 #include "base/status.h"
+#include "glm/common.hpp"
 #include "spdlog/spdlog.h"
 #include "storm_files/wrf_relatives.h"
 #include "storm_files/wrf_times.h"
@@ -351,11 +352,17 @@ absl::Status MeasureColumns(const netcdf::NetcdfFile& file, WrfMetadata& metadat
   if (!even.ok()) return base::Annotate(even.status(), file.Path());
   metadata.places = *places;
   place.projection = even->projection;
-  // Places are stored as floats. They do not give lengths more accurately than this.
+  // Places are stored as floats. They do not give lengths more accurately than this. Over the whole
+  // domain a difference counts if it is a tenth of a column.
   constexpr double kAccuracy = 1e-3;
-  const glm::dvec2 factor = metadata.nominal_m / even->mean_m;
-  if (std::abs(factor.x - 1.0) > kAccuracy) metadata.dx_m = even->mean_m.x;
-  if (std::abs(factor.y - 1.0) > kAccuracy) metadata.dy_m = even->mean_m.y;
+  constexpr double kColumns = 0.1;
+  const glm::dvec2 measured_m = even->ModelSpacing_m();
+  const glm::dvec2 off = glm::abs(metadata.nominal_m / measured_m - 1.0);
+  const auto differs = [&](int axis) {
+    return off[axis] > kAccuracy || off[axis] * columns[axis] > kColumns;
+  };
+  if (differs(0)) metadata.dx_m = measured_m.x;
+  if (differs(1)) metadata.dy_m = measured_m.y;
   metadata.even = std::make_shared<const EvenColumns>(*std::move(even));
   return absl::OkStatus();
 }

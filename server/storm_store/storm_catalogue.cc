@@ -22,7 +22,6 @@
 #include "base/status.h"
 #include "base/utf8.h"
 #include "spdlog/spdlog.h"
-#include "storm_files/run_start.h"
 
 namespace thunderhead::storm_store {
 namespace {
@@ -583,8 +582,11 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
   info.fields = FieldsOfAny(files, storm.notes);
   info.latitude_deg = first.latitude_deg;
   info.longitude_deg = first.longitude_deg;
-  if (const auto start = storm_files::RunStart(first); start.has_value()) {
-    info.run_start = FormatValidTime(*start);
+  // A series of analyses has a run for each time, so it has no single start.
+  if (first.run_start.has_value() && std::ranges::all_of(files, [&](const auto& file) {
+        return file.run_start == first.run_start;
+      })) {
+    info.run_start = FormatValidTime(*first.run_start);
   }
   SetProjection(first, storm);
   for (const storm_files::StormFile& file : files) {

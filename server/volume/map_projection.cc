@@ -98,7 +98,13 @@ class MapProjection::Proj {
     const PJ_COORD to =
         proj_trans(transform_.get(), PJ_INV, proj_coord(map_m.x, map_m.y, 0.0, 0.0));
     if (!std::isfinite(to.lp.phi) || !std::isfinite(to.lp.lam)) return std::nullopt;
-    return EarthPlace{glm::degrees(to.lp.phi), std::remainder(glm::degrees(to.lp.lam), 360.0)};
+    // Rounding must not move a pole off the Earth.
+    constexpr double kRounding_deg = 1e-9;
+    double latitude_deg = glm::degrees(to.lp.phi);
+    if (std::abs(latitude_deg) < 90.0 + kRounding_deg) {
+      latitude_deg = std::clamp(latitude_deg, -90.0, 90.0);
+    }
+    return EarthPlace{latitude_deg, std::remainder(glm::degrees(to.lp.lam), 360.0)};
   }
 
   std::string WellKnownText(PJ_WKT_TYPE type) {

@@ -1,10 +1,12 @@
 // Fuzzes GRIB2 files through everything that a reader does with them. The input is either the bytes
 // of a file, or a script. A script describes a small storm, whose file is written with correct
-// lengths, and then changes of single bytes. So changes reach numbers deep in valid messages.
+// lengths, and then changes of single bytes. So changes reach numbers deep in valid messages. The
+// mutator of this target changes files by their structure.
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "storm_files/fields_on_heights.h"
 #include "storm_files/grib_parts.h"
 #include "storm_files/grib_storm.h"
+#include "tests/fuzz/grib_mutator.h"
 #include "tests/unit/grib/messages.h"
 
 namespace thunderhead {
@@ -24,8 +27,8 @@ using grib::testing::GridOf;
 using grib::testing::Message;
 using grib::testing::Number;
 
-// A field with few bytes may have many points, and decoding it takes a second. Such fields are left
-// to the unit tests.
+// A field with few bytes may have many points, and decoding it takes a second. Such fields are
+// described here, and read only in the unit tests.
 constexpr std::uint64_t kMostPoints = 10'000;
 
 class Script {
@@ -118,8 +121,10 @@ void Read(const std::shared_ptr<const base::ByteSource>& bytes) {
   if (!plain.ok()) return;
   const auto index = storm_files::IndexOfGrib(*plain);
   if (!index.ok()) return;
+  const bool is_small = std::ranges::all_of(
+      (*index)->fields, [](const grib::Field& field) { return field.points <= kMostPoints; });
   for (const grib::Field& field : (*index)->fields) {
-    if (field.points > kMostPoints) return;
+    if (!is_small) break;
     const auto values = grib::DecodeValues(**plain, field);
     if (values.ok() && values->size() != field.points) std::abort();
   }
@@ -129,21 +134,32 @@ void Read(const std::shared_ptr<const base::ByteSource>& bytes) {
   if (!storm.ok()) return;
   const storm_files::StormFile file = storm_files::DescribeGribStorm(*storm);
   if (file.times.empty() || file.fields.empty() || file.cells.x <= 0) std::abort();
+  if (!is_small) return;
   const auto fields = file.reader->Read(0, std::nullopt, {});
   if (fields.ok() && fields->fields.size() != file.fields.size()) std::abort();
+}
+
+// Returns the bytes of the file that an input stands for.
+std::string FileOfInput(const std::uint8_t* data, std::size_t size) {
+  if (size == 0 || data[0] != 's') return {reinterpret_cast<const char*>(data), size};
+  Script script(data + 1, size - 1);
+  return FileOf(script);
 }
 
 }  // namespace
 }  // namespace thunderhead
 
+// Replaces the input by a mutation of the file that it stands for. libFuzzer and replay.cc call it.
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most, unsigned int seed) {
+  const std::string mutated =
+      thunderhead::testing::MutateGrib(thunderhead::FileOfInput(data, size), seed);
+  const std::size_t count = std::min(most, mutated.size());
+  std::memcpy(data, mutated.data(), count);
+  return count;
+}
+
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace thunderhead;
-  if (size == 0) return 0;
-  if (data[0] == 's') {
-    Script script(data + 1, size - 1);
-    Read(BytesIn(FileOf(script)));
-  } else {
-    Read(BytesIn(std::string(reinterpret_cast<const char*>(data), size)));
-  }
+  if (size > 0) thunderhead::Read(thunderhead::BytesIn(thunderhead::FileOfInput(data, size)));
   return 0;
 }

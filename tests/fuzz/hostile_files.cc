@@ -161,6 +161,44 @@ testing::SyntheticCf OddCf(Dice& dice) {
   return file;
 }
 
+// Returns the description of a file on an unstructured grid with random changes. Half of the files
+// have the names of MPAS, and the others those of ICON.
+testing::SyntheticCf OddCells(Dice& dice) {
+  const bool mpas = dice.OneIn(2);
+  const std::size_t cells = 3 + dice.Below(40);
+  const std::size_t row = 1 + dice.Below(8);
+  const double step = dice.OneIn(8) ? dice.Of(kOddNumbers) : 1e-3;
+  const double value = dice.OneIn(2) ? 1e-3 : dice.Of(kOddNumbers);
+  const std::string on = mpas ? "nCells" : "ncells";
+  const std::string z = mpas ? "nVertLevels" : "height";
+  const std::string faces = mpas ? "nVertLevelsP1" : "height_2";
+  const std::size_t layers = 1 + dice.Below(10);
+  testing::SyntheticCf file;
+  file.coordinates = {{on, std::vector<double>(cells), {}, {}, false},
+                      {z, std::vector<double>(layers), {}, {}, false},
+                      {faces, std::vector<double>(layers + 1), {}, {}, false}};
+  const auto at = [&dice, on, step](std::size_t of, std::size_t by) {
+    const double odd = dice.OneIn(12) ? dice.Of(kOddNumbers) : 0.0;
+    const bool is_odd = odd != 0.0;
+    const std::size_t which = dice.Below(40);
+    return [=](const std::map<std::string, std::size_t>& index) {
+      const std::size_t cell = index.at(on);
+      return is_odd && cell == which ? odd : step * static_cast<double>(cell / of % by);
+    };
+  };
+  file.variables = {
+      {mpas ? "lonCell" : "clon", {on}, {{"units", "radian"}}, at(1, row)},
+      {mpas ? "latCell" : "clat", {on}, {{"units", "radian"}}, at(row, 1000)},
+      {mpas ? "zgrid" : "z_ifc",
+       {faces, on},
+       {{"units", "m"}},
+       [=](const auto& index) { return 100.0 * static_cast<double>(index.at(faces)); }},
+      {"qc", {z, on}, {{"units", "kg m-3"}}, [value](const auto&) { return value; }}};
+  if (dice.OneIn(12)) file.variables.erase(file.variables.begin() + dice.Below(3));
+  if (dice.OneIn(8)) file.attributes["on_a_sphere"] = "NO";
+  return file;
+}
+
 // Changes random bytes, mostly in the header.
 void Damage(Dice& dice, std::string& bytes) {
   constexpr std::array<unsigned char, 6> kBytes = {0, 1, 0x7f, 0x80, 0xfe, 0xff};
@@ -363,14 +401,17 @@ void WriteSparse(const std::string& path, bool cf) {
 struct Kind {
   const char* name;
   bool cf = false;
+  bool cells = false;  // of an unstructured grid
   bool classic = false;
   bool foreign = false;  // stored in ways of HDF5 that netCDF-C never writes
 };
 
-constexpr std::array kKinds = {
-    Kind{.name = "WRF netCDF-4"}, Kind{.name = "WRF classic", .classic = true},
-    Kind{.name = "CF netCDF-4", .cf = true}, Kind{.name = "WRF foreign storage", .foreign = true},
-    Kind{.name = "CF foreign storage", .cf = true, .foreign = true}};
+constexpr std::array kKinds = {Kind{.name = "WRF netCDF-4"},
+                               Kind{.name = "WRF classic", .classic = true},
+                               Kind{.name = "CF netCDF-4", .cf = true},
+                               Kind{.name = "CF cells", .cf = true, .cells = true},
+                               Kind{.name = "WRF foreign storage", .foreign = true},
+                               Kind{.name = "CF foreign storage", .cf = true, .foreign = true}};
 
 }  // namespace
 
@@ -405,7 +446,7 @@ int main(int argc, char** argv) {
       constexpr std::array kClassic = {WrfFormat::kClassic, WrfFormat::kOffset64, WrfFormat::kCdf5};
       const WrfFormat format = kind.classic ? dice.Of(kClassic) : WrfFormat::kNetcdf4;
       const SyntheticWrf wrf = OddWrf(dice, format);
-      const testing::SyntheticCf cf = OddCf(dice);
+      const testing::SyntheticCf cf = kind.cells ? OddCells(dice) : OddCf(dice);
       Dice changes(dice.Below(std::size_t{1} << 62));
       const bool written = Writes([&] {
         if (kind.cf) testing::WriteCf(cf, path);

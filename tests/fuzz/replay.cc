@@ -1,10 +1,14 @@
 // Runs a fuzz target without libFuzzer: every kept input, then a number of mutations of them, which
-// depend only on the seed. With --seconds it runs further mutations until that time is over.
-//   fuzz_NAME FOLDER|FILE... [--runs N] [--seed N] [--seconds N]
+// depend only on the seed. With --seconds it runs further mutations until that time is over. A
+// target that defines LLVMFuzzerCustomMutator makes two thirds of the mutations itself.
+//   fuzz_NAME FOLDER|FILE... [--runs N] [--seed N] [--seconds N] [--memory MIB] [--slowest SECONDS]
 //
-// An input that ends the process is left in the file finding-NAME. An input that does not end in
-// ten minutes counts as hanging. So does the exit of the target, in which it frees what it kept.
+// With --memory, an input that needs more memory than that counts as a finding, and so does one
+// that takes longer than --slowest (ten minutes by default).
+// An input that ends the process is left in the file finding-NAME. The time limit also holds for
+// the exit of the target, in which it frees what it kept.
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,6 +27,8 @@
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+extern "C" [[gnu::weak]] std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                                             std::size_t most, unsigned int seed);
 extern "C" [[gnu::weak]] void __sanitizer_set_death_callback(void (*callback)());
 
 namespace {
@@ -75,12 +81,21 @@ class Mutator {
 
   std::string Next() {
     std::string input = inputs_[Below(inputs_.size())];
+    if (LLVMFuzzerCustomMutator != nullptr && Below(3) != 0) return ByTarget(std::move(input));
     for (std::size_t edits = 1 + Below(8); edits > 0; --edits) Edit(input);
     return input;
   }
 
  private:
   std::size_t Below(std::size_t end) { return random_() % std::max<std::size_t>(end, 1); }
+
+  std::string ByTarget(std::string input) {
+    const std::size_t size = input.size();
+    input.resize(std::max(size, kLongest));
+    input.resize(LLVMFuzzerCustomMutator(reinterpret_cast<std::uint8_t*>(input.data()), size,
+                                         input.size(), static_cast<unsigned>(random_())));
+    return input;
+  }
 
   void Edit(std::string& input) {
     constexpr std::array<std::uint64_t, 10> kValues = {
@@ -119,9 +134,10 @@ class Mutator {
       default:
         input.resize(at);
     }
-    constexpr std::size_t kLongest = 64 << 10;
     if (input.size() > kLongest) input.resize(kLongest);
   }
+
+  static constexpr std::size_t kLongest = 64 << 10;
 
   const std::vector<std::string> inputs_;
   std::mt19937_64 random_;
@@ -138,12 +154,29 @@ void TakeInputs(const fs::path& path, std::vector<std::string>& inputs) {
   for (const fs::path& file : files) inputs.push_back(Contents(file));
 }
 
+void LimitMemory(std::uint64_t bytes) {
+  // AddressSanitizer reserves terabytes of addresses.
+  if (bytes == 0 || __sanitizer_set_death_callback != nullptr) return;
+  const rlimit limit{bytes, bytes};
+  setrlimit(RLIMIT_AS, &limit);
+}
+
+// Returns the largest amount of memory that the process has had, in MiB.
+double PeakMemory_MiB() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   double seconds = 0.0;
   std::uint64_t runs = 0;
   std::uint64_t seed = 1;
+  std::uint64_t memory_MiB = 0;
+  // The limit is long enough even if many processes compete with this one.
+  unsigned slowest_s = 600;
   std::vector<std::string> inputs;
   for (int i = 1; i < argc; ++i) {
     const std::string_view argument(argv[i]);
@@ -156,6 +189,12 @@ int main(int argc, char** argv) {
       ++i;
     } else if (argument == "--seed") {
       seed = std::strtoull(value, nullptr, 10);
+      ++i;
+    } else if (argument == "--memory") {
+      memory_MiB = std::strtoull(value, nullptr, 10);
+      ++i;
+    } else if (argument == "--slowest") {
+      slowest_s = static_cast<unsigned>(std::strtoul(value, nullptr, 10));
       ++i;
     } else {
       TakeInputs(argv[i], inputs);
@@ -172,10 +211,9 @@ int main(int argc, char** argv) {
     }
   }
   if (__sanitizer_set_death_callback != nullptr) __sanitizer_set_death_callback(KeepFinding);
-  // The limit is long enough even if many processes compete with this one.
-  constexpr unsigned kSlowest_s = 600;
+  LimitMemory(memory_MiB << 20U);
   for (const std::string& input : inputs) {
-    alarm(kSlowest_s);
+    alarm(slowest_s);
     Run(input);
   }
   Mutator mutator(inputs, seed);
@@ -184,15 +222,24 @@ int main(int argc, char** argv) {
     return std::chrono::duration<double>(steady_clock::now() - start).count();
   };
   std::uint64_t mutations = 0;
+  double longest_s = 0.0;
   while (mutations < runs || passed() < seconds) {
-    alarm(kSlowest_s);
+    const double before_s = passed();
+    alarm(slowest_s);
     Run(mutator.Next());
+    longest_s = std::max(longest_s, passed() - before_s);
     ++mutations;
+    constexpr std::uint64_t kReport = 100'000;
+    if (mutations % kReport == 0) {
+      std::fprintf(stderr, "%llu mutations in %.1f s\n", static_cast<unsigned long long>(mutations),
+                   passed());
+    }
   }
   all_ran = true;
-  alarm(kSlowest_s);
-  std::printf("%zu inputs, %llu mutations in %.1f s\n", inputs.size(),
-              static_cast<unsigned long long>(mutations), passed());
+  alarm(slowest_s);
+  std::printf("%zu inputs, %llu mutations in %.1f s, the slowest in %.2f s, peak memory %.0f MiB\n",
+              inputs.size(), static_cast<unsigned long long>(mutations), passed(), longest_s,
+              PeakMemory_MiB());
   std::fflush(stdout);
   return 0;
 }

@@ -519,6 +519,35 @@ TEST_F(CommandLineTest, AnInterruptedExportLeavesNoFile) {
   EXPECT_FALSE(std::filesystem::exists(vdb + ".partial"));
 }
 
+TEST_F(CommandLineTest, AnExportedGridIsImportedAsAStorm) {
+  const std::string vdb = folder_.File("storm.vdb");
+  const std::string cloud = folder_.File("cloud.nc");
+  ASSERT_EQ(Run("export " + kSample + " --time 1 -o " + vdb).code, 0);
+  const std::string import = "import-vdb " + vdb + " -o " + cloud;
+  const std::string grid = " --grid cloud";
+  const std::string up = " --up z";
+  const std::string metres = " --metres-per-unit 1";
+  const std::string extinction = " --extinction-per-unit 2";
+  ExpectError(import + up + metres + extinction, 64, "the file's grids are: cloud (float), ");
+  ExpectError(import + " --grid fog" + up + metres + extinction, 64, "has no grid 'fog'");
+  ExpectError(import + grid + metres + extinction, 64, "give --up (");
+  ExpectError(import + grid + up + extinction, 64, "give --metres-per-unit (");
+  ExpectError(import + grid + up + metres, 64, "give --extinction-per-unit (");
+  ExpectError(import + grid, 64, "), and --metres-per-unit (");
+  ExpectError(import + grid + " --up w" + metres + extinction, 64, "--up is 'w'");
+  ExpectError(import + grid + up + " --metres-per-unit 0" + extinction, 64,
+              "--metres-per-unit is 0");
+  ExpectError("inspect " + vdb, 65, "thunderhead import-vdb");
+  EXPECT_FALSE(std::filesystem::exists(cloud));
+  const Outcome outcome = Run(import + grid + up + metres + extinction);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("cells of 1000 x 1000 x "));
+  EXPECT_FALSE(std::filesystem::exists(cloud + ".partial"));
+  const Outcome inspected = Run("inspect " + cloud);
+  ASSERT_EQ(inspected.code, 0) << inspected.err;
+  EXPECT_THAT(inspected.out, HasSubstr("extinction"));
+}
+
 // Uses a small cloud, because the command draws some ninety settings.
 TEST_F(CommandLineTest, MeasureTradeContinuesWhereItStopped) {
   const std::string cloud = folder_.File("cloud.nc");

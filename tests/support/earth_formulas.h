@@ -35,14 +35,15 @@ inline double Distance_m(const volume::EarthPlace& a, const volume::EarthPlace& 
 
 inline double Stretched(double latitude) { return std::tan(kPi / 4.0 + latitude / 2.0); }
 
-// A Lambert projection with two latitudes of true scale. The origin of its plane is the tip of the
-// cone.
+// A Lambert projection with one or two latitudes of true scale. The origin of its plane is the tip
+// of the cone.
 struct LambertFormulas {
   LambertFormulas(double first_deg, double second_deg, double meridian) : meridian_deg(meridian) {
     const double first = glm::radians(first_deg);
     const double second = glm::radians(second_deg);
-    cone = std::log(std::cos(first) / std::cos(second)) /
-           std::log(Stretched(second) / Stretched(first));
+    cone = first_deg == second_deg ? std::sin(first)
+                                   : std::log(std::cos(first) / std::cos(second)) /
+                                         std::log(Stretched(second) / Stretched(first));
     length_m = kEarth_m * std::cos(first) * std::pow(Stretched(first), cone) / cone;
   }
 
@@ -53,6 +54,11 @@ struct LambertFormulas {
   // Returns the length on the map of a metre on Earth.
   double Scale(double latitude_deg) const {
     return cone * FromTip_m(latitude_deg) / (kEarth_m * std::cos(glm::radians(latitude_deg)));
+  }
+  glm::dvec2 PlaneOf(const volume::EarthPlace& place) const {
+    const double angle =
+        cone * glm::radians(std::remainder(place.longitude_deg - meridian_deg, 360.0));
+    return FromTip_m(place.latitude_deg) * glm::dvec2(std::sin(angle), -std::cos(angle));
   }
   volume::EarthPlace PlaceOf(const glm::dvec2& plane_m) const {
     const double stretched = std::pow(length_m / glm::length(plane_m), 1.0 / cone);

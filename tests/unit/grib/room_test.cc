@@ -14,11 +14,16 @@
 #include "grib/index.h"
 #include "grib/packing_check.h"
 #include "grib/values.h"
+#include "storm_files/even_columns.h"
+#include "storm_files/grib_columns.h"
 #include "tests/unit/grib/messages.h"
 
 namespace thunderhead::grib {
 namespace {
 
+using storm_files::AxisAngles;
+using storm_files::MakeEven;
+using storm_files::PlacesOf;
 using testing::BytesIn;
 using testing::BytesOf;
 using ::testing::ElementsAre;
@@ -120,6 +125,13 @@ TEST(GribIndex, ReadsAroundBulletinHeaders) {
   ASSERT_TRUE(index.ok()) << index.status();
   EXPECT_EQ(index->fields.size(), 2U);
   EXPECT_TRUE(BeginsLikeGrib(file));
+}
+
+TEST(GribIndex, ATextAboutGribIsNoGribFile) {
+  const std::string text = "# GRIB2 test files\nEach message begins with GRIB and its length.\n";
+  EXPECT_FALSE(BeginsLikeGrib(text));
+  EXPECT_FALSE(BeginsLikeGrib("GRIB"));
+  EXPECT_TRUE(BeginsLikeGrib("GRIB: " + BytesOf(Small())));
 }
 
 TEST(GribIndex, NamesDamage) {
@@ -391,10 +403,12 @@ TEST(GribGrid, PlacesTheMiddleOfLatitudesAndLongitudes) {
   message.grid = GridOf(layout);
   const auto grid = ReadGrid(AsBytes(testing::Section(3, message.grid)));
   ASSERT_TRUE(grid.ok()) << grid.status();
-  EXPECT_NEAR(grid->latitude_deg, 49.0, 1e-9);
-  EXPECT_NEAR(grid->longitude_deg, 1.0, 1e-9);
-  EXPECT_NEAR(grid->dy_m, 6'371'229.0 * std::numbers::pi / 180.0, 0.01);
-  EXPECT_NEAR(grid->dx_m, grid->dy_m * std::cos(49.0 * std::numbers::pi / 180.0), 0.01);
+  const auto even = MakeEven(PlacesOf(*grid));
+  ASSERT_TRUE(even.ok()) << even.status();
+  EXPECT_NEAR(even->middle.latitude_deg, 49.0, 1e-9);
+  EXPECT_NEAR(even->middle.longitude_deg, 1.0, 1e-9);
+  EXPECT_NEAR(even->mean_m.y, 6'371'229.0 * std::numbers::pi / 180.0, 0.01);
+  EXPECT_NEAR(even->longest_m.x / even->mean_m.y, std::cos(48.0 * std::numbers::pi / 180.0), 1e-4);
 }
 
 // Each scanning mode describes the same field, so all give the same order.
@@ -443,17 +457,21 @@ TEST(GribGrid, ReadsLambertGridsFromNorthToSouth) {
   const auto centred = ReadGrid(section(45.0, 10.0, 0x40));
   ASSERT_TRUE(centred.ok()) << centred.status();
   // The place of the point 100 km west and 50 km north of the tangent point is the first one.
-  const GridMap::Place north_west = centred->map->PlaceOf({-100'000.0, 50'000.0});
+  const auto map = volume::MapProjection::Open(centred->projection);
+  ASSERT_TRUE(map.ok()) << map.status();
+  const volume::EarthPlace north_west = *map->PlaceOf({-100'000.0, 50'000.0});
   const auto grid = ReadGrid(section(north_west.latitude_deg, north_west.longitude_deg, 0));
   ASSERT_TRUE(grid.ok()) << grid.status();
-  EXPECT_NEAR(grid->latitude_deg, 45.0, 1e-5);
-  EXPECT_NEAR(grid->longitude_deg, 10.0, 1e-5);
-  EXPECT_NEAR(grid->dx_m, 2000.0, 0.01);
   EXPECT_TRUE(grid->wind_along_grid);
+  const auto even = MakeEven(PlacesOf(*grid));
+  ASSERT_TRUE(even.ok()) << even.status();
+  EXPECT_NEAR(even->middle.latitude_deg, 45.0, 1e-5);
+  EXPECT_NEAR(even->middle.longitude_deg, 10.0, 1e-5);
+  EXPECT_NEAR(even->dx_m, 2000.0, 0.01);
   // North of the tangent point the map is wider than the Earth.
   const auto far = ReadGrid(section(55.0, 10.0, 0x40));
   ASSERT_TRUE(far.ok()) << far.status();
-  EXPECT_LT(far->dx_m, 1980.0);
+  EXPECT_LT(MakeEven(PlacesOf(*far))->dx_m, 1980.0);
 }
 
 TEST(GribGrid, NamesGridsThatAreNotRead) {
@@ -465,7 +483,16 @@ TEST(GribGrid, NamesGridsThatAreNotRead) {
             .message());
   };
   EXPECT_THAT(error(40), HasSubstr("is Gaussian (template 3.40)"));
-  EXPECT_THAT(error(101), HasSubstr("ICON's triangles"));
+  EXPECT_THAT(
+      ReadGrid(AsBytes(testing::Section(
+                   3, Number(0, 1) + Number(4, 4) + Number(0, 2) + Number(101, 2) + Number(6, 1) +
+                          Number(44, 3) + Number(1, 1) +
+                          "\xa2\x7b\x8d\xe6\x18\xc4\x11\xe4\x82\x0a\xb5\xb0\x98\xc6\xa5\xc0")))
+          .status()
+          .message(),
+      AllOf(HasSubstr("ICON's triangles"), HasSubstr("the grid 44 (uuidOfHGrid a27b8de6-18c4-"
+                                                     "11e4-820a-b5b098c6a5c0)")));
+  EXPECT_THAT(error(100), HasSubstr("triangles of an icosahedron"));
   EXPECT_THAT(error(32769), HasSubstr("32769"));
   EXPECT_THAT(error(4711), HasSubstr("of a kind that is not known (template 3.4711)"));
 }
@@ -483,13 +510,14 @@ TEST(GribGrid, TurnsRotatedGrids) {
   grid_text += Number(-40'000'000, 4) + Number(10'000'000, 4) + Number(0, 4);
   const auto grid = ReadGrid(AsBytes(testing::Section(3, grid_text)));
   ASSERT_TRUE(grid.ok()) << grid.status();
-  EXPECT_NEAR(grid->latitude_deg, 50.0, 1e-9);
-  EXPECT_NEAR(grid->longitude_deg, 10.0, 1e-9);
-  EXPECT_NEAR(grid->dx_m, 111'198.9, 0.2);
-  const GridMap::Point back = grid->map->PointOf(grid->map->PlaceOf({0.7, -0.3}));
-  EXPECT_NEAR(back.x, 0.7, 1e-9);
-  EXPECT_NEAR(back.y, -0.3, 1e-9);
-  const std::vector<float> angles = AxisAngles(*grid);
+  const auto even = MakeEven(PlacesOf(*grid));
+  ASSERT_TRUE(even.ok()) << even.status();
+  EXPECT_NEAR(even->middle.latitude_deg, 50.0, 1e-9);
+  EXPECT_NEAR(even->middle.longitude_deg, 10.0, 1e-9);
+  EXPECT_NEAR(even->longest_m.x, 111'198.9, 0.2);
+  const auto axis_angles = AxisAngles(*grid);
+  ASSERT_TRUE(axis_angles.ok()) << axis_angles.status();
+  const std::vector<float>& angles = *axis_angles;
   ASSERT_EQ(angles.size(), 9U);
   EXPECT_NEAR(angles[4], 0.0F, 1e-3F);    // in the middle, x points east
   EXPECT_GT(std::abs(angles[3]), 0.01F);  // at the western side, it does not

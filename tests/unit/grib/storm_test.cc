@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "absl/strings/str_cat.h"
+#include "base/byte_source.h"
 #include "storm_files/grib_air.h"
 #include "storm_files/grib_parts.h"
 #include "storm_files/grib_storm.h"
@@ -164,6 +165,7 @@ TEST_F(GribStormTest, ReadsAWholeFile) {
   ASSERT_TRUE(file.ok()) << file.status();
   EXPECT_EQ(file->cells, glm::ivec3(2, 2, 4));
   EXPECT_EQ(file->about, "NCEP HRRR, run 2024-05-20 21:00 UTC, +1 h");
+  EXPECT_EQ(file->run_start, absl::FromUnixSeconds(1716238800));  // 2024-05-20 21:00 UTC
   EXPECT_THAT(file->fields, ElementsAre(Hydrometeor::kCloud, Hydrometeor::kRain));
   EXPECT_THAT(file->assumptions, Contains(HasSubstr("kg per kg of dry air")));
   EXPECT_EQ(file->member, "");
@@ -246,6 +248,67 @@ TEST_F(GribStormTest, NamesMissingLevels) {
               HasSubstr("every field of hybrid level 2 is missing"));
   EXPECT_THAT(ErrorWith([](Message& message) { return message.level.value != 1; }),
               HasSubstr("every field of the levels below level 2 is missing"));
+}
+
+// A file that was cut between two messages may have the first fields of its last level.
+TEST_F(GribStormTest, NamesALevelThatOnlyOtherFieldsHave) {
+  const auto only = [this](int category, int number) {
+    return ErrorWith([=](Message& message) {
+      return message.level.value != 4 || Is(message, category, number, 4);
+    });
+  };
+  EXPECT_THAT(only(3, 0), HasSubstr("CLMR (0/1/22) of hybrid level 4 is missing at "
+                                    "2024-05-20 22:00 UTC; get the complete set of fields"));
+  EXPECT_THAT(only(3, 5), HasSubstr("CLMR (0/1/22) of hybrid level 4 is missing"));
+  EXPECT_THAT(only(0, 0), HasSubstr("CLMR (0/1/22) of hybrid level 4 is missing"));
+  EXPECT_THAT(only(1, 0), HasSubstr("CLMR (0/1/22) of hybrid level 4 is missing"));
+  EXPECT_THAT(only(1, 24), HasSubstr("CLMR (0/1/22) of hybrid level 4 is missing"));
+}
+
+// The coefficients of hybrid levels say how many levels there are, also if heights are given.
+TEST_F(GribStormTest, NamesALevelThatOnlyCoefficientsHave) {
+  const auto error = [this](std::vector<float> coefficients) {
+    return ErrorWith([&](Message& message) {
+      message.coordinates = coefficients;
+      return true;
+    });
+  };
+  const std::vector<float> of_four = {0.0F, 0.0F, 1e3F, 1e3F, 5e3F, 1.0F, 0.7F, 0.5F, 0.2F, 0.0F};
+  EXPECT_EQ(error(of_four), "");
+  std::vector<float> of_five = of_four;
+  of_five.insert(of_five.begin(), 0.0F);
+  of_five.push_back(0.0F);
+  EXPECT_THAT(error(of_five), HasSubstr("every field of hybrid level 5 is missing"));
+  // Other models write other numbers there.
+  of_five.back() = 273.15F;
+  EXPECT_EQ(error(of_five), "");
+}
+
+TEST_F(GribStormTest, StatesWhyWindAndNumbersAreLeftOut) {
+  Layout layout;
+  std::string more;
+  const auto add = [&](int category, int number, int level) {
+    more += BytesOf({.category = category,
+                     .number = number,
+                     .level = {105, level},
+                     .grid = GridOf({}),
+                     .points = 4,
+                     .values = {1.0F}});
+  };
+  for (int level = 1; level <= 4; ++level) {
+    if (level < 4) add(2, 2, level);
+    add(2, 3, level);
+    if (level != 2) add(1, 100, level);
+  }
+  const auto file = DescribeAlone(Write("more", FileOf(layout) + more));
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_THAT(
+      file->assumptions,
+      ::testing::IsSupersetOf({"UGRD (0/2/2) is not used, because hybrid level 4 is missing at "
+                               "2024-05-20 22:00 UTC.",
+                               "SPNCR (0/1/100) is not used, because hybrid level 2 is missing at "
+                               "2024-05-20 22:00 UTC."}));
+  EXPECT_THAT(file->assumptions, ::testing::Not(Contains(HasSubstr("VGRD"))));
 }
 
 TEST_F(GribStormTest, NamesHeightsThatCannotBeKnown) {
@@ -353,10 +416,30 @@ TEST_F(GribStormTest, ReadsHeightsOfHalfLevels) {
                      (1.0 + 1.608 * kVapour);
   const double rain = dry * (1.0 + kVapour) / (1.0 - kShare) * 8.0 / 16384.0;
   EXPECT_NEAR(PathAt(*fields, 1, 1), rain, 0.002 * rain);
+  EXPECT_THAT(file->assumptions, ::testing::Not(Contains(HasSubstr("ends at"))));
   std::vector<float> other = id;
   other[5] = 0.5F;
   EXPECT_THAT(ErrorOf(DescribeAlone(Write("mixed", Generalized(id, other)))),
               HasSubstr("which match the fields' uuidOfVGrid"));
+}
+
+TEST_F(GribStormTest, StatesThatHeightsReachHigherThanFields) {
+  const std::string all = Generalized({}, {});
+  std::string lower;
+  const auto index = grib::ReadIndex(*grib::testing::BytesIn(all));
+  for (std::size_t i = 0; i < index->fields.size(); ++i) {
+    const grib::Field& field = index->fields[i];
+    if (field.first.value == 1.0 && field.parameter.number != 6) continue;
+    const std::uint64_t end =
+        i + 1 < index->fields.size() ? index->fields[i + 1].message_offset : all.size();
+    lower += all.substr(field.message_offset, end - field.message_offset);
+  }
+  const auto file = DescribeAlone(Write("lower", lower));
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_EQ(file->cells.z, 3);
+  EXPECT_THAT(file->assumptions,
+              Contains("The storm ends at generalized level 2, because no field is on the levels "
+                       "above, whose heights are given."));
 }
 
 TEST_F(GribStormTest, OneHybridLevelIsNoPartOfIsobaricLevels) {
@@ -367,6 +450,23 @@ TEST_F(GribStormTest, OneHybridLevelIsNoPartOfIsobaricLevels) {
   const auto file = DescribeAlone(Write("gfs", extra + FileOf(layout)));
   ASSERT_TRUE(file.ok()) << file.status();
   EXPECT_EQ(file->cells.z, 4);
+}
+
+// A file that was cut between two messages may lack the hydrometeors of its last levels.
+TEST_F(GribStormTest, StatesIsobaricLevelsWithoutHydrometeors) {
+  const auto assumptions_without = [this](std::vector<int> levels) {
+    Layout layout = Isobaric();
+    const auto edit = layout.edit;
+    layout.edit = [=](Message& message) {
+      return edit(message) && !(message.category == 1 && message.number != 0 &&
+                                std::ranges::find(levels, message.level.value) != levels.end());
+    };
+    return Describe(layout)->assumptions;
+  };
+  EXPECT_THAT(assumptions_without({70'000, 100'000}),
+              Contains("Levels that not all fields have are left out: 700 hPa, 1000 hPa."));
+  // Hydrometeors may be on fewer levels than temperature.
+  EXPECT_THAT(assumptions_without({80'000}), ::testing::Not(Contains(HasSubstr("left out: "))));
 }
 
 TEST_F(GribStormTest, LeavesOutIsobaricLevelsAtTheEnds) {
@@ -397,6 +497,37 @@ TEST_F(GribStormTest, NamesDamagedFiles) {
           BytesOf(
               {.category = 1, .number = 8, .grid = GridOf({}), .points = 4, .values = {0.0F}})))),
       HasSubstr("has no field that a storm needs"));
+}
+
+// The listing of a file names messages beyond its end if the file was cut short.
+TEST_F(GribStormTest, NamesAListingOfMore) {
+  const std::string whole = FileOf({});
+  const auto index = grib::ReadIndex(*grib::testing::BytesIn(whole));
+  std::string listing;
+  for (std::size_t i = 0; i < index->fields.size(); ++i) {
+    listing += absl::StrCat(i + 1, ":", index->fields[i].message_offset,
+                            ":d=2024052021:TMP:1 hybrid level:1 hour fcst:\n");
+  }
+  const std::uint64_t last = index->fields.back().message_offset;
+  const auto error = [&](std::uint64_t size) {
+    const std::string path = Write("listed", whole.substr(0, size));
+    const base::FileDescriptor file = *base::OpenRegularFile(path);
+    return std::string(StormFormats::BuiltIn().CheckStart(path, file.Get()).message());
+  };
+  EXPECT_EQ(error(last), "");
+  Write("listed.idx", listing);
+  EXPECT_EQ(error(whole.size()), "");
+  EXPECT_EQ(error(last + 1), "");
+  EXPECT_THAT(error(last), HasSubstr(absl::StrCat("ends at byte ", last)));
+  EXPECT_THAT(error(last), HasSubstr(absl::StrCat("listed.idx names a message at byte ", last,
+                                                  "; it was cut short: copy it again")));
+  // The listing itself may be cut, or be another kind of file.
+  Write("listed.idx", listing.substr(0, listing.size() - 1));
+  EXPECT_THAT(error(last), HasSubstr("cut short"));
+  Write("listed.idx", listing + "999:9999");
+  EXPECT_EQ(error(whole.size()), "");
+  Write("listed.idx", "no listing: 1:2:3\n:999999:\n");
+  EXPECT_EQ(error(last), "");
 }
 
 TEST_F(GribStormTest, NamesParts) {

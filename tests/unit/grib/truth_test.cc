@@ -8,11 +8,16 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <set>
 
 #include "absl/strings/match.h"
+#include "glm/trigonometric.hpp"
+#include "glm/vec2.hpp"
+#include "storm_files/grib_columns.h"
 #include "storm_files/grib_storm.h"
 #include "storm_files/storm_format.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -105,6 +110,25 @@ class GribTruth : public ::testing::TestWithParam<Case> {
     return 0;
   }
 
+  // Returns the distance of the western from the eastern columns in the middle, and of the southern
+  // from the northern ones.
+  glm::dvec2 Size_m() const {
+    const json& corners = time_.grid["corners_lat_lon"];
+    const auto angle = [&](const char* corner, int which) {
+      return glm::radians(corners[corner][which].get<double>());
+    };
+    const double radius_m = time_.grid["earth_radius_m"];
+    const double latitude = 0.5 * (angle("southwest", 0) + angle("northeast", 0));
+    return radius_m *
+           glm::dvec2((angle("southeast", 1) - angle("southwest", 1)) * std::cos(latitude),
+                      angle("northwest", 0) - angle("southwest", 0));
+  }
+  glm::dvec2 Columns() const { return {time_.grid["nx"].get<int>(), time_.grid["ny"].get<int>()}; }
+  double Area_m2() const {
+    const glm::dvec2 size_m = Size_m() * Columns() / (Columns() - 1.0);
+    return size_m.x * size_m.y;
+  }
+
   Time time_;
 };
 
@@ -120,8 +144,6 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_P(GribTruth, TimeAndPlace) {
   const auto file = Describe(time_);
   ASSERT_TRUE(file.ok()) << file.status();
-  EXPECT_EQ(file->cells.x, time_.grid["nx"]);
-  EXPECT_EQ(file->cells.y, time_.grid["ny"]);
   EXPECT_THAT(file->times, ElementsAre(ParsedTime(time_.truth["valid_time"])));
   // The middle lies between opposite corners, whose places are known.
   const json& corners = time_.grid["corners_lat_lon"];
@@ -131,19 +153,16 @@ TEST_P(GribTruth, TimeAndPlace) {
       (corners["southwest"][1].get<double>() + corners["northeast"][1].get<double>()) / 2.0;
   EXPECT_NEAR(*file->latitude_deg, latitude_deg, 1e-3);
   EXPECT_NEAR(*file->longitude_deg, std::remainder(longitude_deg, 360.0), 2e-3);
-  // The distance of the western from the eastern side.
-  const double radius_m = time_.grid["earth_radius_m"];
-  const double east =
-      (corners["southeast"][1].get<double>() - corners["southwest"][1].get<double>()) * M_PI /
-      180.0;
-  const double north =
-      (corners["northwest"][0].get<double>() - corners["southwest"][0].get<double>()) * M_PI /
-      180.0;
-  EXPECT_NEAR(file->dx_m * (file->cells.x - 1),
-              radius_m * east * std::cos(latitude_deg * M_PI / 180.0),
-              0.01 * file->dx_m * file->cells.x);
-  EXPECT_NEAR(file->dy_m * (file->cells.y - 1), radius_m * north,
-              0.01 * file->dy_m * file->cells.y);
+  const glm::dvec2 spacing_m = Size_m() / (Columns() - 1.0);
+  EXPECT_NEAR(file->dx_m, spacing_m.x, 0.01 * spacing_m.x);
+  EXPECT_NEAR(file->dy_m, spacing_m.y, 0.01 * spacing_m.y);
+  if (absl::StartsWith(GetParam().set, "hrrr")) {
+    EXPECT_EQ(glm::dvec2(file->cells), Columns());
+  } else {
+    // Columns in degrees are resampled to a rectangle around all of them.
+    EXPECT_NEAR(file->cells.x, Columns().x, 2.0);
+    EXPECT_NEAR(file->cells.y, Columns().y, 2.0);
+  }
   EXPECT_THAT(file->assumptions, ::testing::Not(::testing::IsEmpty()));
 }
 
@@ -245,14 +264,22 @@ TEST_P(GribTruth, WaterPathsAndTheStrongestColumn) {
   const bool from_file = time_.truth.contains("column_max_from_file");
   const json& truth = time_.truth[from_file ? "column_max_from_file" : "column_max"];
   const auto strongest = static_cast<std::size_t>(std::ranges::max_element(paths) - paths.begin());
-  EXPECT_NEAR(strongest % file->cells.x, truth["i"].get<double>(), 1.0);
-  EXPECT_NEAR(strongest / file->cells.x, truth["j"].get<double>(), 1.0);
+  const auto map =
+      volume::MapProjection::Of(file->projection, {*file->latitude_deg, *file->longitude_deg});
+  ASSERT_TRUE(map.ok()) << map.status();
+  const auto expected_m = map->WorldOf({truth["lat"].get<double>(), truth["lon"].get<double>()});
+  ASSERT_TRUE(expected_m.has_value());
+  const glm::dvec2 position =
+      *expected_m / glm::dvec2(file->dx_m, file->dy_m) + 0.5 * (glm::dvec2(file->cells) - 1.0);
+  EXPECT_NEAR(strongest % file->cells.x, position.x, 1.0);
+  EXPECT_NEAR(strongest / file->cells.x, position.y, 1.0);
   const double path = truth["condensate_kg_m2"];
   EXPECT_NEAR(paths[strongest], path, 0.025 * path);
-  double mean = 0.0;
-  for (const double each : paths) mean += each / static_cast<double>(columns);
-  const double known_mean = truth["domain_mean_kg_m2"];
-  EXPECT_NEAR(mean, known_mean, 0.025 * known_mean);
+  // Resampled columns may cover more than the domain, so water is compared with that of its area.
+  const double water_kg =
+      std::accumulate(paths.begin(), paths.end(), 0.0) * file->dx_m * file->dy_m;
+  const double known_kg = truth["domain_mean_kg_m2"].get<double>() * Area_m2();
+  EXPECT_NEAR(water_kg, known_kg, 0.025 * known_kg);
 }
 
 // The sets that have wind.
@@ -297,11 +324,12 @@ TEST_P(GribWind, SteersDetail) {
 // The wind is known both along the grid and along east and north.
 TEST_P(GribWind, TurnsWithTheGrid) {
   const auto storm = StormOf(time_);
-  const std::vector<float> angles = grib::AxisAngles(storm->contents.grid);
+  const auto angles = AxisAngles(storm->contents.grid);
+  ASSERT_TRUE(angles.ok()) << angles.status();
   json truth = time_.truth["wind_in_max_column"];
   if (truth.is_array()) truth = truth[0];
-  const float angle = angles[truth["j"].get<std::size_t>() * storm->contents.grid.columns +
-                             truth["i"].get<std::size_t>()];
+  const float angle = (*angles)[truth["j"].get<std::size_t>() * storm->contents.grid.columns +
+                                truth["i"].get<std::size_t>()];
   const double east = truth["earth_east"];
   const double north = truth["earth_north"];
   EXPECT_NEAR(east * std::cos(angle) + north * std::sin(angle), truth["along_grid_u"].get<double>(),

@@ -135,6 +135,7 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   expected.about = "about";
   expected.domain = 7;
   expected.run = "run";
+  expected.run_start = absl::FromUnixSeconds(16);
   expected.grid = "grid";
   expected.latitude_deg = 8.0;
   expected.longitude_deg = 9.0;
@@ -147,9 +148,9 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   expected.version = expected.id = expected.device = 10;
   expected.modified_ns = 15;
   const storm_files::StormFile received = Sent(expected);
-  const auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, latitude_deg,
-               longitude_deg, middles, projection, member, assumptions, part, parts, reader,
-               version, id, device, modified_ns] = received;
+  const auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, run_start,
+               latitude_deg, longitude_deg, middles, projection, member, assumptions, part, parts,
+               reader, version, id, device, modified_ns] = received;
   EXPECT_EQ(cells, expected.cells);
   EXPECT_EQ(dx_m, expected.dx_m);
   EXPECT_EQ(dy_m, expected.dy_m);
@@ -158,6 +159,7 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   EXPECT_EQ(about, expected.about);
   EXPECT_EQ(domain, expected.domain);
   EXPECT_EQ(run, expected.run);
+  EXPECT_EQ(run_start, expected.run_start);
   EXPECT_EQ(grid, expected.grid);
   EXPECT_EQ(latitude_deg, expected.latitude_deg);
   EXPECT_EQ(longitude_deg, expected.longitude_deg);

@@ -330,6 +330,55 @@ TEST_F(CfLayouts, DistancesOnAMapAreTrueDistances) {
   EXPECT_NEAR((*fields)->grid.spacing_m.y, 1000.0, 2.0);
 }
 
+// The columns of an ocean stay on its Mercator map. Distances are true in the middle, at 30 N,
+// where the map factor is 1.1547.
+TEST_F(CfLayouts, AWideDomainStaysOnItsConformalMap) {
+  SyntheticCf file = Cloud();
+  const double north_m = 6371000.0 * std::log(std::tan(M_PI / 4 + 15.0 * M_PI / 180.0));
+  file.coordinates[0].values = Middles(6, -2.4e6, 8e5);
+  file.coordinates[1].values = Middles(4, north_m - 8e5, 4e5);
+  for (const int axis : {0, 1}) {
+    file.coordinates[axis].attributes = {
+        {"units", "m"},
+        {"standard_name", axis == 0 ? "projection_x_coordinate" : "projection_y_coordinate"}};
+  }
+  AddMapping(file, {{"grid_mapping_name", "mercator"}},
+             {{"standard_parallel", 0.0},
+              {"longitude_of_projection_origin", 170.0},
+              {"earth_radius", 6371000.0}});
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.cells.x, 6);
+  EXPECT_EQ((*fields)->grid.cells.y, 4);
+  EXPECT_NEAR((*fields)->grid.spacing_m.x, 8e5 * std::cos(M_PI / 6.0), 0.003 * 8e5);
+  EXPECT_NEAR((*fields)->grid.spacing_m.y, 4e5 * std::cos(M_PI / 6.0), 0.003 * 4e5);
+  EXPECT_THAT(info_.assumptions, Contains(HasSubstr("true in the middle, and 9")));
+  // The centre of the last column, by the formulas of the map.
+  const auto map = storm_store::ProjectionOf(info_, 0);
+  ASSERT_TRUE(map.has_value());
+  const glm::dvec2 corner_m =
+      glm::dvec2((*fields)->grid.HighCorner_m()) - 0.5 * glm::dvec2((*fields)->grid.spacing_m);
+  const auto place = map->PlaceOf(corner_m);
+  ASSERT_TRUE(place.has_value());
+  const double latitude = 2.0 * std::atan(std::exp((north_m + 6e5) / 6371000.0)) - M_PI / 2.0;
+  EXPECT_NEAR(place->latitude_deg, latitude * 180.0 / M_PI, 0.01);
+  EXPECT_NEAR(place->longitude_deg, 170.0 + 2.0e6 / 6371000.0 * 180.0 / M_PI - 360.0, 0.01);
+}
+
+// On WGS 84 a degree of latitude at the equator is 110 574 m. On a sphere it is 111 195 m.
+TEST_F(CfLayouts, DegreesAreOfTheFileOwnEllipsoid) {
+  SyntheticCf file = InDegrees({10.0, 10.1, 10.2, 10.3, 10.4, 10.5}, {0.0, 0.1, 0.2, 0.3});
+  auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->grid.spacing_m.y, 11'119.5, 3.0);
+  AddMapping(file, {{"grid_mapping_name", "latitude_longitude"}},
+             {{"semi_major_axis", 6378137.0}, {"inverse_flattening", 298.257223563}});
+  fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR((*fields)->grid.spacing_m.y, 11'057.4, 3.0);
+  EXPECT_NEAR((*fields)->grid.spacing_m.x, 11'131.9, 3.0);
+}
+
 // Adds longitudes and latitudes of a grid of 0.01 degrees, whose middle is at 47 N 8 E.
 void AddPlaces(SyntheticCf& file, const std::string& y, const std::string& x) {
   file.variables.push_back(Values("lat", {y, x}, "degrees_north", [y](const Index& at) {
@@ -377,11 +426,14 @@ TEST_F(CfLayouts, ColumnsThatRunSouthAreTurned) {
   EXPECT_EQ((*fields)->condensate.low.y, 3);
 }
 
-TEST_F(CfLayouts, UnstructuredGridsAreRefusedByName) {
+TEST_F(CfLayouts, ColumnsWithoutPlacesOrAreaAreRefusedByName) {
   SyntheticCf file = Cloud();
   file.coordinates[0] = {"cell", std::vector<double>(6), {}, {}, false};
   file.variables[0].dimensions = {"z", "cell"};
-  ExpectError(file, "unstructured grid 'cell'");
+  ExpectError(file, "cells 'cell' of an unstructured grid");
+  file.coordinates[0].name = "ncol";
+  file.variables[0].dimensions = {"z", "ncol"};
+  ExpectError(file, "points 'ncol' of spectral elements");
   file.coordinates[0].name = "column";
   file.variables[0].dimensions = {"z", "column"};
   file.variables.push_back(Values("lat", {"column"}, "degrees_north", [](const Index& at) {
@@ -389,7 +441,7 @@ TEST_F(CfLayouts, UnstructuredGridsAreRefusedByName) {
   }));
   file.variables.push_back(
       Values("lon", {"column"}, "degrees_east", [](const Index&) { return 5.0; }));
-  ExpectError(file, "unstructured grid 'column'");
+  ExpectError(file, "the cells lie on one line, so the domain has no area");
 }
 
 // CM1 names its dimensions ni, nj and nk, and its wind lies on the faces between cells.
@@ -443,7 +495,7 @@ TEST_F(CfLayouts, TheAirMayBeAProfile) {
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_FLOAT_EQ((*fields)->fields[0].concentration_kg_per_m3[0], 0.5e-3F * 1.2F);
   file.variables.back() = Values("PP", {"z", "y", "x"}, "Pa", [](const Index&) { return 10.0; });
-  ExpectError(file, "PP is only the deviation from a reference pressure");
+  ExpectError(file, "PP is only the deviation from a reference state");
 }
 
 }  // namespace

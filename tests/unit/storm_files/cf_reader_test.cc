@@ -421,6 +421,7 @@ TEST_F(CfReader, TimesMayBeScalarOrAuxiliary) {
        }});
   ASSERT_TRUE(Read(file).ok());
   EXPECT_EQ(info_.times[0].valid_time, "2013-05-20T20:45:00Z");
+  EXPECT_EQ(info_.run_start, "2013-05-20T20:30:00Z");
   // PALM gives the date apart from the units.
   file = Timed("seconds", 3600.0);
   file.attributes["origin_time"] = "2013-05-20 18:00:00 +00";

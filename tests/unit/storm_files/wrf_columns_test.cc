@@ -13,6 +13,7 @@
 #include "tests/support/earth_formulas.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -63,9 +64,8 @@ class WrfColumns : public ::testing::Test {
   testing::TemporaryFolder folder_;
 };
 
-// Returns the place of the middle of the cloud.
-EarthPlace CloudPlace(const StormFile& file, const volume::HydrometeorFields& fields,
-                      const EarthPlace& middle) {
+// Returns the world coordinates of the middle of the cloud.
+glm::dvec2 CloudMiddle_m(const StormFile& file, const volume::HydrometeorFields& fields) {
   glm::dvec2 moment(0.0);
   double sum = 0.0;
   for (int y = 0; y < file.cells.y; ++y) {
@@ -76,7 +76,13 @@ EarthPlace CloudPlace(const StormFile& file, const volume::HydrometeorFields& fi
     }
   }
   const glm::dvec2 column = moment / sum - 0.5 * glm::dvec2(glm::ivec2(file.cells) - 1);
-  return testing::FromStereographic(column * glm::dvec2(file.dx_m, file.dy_m), middle);
+  return column * glm::dvec2(file.dx_m, file.dy_m);
+}
+
+// Returns the place of the middle of the cloud on a stereographic map around `middle`.
+EarthPlace CloudPlace(const StormFile& file, const volume::HydrometeorFields& fields,
+                      const EarthPlace& middle) {
+  return testing::FromStereographic(CloudMiddle_m(file, fields), middle);
 }
 
 TEST_F(WrfColumns, AProjectedLengthIsNoTrueLength) {
@@ -180,16 +186,64 @@ TEST_F(WrfColumns, IdealisedRunsAndShortDomainsKeepDx) {
   }
 }
 
-TEST_F(WrfColumns, RefusesADomainThatIsTooLarge) {
+// The columns of a continent stay on its Lambert map, and the errors of distances are stated.
+TEST_F(WrfColumns, ReadsAContinentOnItsMap) {
+  SyntheticWrf wrf = Nest();
+  wrf.nx = 60;
+  wrf.ny = 50;
+  wrf.dx_m = wrf.dy_m = 80e3;
+  wrf.map_projection = 1;
+  wrf.times.resize(1);
+  wrf.numbers = {{"TRUELAT1", 30.0}, {"TRUELAT2", 60.0}, {"STAND_LON", -97.0}};
+  const testing::LambertFormulas lambert(30.0, 60.0, -97.0);
+  const auto place = [=](const WrfCell& cell) {
+    return lambert.PlaceOf({80e3 * cell.x - 2.4e6, 80e3 * cell.y - 9.2e6});
+  };
+  wrf.columns["XLAT"] = [=](const WrfCell& cell) { return place(cell).latitude_deg; };
+  wrf.columns["XLONG"] = [=](const WrfCell& cell) { return place(cell).longitude_deg; };
+  const StormFile file = Describe(wrf);
+  EXPECT_EQ(file.cells, glm::ivec3(60, 50, 3));
+  EXPECT_THAT(file.projection, HasSubstr("+proj=lcc"));
+  EXPECT_THAT(file.assumptions,
+              ElementsAre(HasSubstr("DX and DY"), HasSubstr("true in the middle, and ")));
+  EXPECT_NEAR(file.dx_m, Distance_m(place({29, 25}), place({30, 25})), 0.003 * 80e3);
+  const auto map =
+      volume::MapProjection::Of(file.projection, {*file.latitude_deg, *file.longitude_deg});
+  ASSERT_TRUE(map.ok()) << map.status();
+  const auto fields = file.reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ(fields->grid.spacing_m.x, file.dx_m);
+  for (const WrfCell& cell : {WrfCell{0, 0}, WrfCell{59, 0}, WrfCell{0, 49}, WrfCell{59, 49}}) {
+    const glm::dvec2 world_m =
+        glm::dvec2(fields->grid.low_corner_m) +
+        (glm::dvec2(cell.x, cell.y) + 0.5) * glm::dvec2(fields->grid.spacing_m);
+    const auto at = map->PlaceOf(world_m);
+    ASSERT_TRUE(at.has_value());
+    EXPECT_LT(Distance_m(*at, place(cell)), 0.05 * file.dx_m) << cell.x << ", " << cell.y;
+  }
+}
+
+// Columns without a map projection are resampled to one.
+TEST_F(WrfColumns, ResamplesAContinentWithoutAMap) {
   SyntheticWrf wrf = Nest();
   wrf.nx = wrf.ny = 20;
+  wrf.times.resize(1);
   wrf.columns["XLAT"] = [](const WrfCell& cell) { return 20.0 + 2.0 * cell.y; };
   wrf.columns["XLONG"] = [](const WrfCell& cell) { return -100.0 + 2.0 * cell.x; };
-  const std::string path = folder_.File("wrfout");
-  testing::WriteWrf(wrf, path);
-  const auto described = StormFormats::BuiltIn().Describe(path);
-  EXPECT_THAT(std::string(described.status().message()), HasSubstr("wrfout: the domain reaches"));
-  EXPECT_THAT(std::string(described.status().message()), HasSubstr("cut a region"));
+  wrf.mixing_ratios["QCLOUD"] = [](const WrfCell& cell) {
+    return std::abs(cell.x - 16) < 2 && std::abs(cell.y - 3) < 2 ? 1e-3 : 0.0;
+  };
+  const StormFile file = Describe(wrf);
+  EXPECT_THAT(file.assumptions,
+              ElementsAre(HasSubstr("resampled"), HasSubstr("true in the middle, and ")));
+  const auto fields = file.reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  const auto map =
+      volume::MapProjection::Of(file.projection, {*file.latitude_deg, *file.longitude_deg});
+  ASSERT_TRUE(map.ok()) << map.status();
+  const auto cloud = map->PlaceOf(CloudMiddle_m(file, *fields));
+  ASSERT_TRUE(cloud.has_value());
+  EXPECT_LT(Distance_m(*cloud, {26.0, -68.0}), 0.5 * file.dx_m);
 }
 
 }  // namespace

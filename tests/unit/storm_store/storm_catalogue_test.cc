@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/synthetic_cf.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
 
@@ -14,6 +15,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::SizeIs;
+using testing::SyntheticCf;
 using testing::SyntheticWrf;
 using testing::TemporaryFolder;
 using testing::WrfCell;
@@ -96,6 +98,44 @@ TEST_F(StormCatalogue, TellsRunsApartByGridDomainAndStart) {
   Write("d", {"21"}, [](SyntheticWrf& file) { file.simulation_start = "2013-05-20_00:00:00"; });
   Write("e", {"22"}, [](SyntheticWrf& file) { file.dx_m = 500.0; });
   EXPECT_THAT(Ids(Find()), ElementsAre("a", "b", "c", "d", "e"));
+}
+
+// Writes a CF file with one time, and the time at which its forecast began, in hours since
+// midnight.
+void WriteForecast(const std::filesystem::path& path, double valid_h, double start_h) {
+  SyntheticCf file = testing::ExtinctionFile(2, 2, 2, 1000.0, 1000.0, 500.0,
+                                             [](auto, auto, auto) { return 1e-3; });
+  const auto hour = [&](const std::string& name, const std::string& standard_name, double value) {
+    file.variables.push_back(
+        {name,
+         {},
+         {{"units", "hours since 2013-05-20"}, {"standard_name", standard_name}},
+         [value](const auto&) { return value; }});
+  };
+  hour("valid", "time", valid_h);
+  hour("start", "forecast_reference_time", start_h);
+  std::filesystem::create_directories(path.parent_path());
+  testing::WriteCf(file, path.string());
+}
+
+TEST_F(StormCatalogue, TellsForecastsThatBeganAtDifferentTimesApart) {
+  WriteForecast(storms_ / "a.nc", 19.0, 18.0);
+  WriteForecast(storms_ / "b.nc", 20.0, 18.0);
+  WriteForecast(storms_ / "c.nc", 20.0, 19.0);
+  const std::vector<CataloguedStorm> storms = Find();
+  ASSERT_THAT(Ids(storms), ElementsAre("c", "moore"));
+  EXPECT_EQ(storms[0].info.run_start, "2013-05-20T19:00:00Z");
+  EXPECT_THAT(Hours(storms[1]), ElementsAre("19", "20"));
+  EXPECT_EQ(storms[1].info.run_start, "2013-05-20T18:00:00Z");
+}
+
+TEST_F(StormCatalogue, TakesAnalysesAsOneSeriesWithoutAStart) {
+  WriteForecast(storms_ / "a.nc", 18.0, 18.0);
+  WriteForecast(storms_ / "b.nc", 19.0, 19.0);
+  const std::vector<CataloguedStorm> storms = Find();
+  ASSERT_THAT(storms, SizeIs(1));
+  EXPECT_THAT(Hours(storms[0]), ElementsAre("18", "19"));
+  EXPECT_FALSE(storms[0].info.run_start.has_value());
 }
 
 TEST_F(StormCatalogue, TellsTheNestsOfARunApart) {

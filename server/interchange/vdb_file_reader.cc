@@ -1,0 +1,58 @@
+#include "interchange/vdb_file_reader.h"
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "base/program_folder.h"
+#include "base/status.h"
+#include "interchange/vdb_reader_main.h"
+#include "sandbox/readers.h"
+#include "storm_files/vdb_start.h"
+
+namespace thunderhead::interchange {
+namespace {
+
+absl::Status CheckVdbStart(const std::string& path, int file) {
+  std::string start(storm_files::kVdbStart.size(), '\0');
+  const ssize_t count = pread(file, start.data(), start.size(), 0);
+  if (count == std::ssize(start) && storm_files::BeginsLikeVdb(start)) return absl::OkStatus();
+  return absl::InvalidArgumentError(
+      absl::StrCat(path, ": does not begin like an OpenVDB file; give a file that is one"));
+}
+
+absl::StatusOr<std::string> ProgramOr(const std::string& given) {
+  if (!given.empty()) return given;
+  const std::filesystem::path path = base::ProgramFolder() / kVdbReaderName;
+  std::error_code error;
+  if (std::filesystem::exists(path, error)) return path.string();
+  return absl::InternalError(absl::StrCat(
+      path.string(), ", which reads OpenVDB files, is not there; install Thunderhead whole"));
+}
+
+}  // namespace
+
+absl::StatusOr<VdbVolume> ReadVdb(const std::string& path, const std::string& grid,
+                                  const storm_files::ReadCheckpoint& checkpoint,
+                                  const std::string& program) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string reader, ProgramOr(program));
+  const sandbox::ReaderLimits limits;
+  sandbox::Readers readers(limits, base::SteadyTime(), reader, {.start = CheckVdbStart});
+  sandbox::Request request;
+  request.wanted = sandbox::Wanted::kOther;
+  request.path = path;
+  request.part = grid;
+  VdbVolume volume;
+  THUNDERHEAD_RETURN_IF_ERROR(readers.Run(std::move(request), sandbox::Reply::kOther, limits.time,
+                                          checkpoint, [&volume](sandbox::Receiver& from_reader) {
+                                            Visit(from_reader, volume);
+                                            return CheckPlausible(volume);
+                                          }));
+  volume.grid = grid;  // not a text that another process sent
+  return volume;
+}
+
+}  // namespace thunderhead::interchange

@@ -1,0 +1,16 @@
+#include "storm_files/vdb_start.h"
+
+#include "absl/strings/str_cat.h"
+
+namespace thunderhead::storm_files {
+
+// The code is that of a storm that cannot be read, so that a folder's search warns of it.
+absl::Status RefuseVdb(const std::string& path) {
+  return absl::DataLossError(absl::StrCat(
+      path,
+      ": is an OpenVDB file, which names neither its units nor which axis is up; convert it by "
+      "`thunderhead import-vdb ",
+      path, " --grid ... -o cloud.nc`, and give the converted file"));
+}
+
+}  // namespace thunderhead::storm_files
