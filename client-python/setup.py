@@ -1,4 +1,4 @@
-"""Adds to the build the messages and service that protoc generates from the repository's proto files."""
+"""Builds the package together with the Python code that protoc generates from the repository's proto files."""
 
 import pathlib
 import shutil
@@ -16,7 +16,7 @@ PROTO = next(path for path in (HERE / "proto", HERE.parent / "proto") if path.is
 
 
 def protoc(source: pathlib.Path, target: pathlib.Path) -> None:
-    """Generates modules from all proto files, by protoc and gRPC's plugin or by grpcio-tools."""
+    """Generates modules from all proto files below `source`, with protoc and gRPC's plugin or with grpcio-tools."""
     plugin = shutil.which("grpc_python_plugin")
     if plugin and shutil.which("protoc"):
         command = ["protoc", f"--plugin=protoc-gen-grpc_python={plugin}"]
@@ -37,8 +37,9 @@ def protoc(source: pathlib.Path, target: pathlib.Path) -> None:
 def generate(target: pathlib.Path) -> None:
     """Generates into the folder `target`, which becomes the top of the wheel.
 
-    The messages of package google.rpc go to thunderhead.rpc: protobuf allows one file of a name in a process, and
-    other libraries bring their own google/rpc/status.proto. On the wire packages do not show.
+    The messages of package google.rpc are moved to thunderhead.rpc. Other libraries bring their own
+    google/rpc/status.proto, and a process can load only one file of that name. The data that is sent does not contain
+    package names, so the messages stay compatible.
     """
     with tempfile.TemporaryDirectory() as folder:
         for file in PROTO.rglob("*.proto"):

@@ -43,6 +43,6 @@ test("an address that is none is named", async () => {
   const file = join(folder, "none.jpg");
   const { code, said } = await run("nowhere", file);
   assert.equal(code, 64);
-  assert.match(said, /'nowhere' is no HOST:PORT/);
+  assert.match(said, /'nowhere' is not HOST:PORT/);
   assert.ok(!existsSync(file));
 });

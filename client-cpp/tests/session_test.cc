@@ -220,7 +220,8 @@ class ResumptionTest : public SessionTest {
     ASSERT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
     service.SendScene({}, 1);
   }
-  // Sends a presence message that says who steers, and waits until the client has processed it.
+  // Sends a presence message that says who is in control, and waits until the client has processed
+  // it.
   void Tell(std::uint64_t steering, const std::vector<std::uint64_t>& others = {}) {
     service.SendPresence(steering, others);
     ASSERT_TRUE(listener.Await([&] {
@@ -437,7 +438,7 @@ TEST_F(SessionTest, TheTokenIsShownAndReadAgainForEachCall) {
 
 TEST(Connection, BadFilesAndAddressesAreNamed) {
   EXPECT_THAT(std::string(Connection::Open({"localhost", "", ""}).status().message()),
-              ::testing::HasSubstr("'localhost' is no HOST:PORT"));
+              ::testing::HasSubstr("'localhost' is not HOST:PORT"));
   EXPECT_THAT(std::string(Connection::Open({"a:1", "/no/ca.pem", ""}).status().message()),
               ::testing::HasSubstr("/no/ca.pem"));
   EXPECT_THAT(std::string(Connection::Open({"localhost:1", "", "/no/token"}).status().message()),

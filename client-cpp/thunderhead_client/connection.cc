@@ -49,7 +49,7 @@ absl::Status CheckAddress(const std::string& address) {
       absl::SimpleAtoi(address.substr(colon + 1), &port) && port >= 1 && port <= 65535;
   if (!is_address) {
     return absl::InvalidArgumentError(
-        absl::StrCat("'", address, "' is no HOST:PORT; give the server's gRPC port, such as ",
+        absl::StrCat("'", address, "' is not HOST:PORT; give the server's gRPC port, such as ",
                      "localhost:50051, not the address of its page"));
   }
   return absl::OkStatus();
@@ -73,8 +73,8 @@ absl::Status CheckTokenIsSafe(const ServerAccess& access) {
     return absl::OkStatus();
   }
   return absl::InvalidArgumentError(absl::StrCat(
-      "the token is not sent to ", access.address, " without encryption, because anybody on the ",
-      "way could read it; give --tls-ca, or --allow-plaintext-token if you trust the network"));
+      "the token is not sent to ", access.address, " without encryption, because others on the ",
+      "network could read it; give --tls-ca, or --allow-plaintext-token if you trust the network"));
 }
 
 std::string Unreachable(const std::string& address) {
@@ -111,9 +111,10 @@ absl::StatusOr<std::shared_ptr<Connection>> Connection::Open(ServerAccess access
         ReadFile(access.tls_ca_file, "the certificates of --tls-ca");
     if (!roots.ok()) return roots.status();
     if (!absl::StrContains(*roots, kPemCertificate)) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("'", access.tls_ca_file, "' holds no certificate in PEM (", kPemCertificate,
-                       "); give that of who signed the server's, or the server's own"));
+      return absl::InvalidArgumentError(absl::StrCat(
+          "'", access.tls_ca_file, "' contains no certificate in PEM (", kPemCertificate,
+          "); give the certificate of the authority that signed the server's, or the server's "
+          "own"));
     }
     credentials = grpc::SslCredentials({*std::move(roots), "", ""});
   }
@@ -156,20 +157,23 @@ std::string Connection::Explain(const grpc::Status& status) const {
   }
   // gRPC 1.51 has no status codes for these cases, so their messages are compared.
   if (absl::StrContains(status.error_message(), "http1.x")) {
-    return absl::StrCat(address(),
-                        " answers by HTTP, as the server's page does; give its gRPC port, ",
-                        "by default 50051");
+    return absl::StrCat(
+        address(),
+        " answers by HTTP, so it is probably the port of the server's page; give its gRPC port, ",
+        "by default 50051");
   }
   if (access_.tls_ca_file.empty()) {
     if (!absl::StrContains(status.error_message(), "Socket closed")) return Unreachable(address());
-    return absl::StrCat(address(), " answers, but hangs up: it may want TLS; give its certificate ",
-                        "with --tls-ca; or it has as many connections as it may have");
+    return absl::StrCat(
+        address(), " answers, but closes the connection: if it needs TLS, give its certificate ",
+        "with --tls-ca; otherwise it may have too many connections, so try again later");
   }
   const bool answers = absl::StrContains(status.error_message(), "handshake failed") ||
                        absl::StrContains(status.error_message(), "peer certificate");
   if (!answers) return Unreachable(address());
-  return absl::StrCat(address(), " answers, but not by TLS with a certificate that '",
-                      access_.tls_ca_file, "' vouches for and that names this host");
+  return absl::StrCat(address(),
+                      " answers, but its TLS certificate is not signed by an authority in '",
+                      access_.tls_ca_file, "', or does not name this host");
 }
 
 absl::Status Connection::Authorize(grpc::ClientContext& context) const {

@@ -32,7 +32,7 @@ absl::Status Resize(int width_px, int height_px, Pixels& pixels) {
 
 absl::Status AvifError(avifResult result) {
   return absl::InvalidArgumentError(
-      absl::StrCat("the AVIF still cannot be decoded: ", avifResultToString(result)));
+      absl::StrCat("the AVIF frame cannot be decoded: ", avifResultToString(result)));
 }
 
 // Rounds 10 bits to 8 with ordered dithering, because a clear sky would otherwise show bands.

@@ -195,7 +195,7 @@ Session::Outcome Session::Interact() {
   if (call.joined && Clock::now() - call.joined_at > kSound) back_off_.Reset();
   if (call.farewell) return *call.farewell;
   if (status.error_code() == grpc::StatusCode::NOT_FOUND) {
-    return {Link::kGone, "The server does not have this session any more", {}, true};
+    return {Link::kGone, "The server no longer has this session", {}, true};
   }
   if (IsLocked(status.error_code())) return {Link::kRefused, status.error_message()};
   const std::string reason =

@@ -139,7 +139,7 @@ void Session::TakePresence(const v1::Presence& presence) {
       request.mutable_take_control();
       outbox_.Send(std::move(request));
     } else if (resumption == ControlResumption::Outcome::kLost && sync_.Discard()) {
-      Say("Your last change was not taken: another steers");
+      Say("Your last change was not made: another person is in control");
     }
     if (state_.looks_around && !state_.MayLookAround()) state_.looks_around = false;
   }

@@ -1,4 +1,4 @@
-"""The pictures of a whole run as files and as one animation. python3 film.py HOST:PORT FOLDER"""
+"""Saves the pictures of a whole run as files and as one animation. Usage: python3 film.py HOST:PORT FOLDER"""
 
 import sys
 

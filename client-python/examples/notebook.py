@@ -1,4 +1,4 @@
-"""A notebook's cells as a script; paste each into a cell. python3 notebook.py HOST:PORT FOLDER"""
+"""The cells of a notebook as a script. Paste each into a cell. Usage: python3 notebook.py HOST:PORT FOLDER"""
 
 # %% Open a session of a storm. The session exists until it is closed.
 import sys

@@ -1,4 +1,4 @@
-"""One picture, saved and looked at as numbers. python3 picture.py HOST:PORT FOLDER"""
+"""Saves one picture, and reads its pixels as numbers. Usage: python3 picture.py HOST:PORT FOLDER"""
 
 import sys
 

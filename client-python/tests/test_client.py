@@ -1,4 +1,4 @@
-"""The client against the real server: $THUNDERHEAD_BINARY serves the repository's sample, in software."""
+"""Tests of the client against the real server: $THUNDERHEAD_BINARY serves the repository's sample, and renders in software."""
 
 import importlib.util
 import io
@@ -38,7 +38,7 @@ HANG_LIMIT_S = 600.0
 
 
 def wait_for(what: str, condition: Callable[[], object]) -> None:
-    """Waits until the condition is true; fails the test if it never is."""
+    """Waits until the condition is true. Fails the test if it does not become true."""
     end = time.monotonic() + HANG_LIMIT_S
     while not condition():
         if time.monotonic() > end:
@@ -47,7 +47,7 @@ def wait_for(what: str, condition: Callable[[], object]) -> None:
 
 
 class Server:
-    """The program, until `stop`."""
+    """A running server. It ends with `stop`."""
 
     def __init__(self, *flags: str) -> None:
         self.folder = tempfile.mkdtemp(prefix="thunderhead-python-")
@@ -171,7 +171,7 @@ class ClientTest(unittest.TestCase):
         self.assertEqual([file.read_bytes() for file in files], [picture.data for picture in pictures])
         (last,) = self.client.sequence("supercell", FAST, SIZE, times=[times - 1])
         self.assertEqual(last.scene.time_index, times - 1)
-        with self.assertRaisesRegex(ValueError, "one name"):
+        with self.assertRaisesRegex(ValueError, "the same name"):
             next(self.client.sequence("supercell", FAST, SIZE, product="{storm}.png"))
         self.assertEqual(str(product_path("{valid:%j_%y}", "s", "2012-12-31T01:02:03Z", 0)), "366_12")
         with self.assertRaisesRegex(ValueError, "its fields can be"):

@@ -4,9 +4,13 @@
     with Client("localhost:50051") as client:
         client.render("supercell", {"camera": {"spotter": {}}}, size=(1280, 720)).save("storm.png")
 
-A scene is what decides how a picture looks: a dict of Protobuf JSON's names ({"sun": {"elevationDeg": 10}}; names with
-underscores do as well), a message of thunderhead.v1.scene_pb2, or the path of a JSON file or of a PNG that Thunderhead made.
-What it leaves out takes its default.
+A scene holds all settings that decide how a picture looks. It is one of:
+
+- a dict with the names of Protobuf JSON, such as {"sun": {"elevationDeg": 10}} or {"sun": {"elevation_deg": 10}}
+- a message of thunderhead.v1.scene_pb2
+- the path of a JSON file, or of a PNG that Thunderhead made
+
+Settings that a scene omits take their defaults.
 """
 
 from .client import Client, Storm

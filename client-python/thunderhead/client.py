@@ -1,4 +1,4 @@
-"""A client of a server: storms, pictures, pictures of every time, and of times as they come."""
+"""A client of a server. It lists storms, requests pictures of one or every time, and waits for new times."""
 
 from __future__ import annotations
 
@@ -28,7 +28,10 @@ _MAX_ANSWER_BYTES = 256 << 20
 
 @dataclasses.dataclass(frozen=True)
 class Storm:
-    """A storm of the server. `valid_times` are ISO 8601 in UTC, in order; idealised runs begin in year 1."""
+    """A storm of the server.
+
+    valid_times: its times as ISO 8601 in UTC, in ascending order. An idealised run begins in year 1.
+    """
 
     id: str
     title: str
@@ -39,14 +42,16 @@ class Client:
     """Calls one server.
 
     address: "host:port" of its gRPC port (--grpc of `thunderhead serve`).
-    token: for a server with --auth; by default $THUNDERHEAD_TOKEN.
-    tls_ca: PEM file, or its bytes, of the authority that signed the server's certificate; True for the system's own.
-        Without it the connection is not encrypted, and a token is only sent to this machine.
-    allow_plaintext_token: sends the token without encryption to other machines, too, where anybody on the way can
-        read it.
-    timeout_s: how long a call may take; pictures have `render_timeout_s`.
+    token: the access token for a server with --auth; by default $THUNDERHEAD_TOKEN.
+    tls_ca: the certificate of the authority that signed the server's certificate, as the path or the bytes of a PEM
+        file, or True for the system's authorities. Without it the connection is not encrypted, and a token is sent
+        only to a server on this machine.
+    allow_plaintext_token: True to send the token to other machines without encryption, where others on the network
+        can read it.
+    timeout_s: the maximum duration of a call in seconds.
+    render_timeout_s: the maximum duration in seconds of a call that returns a picture.
 
-    Every call raises ThunderheadError. A client may be used by several threads at once.
+    A call that fails raises ThunderheadError. Several threads may use a client at once.
     """
 
     def __init__(
@@ -62,7 +67,7 @@ class Client:
         token = os.environ.get("THUNDERHEAD_TOKEN", "") if token is None else token
         if token and not tls_ca and not allow_plaintext_token and not _is_loopback(address):
             raise ThunderheadError(
-                f"the token is not sent to {address} without encryption, because anybody on the way could read it; "
+                f"the token is not sent to {address} without encryption, because others on the network could read it; "
                 "give tls_ca, or allow_plaintext_token=True if you trust the network"
             )
         self._metadata: Tuple[Tuple[str, str], ...] = (("authorization", f"Bearer {token.strip()}"),) if token else ()
@@ -85,7 +90,7 @@ class Client:
         self.close()
 
     def close(self) -> None:
-        """Ends the connection, and with it the streams of its sessions."""
+        """Closes the connection. This also ends the streams of its sessions."""
         self._channel.close()
 
     def _call(self, name: str, request: Any, timeout_s: Optional[float] = None) -> Any:
@@ -93,7 +98,7 @@ class Client:
             return getattr(self._stub, name)(request, timeout=timeout_s or self._timeout_s, metadata=self._metadata)
 
     def storms(self) -> List[Storm]:
-        """The server's storms, in its order."""
+        """Returns the server's storms in the order in which it lists them."""
         listed = self._call("ListStorms", thunderhead_pb2.ListStormsRequest())
         storms = []
         for summary in listed.storms:
@@ -102,13 +107,16 @@ class Client:
         return storms
 
     def describe(self, storm: str, time_index: int = 0) -> storm_pb2.StormDescription:
-        """All that is known of a storm, and its fields at one time. NOT_FOUND for an unknown id."""
+        """Describes a storm: its grid, place and times, and its fields at one time.
+
+        Raises ThunderheadError with code NOT_FOUND for an unknown id.
+        """
         request = thunderhead_pb2.DescribeStormRequest(storm_id=storm, time_index=time_index)
         description: storm_pb2.StormDescription = self._call("DescribeStorm", request).storm
         return description
 
     def server(self) -> thunderhead_pb2.GetServerInfoResponse:
-        """The server's version, device, techniques and presets."""
+        """Returns the server's version, device, techniques and presets."""
         info: thunderhead_pb2.GetServerInfoResponse = self._call("GetServerInfo", thunderhead_pb2.GetServerInfoRequest())
         return info
 
@@ -122,11 +130,14 @@ class Client:
         format: str = "png",
         error_seconds: float = 0.0,
     ) -> Picture:
-        """One picture at full quality, with what is known of it.
+        """Renders one picture at full quality. The result also has its scene, cost and estimated error.
 
-        storm: its id; by default the scene's, else the server's first. size: width and height in pixels, by default the
-        scene's (1280 x 720). time_index: from 0, by default the last. format: "png" or "jpeg".
-        error_seconds: for how long the server may trace paths to measure the picture's error, 0 to 60; at 0 a table says it.
+        storm: the storm's id; by default the storm of the scene, otherwise the server's first storm.
+        size: width and height in pixels; by default the scene's, which is 1280 x 720 unless the scene sets it.
+        time_index: the index of the storm's time, from 0; by default the last time.
+        format: "png" or "jpeg".
+        error_seconds: the time in seconds, 0 to 60, in which the server may trace paths to measure the picture's error;
+            at 0 the error is taken from a table.
         """
         if format not in _FORMATS:
             raise ValueError(f"format is '{format}'; it must be one of {', '.join(_FORMATS)}")
@@ -138,13 +149,13 @@ class Client:
     def render(
         self, storm: str = "", scene: SceneLike = None, size: Optional[Size] = None, *, time_index: Optional[int] = None
     ) -> Image.Image:
-        """One picture for Pillow, as `picture` draws it: mode RGB, 8 bits, sRGB."""
+        """Renders one picture, as `picture` does, for Pillow: mode RGB, 8 bits, sRGB."""
         return self.picture(storm, scene, size, time_index=time_index).image
 
     def render_array(
         self, storm: str = "", scene: SceneLike = None, size: Optional[Size] = None, *, time_index: Optional[int] = None
     ) -> "numpy.typing.NDArray[numpy.uint8]":
-        """One picture for numpy, as `picture` draws it: uint8, height x width x 3, sRGB, rows from top to bottom."""
+        """Renders one picture, as `picture` does, for numpy: uint8, height x width x 3, sRGB, rows from top to bottom."""
         return self.picture(storm, scene, size, time_index=time_index).array
 
     def sequence(
@@ -157,18 +168,21 @@ class Client:
         product: Optional[str] = None,
         jobs: int = 2,
     ) -> Iterator[Picture]:
-        """The pictures of a storm's times, in their order; all times by default.
+        """Renders pictures of a storm's times and yields them in the order of the times.
 
-        product: where to save each, such as "out/{storm}_{valid:%Y%m%d_%H%M}_{time:02d}.png", where a file that is there
-        already is drawn again. jobs: how many are asked for at a time. Unattended runs are better off with the program's own
-        `thunderhead sequence`, which keeps a manifest.
+        times: the indices of the times, from 0; by default all times.
+        product: the path at which to save each picture, such as "out/{storm}_{valid:%Y%m%d_%H%M}_{time:02d}.png". A file
+            that exists is rendered again and replaced.
+        jobs: the number of pictures that are requested at a time.
+
+        For unattended runs, use the command `thunderhead sequence`, which keeps a list of finished files (a manifest).
         """
         message = scene_of(scene, storm, None, size)
         valid = [each.valid_time for each in self.describe(storm).times]
         chosen = list(range(len(valid)) if times is None else times)
         names = [None if product is None else product_path(product, storm, valid[index], index) for index in chosen]
         if product is not None and len(set(names)) < len(names):
-            raise ValueError(f"product is '{product}', so that two pictures would have one name; add {{valid:...}} or {{time}}")
+            raise ValueError(f"product is '{product}', so two pictures would have the same name; add {{valid:...}} or {{time}}")
 
         def draw(index: int) -> Picture:
             return self.picture(scene=message, time_index=index)
@@ -196,10 +210,14 @@ class Client:
         timeout_s: Optional[float] = None,
         poll_s: float = 2.0,
     ) -> Iterator[Picture]:
-        """The pictures of a storm's times: those that are there, then each as the server comes to know it.
+        """Renders pictures of a storm's times: first the times that exist, then each new time that the server finds.
 
-        until: ends when so many times are drawn. timeout_s: raises TimeoutError when nothing new has come for so long. A
-        storm that is not there yet is waited for.
+        If the server does not have the storm yet, waits for it.
+
+        product: the path at which to save each picture, as in `sequence`.
+        until: the number of pictures after which to end; by default never.
+        timeout_s: raises TimeoutError if no new time appears for this many seconds; by default never.
+        poll_s: the time in seconds between two questions to the server.
         """
         message = scene_of(scene, storm, None, size)
         drawn: Dict[str, int] = {}
@@ -217,7 +235,7 @@ class Client:
             if until is not None and len(drawn) >= until:
                 return
             if timeout_s is not None and time.monotonic() - newest > timeout_s:
-                raise TimeoutError(f"{storm}: nothing new came for {timeout_s:g} s; {len(drawn)} times are drawn")
+                raise TimeoutError(f"{storm}: no new time appeared for {timeout_s:g} s; {len(drawn)} times are drawn")
             time.sleep(poll_s)
 
     def _times(self, storm: str) -> List[storm_pb2.StormTime]:
@@ -229,13 +247,13 @@ class Client:
             return []
 
     def session(self, storm: str = "", scene: SceneLike = None, size: Optional[Size] = None) -> Session:
-        """Opens a session: a scene that stays, is changed bit by bit, and shows its pictures; see Session."""
+        """Opens a session: a scene on the server that you change step by step while it shows frames. See Session."""
         message: scene_pb2.Scene = scene_of(scene, storm, None, size)
         return Session(self._stub, self._metadata, message, self._timeout_s)
 
 
 def _is_loopback(address: str) -> bool:
-    """Whether "host:port", or a gRPC target such as "unix:/run/socket", is of this machine."""
+    """Returns whether "host:port", or a gRPC target such as "unix:/run/socket", is on this machine."""
     if address.startswith(("unix:", "unix-abstract:")):
         return True
     host = address.rpartition(":")[0].rpartition("/")[2].strip("[]")
@@ -254,7 +272,7 @@ def _roots(tls_ca: Union[str, "os.PathLike[str]", bytes, bool]) -> Optional[byte
 
 
 class _Valid:
-    """A valid time for str.format, by strftime's %Y %y %m %d %j %H %M %S; Python's own dates do not pad year 1."""
+    """A valid time for str.format, with strftime's %Y %y %m %d %j %H %M %S. Python's dates would not pad year 1 to 0001."""
 
     def __init__(self, text: str) -> None:
         year, month, day = (int(part) for part in text[:10].split("-"))
@@ -274,7 +292,10 @@ class _Valid:
 
 
 def product_path(product: str, storm: str, valid_time: str, time_index: int) -> pathlib.Path:
-    """The path of a picture by a template with {storm}, {valid:%Y%m%d_%H%M} and {time:02d}. ValueError for others."""
+    """Returns a picture's path from a template with {storm}, {valid:%Y%m%d_%H%M} and {time:02d}.
+
+    Raises ValueError if the template has another field.
+    """
     try:
         return pathlib.Path(product.format(storm=storm, valid=_Valid(valid_time), time=time_index))
     except (KeyError, IndexError) as error:

@@ -1,4 +1,4 @@
-"""The server's refusals as exceptions."""
+"""The server's errors as exceptions."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from .rpc import error_details_pb2, status_pb2
 
 
 class ThunderheadError(Exception):
-    """A call that failed. Its text is the server's: what is wrong, where and what to do.
+    """A call that failed. Its text is the server's message: what is wrong, where, and what to do.
 
-    code: gRPC's code in capitals, such as "INVALID_ARGUMENT" or "UNAVAILABLE".
-    reason: the server's name for it, such as "VALUE_OUT_OF_RANGE"; empty where nobody gave one.
-    field: the path of the value that is wrong, such as "scene.sun.elevation_deg"; empty if it is about none.
-    retry_after_s: the seconds after which another try makes sense; None if it does not.
+    code: gRPC's status code in capitals, such as "INVALID_ARGUMENT" or "UNAVAILABLE".
+    reason: the server's name for the reason, such as "VALUE_OUT_OF_RANGE"; empty if the server gave none.
+    field: the path of the value that is wrong, such as "scene.sun.elevation_deg"; empty if no value is wrong.
+    retry_after_s: the time in seconds after which to try again; None if another try does not help.
     """
 
     def __init__(
@@ -30,7 +30,7 @@ class ThunderheadError(Exception):
 
 
 def error_of(error: grpc.RpcError) -> ThunderheadError:
-    """The exception of a failed call, with the details that its trailers carry."""
+    """Returns the exception for a failed call, with the details in the call's trailers."""
     code = error.code()
     result = ThunderheadError(error.details() or code.name, code.name)
     trailers = {item[0]: item[1] for item in error.trailing_metadata() or ()}
@@ -51,7 +51,7 @@ def error_of(error: grpc.RpcError) -> ThunderheadError:
 
 @contextlib.contextmanager
 def translated() -> Iterator[None]:
-    """Raises gRPC's errors within as ThunderheadError."""
+    """Converts gRPC's errors in its block to ThunderheadError."""
     try:
         yield
     except grpc.RpcError as error:

@@ -1,4 +1,4 @@
-"""Scenes in the forms in which Python has them."""
+"""Converts between the forms of scenes: dict, message, JSON file and PNG."""
 
 from __future__ import annotations
 
@@ -22,9 +22,11 @@ _SCENE_TEXT = "thunderhead.scene"
 def scene_of(
     scene: SceneLike = None, storm: str = "", time_index: Optional[int] = None, size: Optional[Size] = None
 ) -> scene_pb2.Scene:
-    """A message of any form of a scene, with the other values put in where they are given.
+    """Returns a scene in any form as a message.
 
-    size: width and height in pixels. ValueError says what is no scene.
+    storm, time_index, size: replace the scene's values if they are given. size is width and height in pixels.
+
+    Raises ValueError if `scene` is not a scene, and OSError if its file cannot be read.
     """
     message = scene_pb2.Scene()
     if isinstance(scene, scene_pb2.Scene):
@@ -65,14 +67,14 @@ def _parse(text: str, message: scene_pb2.Scene, what: str) -> None:
 
 
 def json_of(scene: scene_pb2.Scene) -> str:
-    """The scene as Protobuf JSON, as --scene of the command line reads it."""
+    """Returns the scene as Protobuf JSON, which the flag --scene of the command line reads."""
     return str(json_format.MessageToJson(scene))
 
 
 def field_of(scene: scene_pb2.Scene, path: str) -> Tuple[Any, Any]:
-    """The message that holds the value at a path such as "camera.orbit.azimuth_deg", and the value's descriptor.
+    """Returns the message that contains the value at a path such as "camera.orbit.azimuth_deg", and its descriptor.
 
-    Messages on the way come into being. KeyError names a part that does not exist.
+    Creates the messages that the path passes through. Raises KeyError if a part of the path does not exist.
     """
     message: Any = scene
     names = path.split(".")
@@ -80,22 +82,25 @@ def field_of(scene: scene_pb2.Scene, path: str) -> Tuple[Any, Any]:
         field = message.DESCRIPTOR.fields_by_name.get(name)
         if field is None:
             known = ", ".join(sorted(message.DESCRIPTOR.fields_by_name))
-            raise KeyError(f"'{path}' has no part '{name}'; there are {known}")
+            raise KeyError(f"'{path}' has no part '{name}'; the parts are {known}")
         if i + 1 == len(names):
             return message, field
         if field.message_type is None or field.label == field.LABEL_REPEATED:
-            raise KeyError(f"'{path}': '{name}' has no parts")
+            raise KeyError(f"'{path}': '{name}' has no parts; end the path there")
         holder = message
         message = getattr(holder, name)
         message.SetInParent()
-    raise KeyError("an empty path")
+    raise KeyError("the path is empty; give one such as 'sun.elevation_deg'")
 
 
 def limits_of(path: str) -> limits_pb2.NumberLimits:
-    """The range, default and unit of a number of a scene, as the server checks them. KeyError if it is no number."""
+    """Returns the range, default and unit of a number in a scene, as the server checks it.
+
+    Raises KeyError if the path does not exist or its value is not a number with limits.
+    """
     _, field = field_of(scene_pb2.Scene(), path)
     options = field.GetOptions()
     if not options.HasExtension(limits_pb2.number):
-        raise KeyError(f"'{path}' is no number with limits")
+        raise KeyError(f"'{path}' is not a number with limits")
     limits: limits_pb2.NumberLimits = options.Extensions[limits_pb2.number]
     return limits

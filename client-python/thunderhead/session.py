@@ -1,4 +1,4 @@
-"""A session: a scene at the server that is changed bit by bit and shows its pictures, for notebooks above all."""
+"""A session: a scene on the server that is changed step by step and shows frames. It is mainly for notebooks."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ _SLIDERS = ("camera.orbit.azimuth_deg", "camera.orbit.elevation_deg", "sun.azimu
 
 
 class Session:
-    """Made by Client.session. In a notebook it shows its newest picture, and `widget()` has sliders.
+    """A session, which Client.session opens. A notebook shows its newest frame, and `widget()` adds sliders.
 
         session = client.session("supercell", size=(960, 540))
-        session.set("camera.orbit.azimuth_deg", 250)     # returns when the picture shows it
-        session                                          # shows it
+        session.set("camera.orbit.azimuth_deg", 250)     # returns when a frame shows the change
+        session                                          # shows the frame
         session.close()
 
-    A frame comes at once, coarse (above 640 x 360 pixels it may also be smaller), and again ever finer while the scene
-    rests. The session ends with `close`, with the client, or some time after nobody has asked for it (the server says
-    when).
+    After a change a coarse frame comes at once. If the scene is larger than 640 x 360 pixels, that frame may be smaller
+    than the scene. Finer frames follow while the scene does not change. The session ends with `close` or with the client.
+    The server also ends a session that no one has used for a time.
     """
 
     def __init__(self, stub: Any, metadata: Tuple[Tuple[str, str], ...], scene: scene_pb2.Scene, timeout_s: float) -> None:
@@ -39,9 +39,9 @@ class Session:
             created = stub.CreateSession(
                 thunderhead_pb2.CreateSessionRequest(scene=scene), timeout=timeout_s, metadata=metadata
             )
-        #: The presenter's key. Anyone who has it may steer.
+        #: The presenter's key. Anyone who has it may change the scene.
         self.id: str = created.session_id
-        #: The viewers' key, for links with which others can only watch.
+        #: The viewers' key. It lets others watch, and change the scene while they are in control.
         self.viewer_key: str = created.viewer_key
         #: False if the server could not save the session, for example on a full disk; None if it saves no sessions.
         self.durable: Optional[bool] = created.durable if created.HasField("durable") else None
@@ -89,23 +89,26 @@ class Session:
 
     @property
     def scene(self) -> scene_pb2.Scene:
-        """A copy of the newest scene, every default filled in."""
+        """A copy of the newest scene, with all defaults filled in."""
         with self._changed:
             copy = scene_pb2.Scene()
             copy.CopyFrom(self._scene)
             return copy
 
     def get(self, path: str) -> Any:
-        """The scene's value at a path such as "sun.elevation_deg"."""
+        """Returns the scene's value at a path such as "sun.elevation_deg". Raises KeyError if the path does not exist."""
         message, field = field_of(self.scene, path)
         return getattr(message, field.name)
 
     def set(self, path: str, value: Any, *, wait: bool = True) -> "Session":
-        """Changes one value of the scene, such as "sun.elevation_deg", and waits until a frame shows it unless told not to."""
+        """Changes one value of the scene, such as "sun.elevation_deg".
+
+        wait: False to return at once, True to wait until a frame shows the change.
+        """
         return self.set_all({path: value}, wait=wait)
 
     def set_all(self, values: "dict[str, Any]", *, wait: bool = True) -> "Session":
-        """Changes several values at once, by their paths."""
+        """Changes several values at once. The keys are paths, as in `set`."""
         scene = self.scene
         for path, value in values.items():
             message, field = field_of(scene, path)
@@ -113,7 +116,7 @@ class Session:
         return self.update(scene, wait=wait)
 
     def update(self, scene: scene_pb2.Scene, *, wait: bool = True) -> "Session":
-        """Replaces the whole scene."""
+        """Replaces the whole scene. Settings that the scene omits take their defaults."""
         request = thunderhead_pb2.UpdateSceneRequest(session_id=self.id, scene=scene)
         with translated():
             revision = self._stub.UpdateScene(request, timeout=self._timeout_s, metadata=self._metadata).scene_revision
@@ -125,9 +128,12 @@ class Session:
         return self
 
     def wait(self, *, refined: bool = False, timeout_s: float = 120.0) -> frame_pb2.Frame:
-        """Waits for a frame of the newest scene, with `refined` for one at full quality.
+        """Waits for a frame of the newest scene and returns it.
 
-        Raises TimeoutError, or ThunderheadError if the scene cannot be drawn or the session has ended.
+        refined: True to wait for a frame at full quality.
+
+        Raises TimeoutError after `timeout_s` seconds, and ThunderheadError if the scene cannot be drawn or the session
+        has ended.
         """
         end = time.monotonic() + timeout_s
         with self._changed:
@@ -141,10 +147,10 @@ class Session:
                 if self._ended:
                     raise ThunderheadError("the session has ended; open another", "NOT_FOUND")
                 if not self._changed.wait(max(0.0, end - time.monotonic())):
-                    raise TimeoutError(f"no frame of the newest scene came within {timeout_s:g} s")
+                    raise TimeoutError(f"no frame of the newest scene came within {timeout_s:g} s; wait longer with timeout_s")
 
     def frames(self) -> Iterator[frame_pb2.Frame]:
-        """Frames as they come, the newest first shown, until the session ends."""
+        """Yields new frames until the session ends. Skips frames that are replaced by a newer one before they are used."""
         shown = 0
         while True:
             with self._changed:
@@ -158,12 +164,12 @@ class Session:
 
     @property
     def jpeg(self) -> bytes:
-        """The newest picture's JPEG file."""
+        """The newest frame as a JPEG file."""
         jpeg: bytes = self.wait().jpeg
         return jpeg
 
     def picture(self) -> Picture:
-        """The scene's picture at full quality, as Client.picture draws it."""
+        """Renders the newest scene at full quality, as Client.picture does."""
         request = thunderhead_pb2.RenderImageRequest(scene=self.scene)
         with translated():
             return Picture(self._stub.RenderImage(request, timeout=900.0, metadata=self._metadata))
@@ -172,9 +178,10 @@ class Session:
         return self.jpeg
 
     def widget(self, paths: Sequence[str] = _SLIDERS) -> Any:
-        """The picture with a slider for each number of the scene that is named; its range is that of the server.
+        """Returns a widget with the session's frames and a slider for each number in `paths`.
 
-        Needs ipywidgets; without it, and outside notebooks, `set` does the same.
+        A slider has the range that the server allows. Raises RuntimeError if ipywidgets is not installed; `set` then
+        does the same.
         """
         try:
             import ipywidgets
@@ -210,7 +217,7 @@ class Session:
         return slider
 
     def display(self) -> None:
-        """Shows the session in a notebook: with sliders if ipywidgets is there, else its newest picture."""
+        """Shows the session in a notebook: with sliders if ipywidgets is installed, otherwise its newest frame."""
         from IPython.display import display
 
         try:
@@ -219,7 +226,7 @@ class Session:
             display(self)
 
     def close(self) -> None:
-        """Ends the session. It does not matter if it has ended already."""
+        """Ends the session. Does nothing if the session has already ended."""
         with self._changed:
             self._ended = True
         try:

@@ -18,7 +18,7 @@ export interface FakeCall {
 }
 
 export const END_NOT_SAVED =
-  "the session is closed, but comes back if the server ends before that is saved: the disk is full";
+  "the session is closed, but exists again if the server restarts before this is saved: the disk is full";
 
 export class FakeService {
   readonly sessions: FakeSession[] = [];

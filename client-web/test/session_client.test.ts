@@ -248,7 +248,10 @@ describe("the session client", () => {
     const [person] = session().people;
     expect(person?.heard.at(-1)?.message.case).toBe("alive");
     session().leave(person as FakePerson);
-    person?.end(Code.Aborted, "somebody has joined with this connection's participant_key");
+    person?.end(
+      Code.Aborted,
+      "another connection has joined with this connection's participant_key",
+    );
     await pass(2_500);
     expect(seen.joined).toHaveLength(2);
     expect(seen.connections.at(-1)).toEqual({ kind: "live" });

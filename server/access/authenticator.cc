@@ -35,9 +35,9 @@ class Tokens final : public Authenticator {
     if (const auto found = file_->Current()->Find(credentials.token); found.has_value()) {
       return *found;
     }
-    return base::WithDetails(
-        absl::UnauthenticatedError("the server does not know this token; ask who runs it"),
-        {.reason = "TOKEN_UNKNOWN"});
+    return base::WithDetails(absl::UnauthenticatedError(
+                                 "the server does not know this token; ask the server's operator"),
+                             {.reason = "TOKEN_UNKNOWN"});
   }
 
  private:

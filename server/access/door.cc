@@ -27,9 +27,9 @@ std::string RandomToken() {
 
 absl::Status NotForRole(std::string_view method, const Identity& identity) {
   return base::WithDetails(
-      absl::PermissionDeniedError(absl::StrCat(std::string(method), " is not for the role of ",
-                                               NameOf(identity.role),
-                                               ", which your token has; ask who runs the server")),
+      absl::PermissionDeniedError(
+          absl::StrCat(std::string(method), " is not for the role of ", NameOf(identity.role),
+                       ", which your token has; ask the server's operator")),
       {.reason = "ROLE_MAY_NOT", .metadata = {{"role", NameOf(identity.role)}}});
 }
 
@@ -69,8 +69,9 @@ absl::Status Caller::StillKnown(std::optional<std::chrono::steady_clock::time_po
 absl::Status Caller::Identified() const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const Identity identity, authenticator_->Identify(credentials_));
   if (identity.name == identity_.name && identity.role == identity_.role) return absl::OkStatus();
-  return base::WithDetails(absl::UnauthenticatedError("the token has another name or role now"),
-                           {.reason = "TOKEN_CHANGED"});
+  return base::WithDetails(
+      absl::UnauthenticatedError("the token now has another name or role; make the call again"),
+      {.reason = "TOKEN_CHANGED"});
 }
 
 Door::Door(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> audit,

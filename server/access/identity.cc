@@ -23,8 +23,9 @@ absl::StatusOr<Role> ParseRole(std::string_view text) {
   for (const auto& [role, name] : kNames) {
     if (text == name) return role;
   }
-  return absl::InvalidArgumentError(absl::StrCat(
-      "'", std::string(text), "' is no role; there are viewer, presenter, pipeline and operator"));
+  return absl::InvalidArgumentError(
+      absl::StrCat("'", std::string(text),
+                   "' is not a role; the roles are viewer, presenter, pipeline and operator"));
 }
 
 const char* NameOf(Role role) {

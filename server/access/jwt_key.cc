@@ -46,8 +46,8 @@ absl::Status CheckPublicKey(const std::string& pem) {
   if (key == nullptr || EVP_PKEY_base_id(key.get()) != EVP_PKEY_RSA ||
       EVP_PKEY_bits(key.get()) < kMinRsaBits) {
     return absl::InvalidArgumentError(
-        absl::StrCat("the JWT key is PEM but no public RSA key of at least ", kMinRsaBits,
-                     " bits; make it of a private key by openssl pkey -pubout"));
+        absl::StrCat("the JWT key is PEM but not a public RSA key of at least ", kMinRsaBits,
+                     " bits; make one from a private key with openssl pkey -pubout"));
   }
   return absl::OkStatus();
 }
@@ -98,7 +98,7 @@ absl::Status CheckForm(const std::string& token) {
   }
   constexpr bool kThrows = false;
   const auto fields = nlohmann::json::parse(header, nullptr, kThrows);
-  if (!fields.is_object()) return Wrong("has a header that is no JSON object");
+  if (!fields.is_object()) return Wrong("has a header that is not a JSON object");
   if (fields.contains("crit")) {
     return Wrong("demands extensions (crit) that this server does not have");
   }
@@ -143,9 +143,9 @@ absl::StatusOr<JwtKey> JwtKey::Parse(const std::string& text) {
     key.key_.pop_back();
   }
   if (key.key_.size() < kMinSecretBytes) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("the JWT key has ", key.key_.size(), " bytes; a secret for HS256 needs ",
-                     kMinSecretBytes, ", as by openssl rand -hex 32"));
+    return absl::InvalidArgumentError(absl::StrCat(
+        "the JWT key has ", key.key_.size(), " bytes; a secret for HS256 needs at least ",
+        kMinSecretBytes, ": make one with openssl rand -hex 32"));
   }
   return key;
 }
@@ -162,7 +162,7 @@ absl::StatusOr<Identity> JwtKey::Verify(const std::string& token, const JwtClaim
   // The token's algorithm must be that of the key. Otherwise anyone could sign a token by HS256
   // with the text of the public key as the secret.
   if (error != 0 || jwt_get_alg(decoded) != (is_public_ ? JWT_ALG_RS256 : JWT_ALG_HS256)) {
-    return Wrong("is not signed as this server demands");
+    return Wrong("is not signed with this server's key");
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckTimes(decoded, now));
   if (!wanted.issuer.empty() && TextClaim(decoded, "iss") != wanted.issuer) {
@@ -173,7 +173,7 @@ absl::StatusOr<Identity> JwtKey::Verify(const std::string& token, const JwtClaim
   }
   const std::string name = TextClaim(decoded, "sub");
   if (name.empty() || name.size() > kMaxClaimBytes) {
-    return Wrong(absl::StrCat("names nobody in up to ", kMaxClaimBytes, " bytes (sub)"));
+    return Wrong(absl::StrCat("has no name of 1 to ", kMaxClaimBytes, " bytes (sub)"));
   }
   const absl::StatusOr<Role> role = ParseRole(TextClaim(decoded, kRoleClaim));
   if (!role.ok()) return Wrong(absl::StrCat("has no role (", kRoleClaim, ")"));

@@ -28,11 +28,12 @@ absl::Status TooManyStreams(std::size_t maximum, const char* whose) {
 }
 
 absl::Status TooManyAnswers(std::size_t maximum, const char* whose) {
-  return TooMany(maximum,
-                 absl::StrCat(whose, " ", maximum,
-                              " answers that were not taken yet, which is the maximum; take one, "
-                              "or try again later"),
-                 "ANSWERS_NOT_TAKEN", "answers");
+  return TooMany(
+      maximum,
+      absl::StrCat(
+          whose, " ", maximum,
+          " responses that were not read yet, which is the maximum; read one, or try again later"),
+      "ANSWERS_NOT_TAKEN", "answers");
 }
 
 // Returns the error for a request that must wait for `wait`, or OK if `wait` is absent.
@@ -40,7 +41,7 @@ absl::Status TooManyRequests(double per_second, std::optional<std::chrono::milli
   if (!wait.has_value()) return absl::OkStatus();
   return base::WithDetails(
       absl::ResourceExhaustedError(
-          absl::StrCat("more than ", per_second, " requests a second; send them more slowly")),
+          absl::StrCat("more than ", per_second, " requests per second; send them more slowly")),
       {.reason = "TOO_MANY_REQUESTS",
        .metadata = {{"maximum", absl::StrCat(per_second)}, {"unit", "requests/s"}},
        .retry_after = std::max(std::chrono::milliseconds(100), *wait)});

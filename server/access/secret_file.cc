@@ -27,7 +27,7 @@ absl::Status CheckOwner(const std::string& path, const struct stat& status) {
   }
   if (status.st_uid != geteuid() && status.st_uid != 0) {
     return absl::FailedPreconditionError(absl::StrCat(
-        path, " belongs to user ", status.st_uid, ", who could let anybody in; it must belong to ",
+        path, " belongs to user ", status.st_uid, ", who could change it; it must belong to ",
         "root or to the server's user: chown ", geteuid(), " ", path));
   }
   if ((status.st_mode & (S_IWGRP | S_IWOTH | S_IRWXO)) != 0) {
@@ -62,7 +62,7 @@ absl::StatusOr<std::string> ReadSecretFile(const std::string& path) {
 
 void TellOfReload(const std::string& path, const absl::Status& status) {
   if (status.ok()) return spdlog::info("{} has changed and was read again", path);
-  spdlog::error("{} has changed and cannot be taken; what it said before stays valid: {}", path,
+  spdlog::error("{} has changed and cannot be used; its former content stays valid: {}", path,
                 std::string(status.message()));
 }
 

@@ -28,7 +28,7 @@ absl::StatusOr<TokenList::Entry> TokenList::ParseLine(const std::string& line) {
       absl::StrSplit(line, absl::ByAnyChar(" \t"), absl::SkipEmpty());
   if (parts.size() != 3) {
     return absl::InvalidArgumentError(
-        "has no three words: a name, a role and the SHA-256 of the token");
+        "does not have three words: a name, a role and the SHA-256 of the token");
   }
   if (parts[0].size() > kMaxNameBytes) {
     return absl::InvalidArgumentError(
@@ -61,7 +61,9 @@ absl::StatusOr<TokenList> TokenList::Parse(const std::string& text) {
     list.entries_.push_back(*std::move(entry));
   }
   if (list.entries_.empty()) {
-    return absl::InvalidArgumentError("the token file lists no token, so nobody could enter");
+    return absl::InvalidArgumentError(
+        "the token file lists no token, so no one could use the server; add lines with a name, a "
+        "role and the SHA-256 of a token");
   }
   return list;
 }

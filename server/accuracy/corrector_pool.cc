@@ -61,8 +61,8 @@ bool CorrectorPool::DropOldest() {
 
 absl::Status CorrectorPool::MakeRoom() {
   if (kept_.size() < max_correctors_ || DropOldest()) return absl::OkStatus();
-  return absl::ResourceExhaustedError(
-      absl::StrCat("the server traces the light of ", kept_.size(), " other scenes already"));
+  return absl::ResourceExhaustedError(absl::StrCat("the server traces the light of ", kept_.size(),
+                                                   " other scenes already; try again later"));
 }
 
 absl::StatusOr<base::MemoryReservation> CorrectorPool::Reserve(std::size_t bytes) {

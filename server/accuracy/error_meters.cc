@@ -66,8 +66,9 @@ absl::StatusOr<ErrorMeters::Kept*> ErrorMeters::For(const scene::Scene& measured
   });
   if (found != kept_.end()) return &*found;
   if (kept_.size() >= max_meters_ && !DropOldest()) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat("the server measures the error of ", kept_.size(), " other scenes already"));
+    return absl::ResourceExhaustedError(absl::StrCat("the server measures the error of ",
+                                                     kept_.size(),
+                                                     " other scenes already; try again later"));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(
       base::MemoryReservation reserved,

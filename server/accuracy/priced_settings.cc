@@ -65,8 +65,8 @@ absl::StatusOr<std::vector<std::size_t>> ColumnsOf(const Cells& names) {
   for (const absl::string_view name : names) {
     if (IsIn(kNeeded, name) || IsIn(kPassedOver, name) || IsFixed(name)) continue;
     if (name == kMillionPaths) continue;
-    return absl::InvalidArgumentError(absl::StrCat(
-        "its column '", name, "' is not known: this program cannot tell what its rows differ by"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("its column '", name, "' is unknown, so its rows cannot be told apart"));
   }
   std::vector<std::size_t> columns;
   for (const absl::string_view needed : kNeeded) {

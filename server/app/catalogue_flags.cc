@@ -13,18 +13,20 @@ std::chrono::milliseconds Milliseconds(double seconds) {
 
 void AddCatalogueFlags(CLI::App& command, CatalogueFlags& flags) {
   command
-      .add_option("--rescan-seconds", flags.rescan_s,
-                  "How often the --data folders are looked through for what the kernel does not "
-                  "tell, as on a network file system; 0: the storms stay those of the start")
+      .add_option(
+          "--rescan-seconds", flags.rescan_s,
+          "Seconds between two searches of the --data folders, which find changes that the kernel "
+          "does not report, such as on a network file system; 0: no search after the start")
       ->check(CLI::Range(0.0, 86400.0))
       ->capture_default_str();
   command
       .add_option("--settle-seconds", flags.settle_s,
-                  "How long a file must have stayed the same to count as complete")
+                  "Seconds for which a file must be unchanged to count as complete")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
-  command.add_option("--untrusted", flags.untrusted,
-                     "Folders in which others may put files: no symbolic link there is followed");
+  command.add_option(
+      "--untrusted", flags.untrusted,
+      "Folders into which other people may put files; symbolic links in them are not followed");
   command.add_option(
       "--allow-links-to", flags.allowed_links,
       "Folders that symbolic links in the data folders may lead to; links into the data "

@@ -10,11 +10,11 @@ namespace thunderhead::app {
 
 void AddClientAccessFlags(CLI::App& command, ClientAccessFlags& flags) {
   command.add_option("--token-file", flags.token_file,
-                     "File with the token for a server that wants one; without it "
-                     "$THUNDERHEAD_TOKEN");
+                     "File with the access token, for a server with --auth; by default the token "
+                     "is $THUNDERHEAD_TOKEN");
   command.add_option("--tls-roots,--tls-ca", flags.tls_roots,
-                     "PEM file of the certificates that may vouch for a server by TLS; without it "
-                     "no TLS");
+                     "PEM file of the certificate authorities that may sign the server's "
+                     "certificate; without it the connection is not encrypted");
 }
 
 absl::StatusOr<load::Access> ReadClientAccess(const ClientAccessFlags& flags) {

@@ -68,7 +68,8 @@ std::string TurbulenceOf(const v1::StormDescription& storm) {
 
 // Describes how turbulent detail moves: with the wind along the grid's east and north.
 std::string DriftOf(const v1::StormDescription& storm) {
-  if (!storm.has_steering_east_m_per_s()) return "stays: no wind (U, V, W) was read from the file";
+  if (!storm.has_steering_east_m_per_s())
+    return "does not move: no wind (U, V, W) was read from the file";
   return absl::StrFormat("drifts with the mean wind of the lowest 6 km, %.1f m/s east, %.1f north",
                          storm.steering_east_m_per_s(), storm.steering_north_m_per_s());
 }
@@ -87,7 +88,7 @@ std::string Table(const v1::StormDescription& storm) {
       storm.id(), storm.title(), grid.nx(), grid.ny(), grid.nz(), grid.dx_m(), grid.dy_m(),
       grid.dz_m(), grid.nx() * grid.dx_m() / 1e3, grid.ny() * grid.dy_m() / 1e3,
       grid.nz() * grid.dz_m() / 1e3);
-  absl::StrAppendFormat(&text, "memory  %.1f MiB a time\n",
+  absl::StrAppendFormat(&text, "memory  %.1f MiB per time\n",
                         static_cast<double>(storm.bytes_per_time()) / (1 << 20));
   if (!storm.run_start().empty()) {
     absl::StrAppend(&text, "run     started ", storm.run_start(), "\n");

@@ -21,29 +21,31 @@ void AddJobsFlags(CLI::App& serve, JobsFlags& flags) {
   };
   serve
       .add_option("--jobs-folder", flags.folder,
-                  "Folder of the results of render jobs, of this server alone; by default jobs in "
-                  "the folder of --state")
+                  "Folder for the results of render jobs, which only this server may use; by "
+                  "default the folder jobs in the folder of --state")
       ->group(kGroup);
   add("--jobs-quota", flags.quota_gib, 1e-6, 1e6,
-      "GiB of results that are kept; beyond it the oldest of those that were fetched are dropped, "
-      "and where nobody has fetched any, no further picture is begun");
+      "Maximum GiB of results that are kept; beyond it the oldest fetched results are deleted, and "
+      "if none was fetched, no further picture is begun");
   add("--jobs-quota-each", flags.quota_each_gib, 0, 1e6,
-      "GiB of results of one identity that nobody has fetched; beyond it none of its pictures is "
-      "begun; 0 for half of --jobs-quota");
+      "Maximum GiB of results of one identity that were not fetched; beyond it none of its "
+      "pictures is begun; 0 for half of --jobs-quota");
   add("--jobs-keep", flags.keep_hours, 1e-4, 1e5,
-      "Hours for which a job that has ended is kept, with its results; one that is paused, and of "
-      "which nothing is drawn or fetched for as long, ends");
+      "Hours for which an ended job is kept with its results; a paused job ends after the same "
+      "time without a picture drawn or fetched");
   add("--max-jobs", flags.limits.max_jobs, 1, 1e5,
-      "Jobs that are kept; those that have ended and whose results were fetched make room");
-  add("--max-jobs-each", flags.limits.max_jobs_per_owner, 1, 1e5, "The same, of one identity");
+      "Maximum number of jobs; ended jobs whose results were fetched are forgotten to accept a new "
+      "job");
+  add("--max-jobs-each", flags.limits.max_jobs_per_owner, 1, 1e5,
+      "Maximum number of jobs of one identity");
   add("--max-job-pictures", flags.limits.max_pictures, 1, 1e6,
-      "Pictures of jobs that wait to be drawn");
+      "Maximum number of pictures of jobs that wait to be drawn");
   add("--max-job-pictures-each", flags.limits.max_pictures_per_owner, 1, 1e6,
-      "The same, of one identity");
+      "Maximum number of pictures of one identity's jobs that wait to be drawn");
   add("--max-kept-pictures", flags.limits.max_kept_pictures, 1, 1e7,
-      "Pictures of the jobs that are kept, whatever became of them");
+      "Maximum number of pictures of all kept jobs, drawn or not");
   add("--max-kept-pictures-each", flags.limits.max_kept_pictures_per_owner, 1, 1e7,
-      "The same, of one identity");
+      "Maximum number of pictures of one identity's kept jobs, drawn or not");
 }
 
 jobs::JobsOptions JobsOptionsOf(const JobsFlags& flags, const State& state) {

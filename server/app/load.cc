@@ -75,13 +75,14 @@ absl::StatusOr<load::LoadOptions> LoadOptionsOf(const LoadFlags& flags) {
   options.stills.width_px = still.width_px;
   options.stills.height_px = still.height_px;
   if (flags.throttled.has_value() && !flags.kbit_per_s.has_value()) {
-    return absl::InvalidArgumentError("--throttled needs --kbit, the rate that those viewers read");
+    return absl::InvalidArgumentError(
+        "--throttled needs --kbit, the rate at which those viewers read");
   }
   if (flags.kbit_per_s.has_value()) load::Throttle(*flags.kbit_per_s, flags.throttled, options);
   if (options.looking > options.viewers) {
-    return absl::InvalidArgumentError(absl::StrCat("--looking is ", options.looking,
-                                                   ", more than the ", options.viewers,
-                                                   " viewers who read all that comes"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("--looking is ", options.looking, ", more than the ", options.viewers,
+                     " viewers of --viewers; lower it, or raise --viewers"));
   }
   return options;
 }
@@ -126,12 +127,13 @@ void AddBounds(CLI::App& load, load::Bounds& bounds) {
   add("--min-fps", bounds.min_fps, "Fail if a viewer gets fewer frames/s");
   add("--max-p95", bounds.max_p95_ms,
       "Fail if the 95th percentile of the latency is larger, in milliseconds");
-  add("--max-p99", bounds.max_p99_ms, "The same of the 99th percentile");
+  add("--max-p99", bounds.max_p99_ms,
+      "Fail if the 99th percentile of the latency is larger, in milliseconds");
   add("--max-spread", bounds.max_spread_ms,
-      "Fail if the 99th percentile of the time from the first viewer who shows a picture to the "
-      "last "
-      "is larger, in milliseconds");
-  add("--max-growth", bounds.max_growth_mb, "Fail if the server's memory grows by more MB");
+      "Fail if the 99th percentile of the time between the first and the last viewer to show a "
+      "picture is larger, in milliseconds");
+  add("--max-growth", bounds.max_growth_mb,
+      "Fail if the server's memory grows by more than this, in MB");
 }
 
 }  // namespace
@@ -142,10 +144,10 @@ Command AddLoad(CLI::App& app) {
   CLI::App* load = app.add_subcommand(
       "load", "Measure a server under many viewers of one session whose camera turns");
   load->add_option("SERVER", flags->server,
-                   "HOST:PORT of the server's gRPC, or http:// or https://HOST:PORT to come by "
-                   "WebSocket")
+                   "HOST:PORT of the server's gRPC port, or http://HOST:PORT or https://HOST:PORT "
+                   "to connect by WebSocket")
       ->required();
-  load->add_option("--viewers", options.viewers, "Viewers who read all that comes")
+  load->add_option("--viewers", options.viewers, "Viewers who read every frame that they receive")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   load->add_option("--seconds", options.seconds, "Seconds to measure, once all have joined")
@@ -153,45 +155,46 @@ Command AddLoad(CLI::App& app) {
       ->capture_default_str();
   load->add_option("--size", flags->size, "Size of the pictures, WIDTHxHEIGHT")
       ->capture_default_str();
-  load->add_option("--codec", options.codec, "Moving pictures to ask for: jpeg or vp9")
+  load->add_option("--codec", options.codec, "Encoding of the frames to request: jpeg or vp9")
       ->transform(CLI::CheckedTransformer(std::map<std::string, load::LoadCodec>{
           {"jpeg", load::LoadCodec::kJpeg}, {"vp9", load::LoadCodec::kVp9}}));
   load->add_option("--steer", options.steer_hz,
                    "Updates of the camera a second by the presenter; 0 for none")
       ->check(CLI::Range(0.0, 240.0))
       ->capture_default_str();
-  load->add_option("--looking", options.looking,
-                   "Of --viewers, those who look around: each turns a view of its own, --steer "
-                   "times a second")
+  load->add_option(
+          "--looking", options.looking,
+          "How many of --viewers look around: each turns its own view, --steer times a second")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
-  load->add_option("--kbit", flags->kbit_per_s,
-                   "kbit/s that each viewer reads at most; with --throttled those alone")
+  load->add_option(
+          "--kbit", flags->kbit_per_s,
+          "Maximum kbit/s that each viewer reads; with --throttled only those viewers are limited")
       ->check(CLI::Range(1.0, 1e7));
   load->add_option("--throttled", flags->throttled,
-                   "Viewers besides the others who read at most --kbit, in place of all")
+                   "Additional viewers who read at most --kbit; the others are then not limited")
       ->check(CLI::Range(1, 10000));
-  load->add_option("--stalled", options.stalled,
-                   "Viewers besides the others who join and never read")
+  load->add_option("--stalled", options.stalled, "Additional viewers who join and never read")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   load->add_option("--passing", options.passing,
-                   "Viewers besides the others who leave after two seconds and come again")
+                   "Additional viewers who leave after two seconds and join again")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
   AddClientAccessFlags(*load, flags->access);
   load->get_option("--tls-roots")
       ->description(
-          "PEM file of the certificates that may vouch for a server by TLS; without it no "
-          "TLS to HOST:PORT, and this machine's certificates for https://");
+          "PEM file of the certificate authorities that may sign the server's certificate; without "
+          "it the connection to HOST:PORT is not encrypted, and https:// uses this machine's "
+          "authorities");
   load->add_option("--stills", options.stills.count,
-                   "Single pictures besides, all asked for when the measured time begins")
+                   "Additional single images, all requested when measuring begins")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
-  load->add_option("--stills-size", flags->stills_size, "Size of the single pictures, WIDTHxHEIGHT")
+  load->add_option("--stills-size", flags->stills_size, "Size of the single images, WIDTHxHEIGHT")
       ->capture_default_str();
   load->add_option("--stills-slices", options.stills.slices,
-                   "Slices of the single pictures; 0 for the default")
+                   "Slices of the single images; 0 for the default")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   AddBounds(*load, flags->bounds);

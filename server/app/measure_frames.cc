@@ -106,7 +106,7 @@ Command AddMeasureFrames(CLI::App& measure) {
       ->capture_default_str();
   frames
       ->add_option("--seconds", flags->options.seconds_a_run,
-                   "Seconds at least of each run, of the camera and of the sun")
+                   "Minimum seconds of each run; the camera and the sun are moved in separate runs")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   frames->add_option("--device", flags->device, "auto, software or a GPU's number")

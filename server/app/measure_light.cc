@@ -210,20 +210,20 @@ Command AddMeasureLight(CLI::App& measure) {
   light->add_option("STORM", flags->storm, "Storm file or folder")->required();
   light
       ->add_option("-o,--output", flags->output,
-                   "Prefix of the files to write: truths (.PART.exr), what is drawn "
-                   "(.PART.TRANSPORT.exr) and comparisons (.PART.TRANSPORT.png: truth, drawn, "
+                   "Prefix of the files to write: references (.PART.exr), drawn pictures "
+                   "(.PART.TRANSPORT.exr) and comparisons (.PART.TRANSPORT.png: reference, drawn, "
                    "difference)")
       ->capture_default_str();
   light->add_option("--part", flags->parts, "once, sun, sky or all; by default each");
   light->add_option("--transport", flags->transports, "Transports to measure; by default each");
   AddSceneOptions(*light, flags->scene);
-  light->add_option("--spp", flags->samples_per_pixel, "Samples a pixel of the truth")
+  light->add_option("--spp", flags->samples_per_pixel, "Samples per pixel of the reference")
       ->check(CLI::Range(16, 1 << 20))
       ->capture_default_str();
   light
       ->add_option("--million-paths", flags->million_paths,
-                   "Also measure diffusion with traced light, after this many million paths; "
-                   "several in ascending order")
+                   "Also measure diffusion with the path-traced correction, after this many "
+                   "million paths; give several numbers in ascending order")
       ->check(CLI::Range(0.0, 1e3));
   light
       ->add_option("--finer", flags->finer,

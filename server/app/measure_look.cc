@@ -129,15 +129,15 @@ Command AddMeasureLook(CLI::App& measure) {
   flags->scene.size = "480x300";
   CLI::App* look = measure.add_subcommand(
       "look",
-      "Measure the stops of a storm's tower and picture, and how dark its base is. Fails if any "
-      "radiance is not finite or below 0: the film's curve maps all others to 0 up to 1");
+      "Measure the brightness of a storm's tower and of the whole picture in stops, and how dark "
+      "the storm's base is. Fails if any radiance is negative or not finite");
   look->add_option("STORM", flags->storm, "Storm file or folder")->required();
   AddSceneOptions(*look, flags->scene);
   look->add_option("-o,--output", flags->output,
                    "Prefix of pictures to write (.CAMERA.png, and .regions.png with the tower red "
                    "and the base blue); by default none");
   look->add_option("--spp", flags->samples_per_pixel,
-                   "Also trace the reference with this many samples a pixel")
+                   "Also trace the reference with this many samples per pixel")
       ->check(CLI::Range(1, 1 << 20));
   look->add_option("--peak-cut", flags->light.peak_cut_deg, "As in thunderhead render")
       ->check(CLI::Range(0.0, 30.0))

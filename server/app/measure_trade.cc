@@ -40,15 +40,15 @@ struct TradeFlags {
 
 absl::Status CheckFlags(const TradeFlags& flags) {
   if (flags.samples_per_pixel >= 16) return absl::OkStatus();
-  return absl::InvalidArgumentError(absl::StrCat("--spp is ", flags.samples_per_pixel,
-                                                 "; the truth needs at least 16 samples a pixel"));
+  return absl::InvalidArgumentError(absl::StrCat(
+      "--spp is ", flags.samples_per_pixel, "; the reference needs at least 16 samples per pixel"));
 }
 
 absl::StatusOr<picture::LinearPicture> TruthOf(const TradeFlags& flags, const LocalScene& local,
                                                const std::string& path,
                                                const Interruption& interruption) {
   Truth truth;
-  truth.name = "the truth";
+  truth.name = "the reference";
   truth.scene = measure::TrueScene(local.scene);
   truth.scene_text = local.message.ShortDebugString();
   truth.samples_per_pixel = flags.samples_per_pixel;
@@ -172,23 +172,23 @@ Command AddMeasureTrade(CLI::App& measure) {
                    "Prefix of the files to write: .csv, .json, .svg and .truth.exr")
       ->capture_default_str();
   AddSceneOptions(*trade, flags->scene);
-  trade->add_option("--spp", flags->samples_per_pixel, "Samples a pixel of the truth")
+  trade->add_option("--spp", flags->samples_per_pixel, "Samples per pixel of the reference")
       ->capture_default_str();
   trade
-      ->add_option(
-          "--million-paths", flags->million_paths,
-          "Also measure traced light, after this many million paths; several in ascending order")
+      ->add_option("--million-paths", flags->million_paths,
+                   "Also measure the path-traced correction, after this many million paths; give "
+                   "several numbers in ascending order")
       ->check(CLI::Range(0.0, 1e3))
       ->capture_default_str();
   trade
-      ->add_option(
-          "--error-seconds", flags->error_seconds,
-          "Seconds for which to estimate each picture's error as well, as a server does that "
-          "has no truth; 0: not")
+      ->add_option("--error-seconds", flags->error_seconds,
+                   "Seconds for which each picture's error is also estimated, as a server does "
+                   "without a reference; 0: no estimate")
       ->check(CLI::Range(0.0, 600.0))
       ->capture_default_str();
   trade->add_flag("--transports-alone", flags->transports_alone,
-                  "Measure the light volume's consistent, diffusion and traced light alone");
+                  "Measure only the light volume, with the consistent and diffusion transports and "
+                  "the path-traced correction");
   trade->add_option("--device", flags->device, "auto, software or a GPU's number")
       ->capture_default_str();
   trade->add_flag("--json", flags->json, "Print JSON");

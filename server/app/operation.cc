@@ -47,7 +47,7 @@ int Taken(const sigset_t& signals) {
 void AddBudget(const std::string& name, const base::MemoryBudget* budget,
                std::vector<telemetry::Gauge>& gauges) {
   if (budget == nullptr) return;
-  gauges.push_back({absl::StrCat("thunderhead_", name, "_bytes"), "Size of the budget",
+  gauges.push_back({absl::StrCat("thunderhead_", name, "_bytes"), "Size of the budget in bytes",
                     static_cast<double>(budget->Bytes())});
   for (const base::MemoryUse use : base::kMemoryUses) {
     gauges.push_back({absl::StrCat("thunderhead_", name, "_used_bytes"),
@@ -61,18 +61,18 @@ void AddBudget(const std::string& name, const base::MemoryBudget* budget,
 void AddOperationFlags(CLI::App& command, OperationFlags& flags) {
   command.add_option("--metrics", flags.metrics,
                      "HOST:PORT for operators: /metrics for Prometheus, /healthz and /readyz");
-  command.add_option("--log-format", flags.log_format, "text, or json: an object a line")
+  command.add_option("--log-format", flags.log_format, "text, or json: one object per line")
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
   command
       .add_option("--drain-seconds", flags.drain_s,
-                  "How long, after SIGTERM, single pictures that were begun may take to end, and "
-                  "viewers, who are told, to leave")
+                  "Seconds after SIGTERM in which single images already begun are finished, and "
+                  "viewers, who are notified, may leave")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   command
       .add_option("--stuck-seconds", flags.stuck_s,
-                  "A turn of drawing that takes longer makes /healthz ask for a restart")
+                  "Seconds after which a turn of drawing makes /healthz ask for a restart")
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
 }
@@ -148,32 +148,36 @@ std::string Operation::MetricsText() {
       gauges.push_back({absl::StrCat("thunderhead_", name), help, value});
     };
     add("sessions", "Sessions that are open", load.sessions);
-    add("viewers", "Connections that sessions are shown to", load.viewers);
+    add("viewers", "Connections of viewers to sessions", load.viewers);
     add("storms", "Storms in the catalogue", load.storms);
     add("storm_cache_bytes", "Fields of storms in memory", load.cached_bytes);
-    add("pictures_in_progress", "Single pictures begun and not yet delivered", load.pictures);
+    add("pictures_in_progress", "Single images begun and not yet delivered", load.pictures);
     add("jobs", "Render jobs that have not ended", static_cast<double>(load.jobs.running));
     add("job_pictures_waiting", "Pictures of render jobs that wait to be drawn",
         static_cast<double>(load.jobs.waiting));
-    add("job_pictures_paused", "Those of them that are not begun, as results must be fetched first",
+    add("job_pictures_paused",
+        "Waiting pictures of render jobs that are not begun, because results must be fetched first",
         static_cast<double>(load.jobs.paused));
     add("job_pictures_in_progress", "Pictures of render jobs that are being drawn",
         static_cast<double>(load.jobs.drawing));
-    add("job_result_bytes", "Results of render jobs on the disk",
+    add("job_result_bytes", "Bytes of render jobs' results on the disk",
         static_cast<double>(load.jobs.result_bytes));
-    add("draining", "1 from SIGTERM on", load.draining ? 1.0 : 0.0);
-    add("pictures_waiting", "Single pictures that wait to be drawn", load.waiting_pictures);
-    add("reading_stuck_seconds", "Since a storage that hangs gave something; 0 if none hangs",
+    add("draining", "1 after SIGTERM, otherwise 0", load.draining ? 1.0 : 0.0);
+    add("pictures_waiting", "Single images that wait to be drawn", load.waiting_pictures);
+    add("reading_stuck_seconds",
+        "Time since a storage that hangs last returned data; 0 if none hangs",
         load.reading_stuck_s);
     add("lane_stalled_seconds",
-        "Since a lane that works drew a piece; 0 where none works or it waits for its turn",
+        "Time since a busy lane last drew a piece; 0 if no lane is busy or it waits for its turn",
         load.stalled_s);
     add("jobs_stalled_seconds",
-        "For how long the jobs' thread has been at one thing, or their results' folder has hung",
+        "Time for which the thread of render jobs has been at one task, or the folder of results "
+        "has not answered",
         load.jobs.stalled_s);
-    add("state_stuck_seconds", "For how long the state folder has not answered; 0 if it does",
+    add("state_stuck_seconds", "Time for which the state folder has not answered; 0 if it answers",
         StateHangsFor());
-    add("render_turn_seconds", "Since the turn of drawing under way began; 0 at rest", load.turn_s);
+    add("render_turn_seconds",
+        "Time since the current turn of drawing began; 0 if nothing is drawn", load.turn_s);
   }
   AddBudget("memory_budget", resources_.memory.get(), gauges);
   AddBudget("gpu_memory_budget", resources_.gpu_memory.get(), gauges);
@@ -224,7 +228,7 @@ std::jthread EndIfToldWhileStarting(const sigset_t& signals) {
   return std::jthread([signals](const std::stop_token& started) {
     while (!started.stop_requested()) {
       if (Taken(signals) == 0) continue;
-      spdlog::info("told to stop while starting: nothing is lost");
+      spdlog::info("stopped by a signal while starting: nothing is lost");
       spdlog::default_logger()->flush();
       _exit(0);
     }
@@ -239,7 +243,8 @@ std::jthread EndAnywayAfter(std::chrono::seconds patience, const std::function<i
     std::condition_variable_any told;
     if (told.wait_for(lock, ended, patience, [&] { return ended.stop_requested(); })) return;
     spdlog::error(
-        "calls have not ended for {} s, as where their storage hangs: ending without them",
+        "calls have not ended for {} s, perhaps because their storage hangs: the process ends "
+        "without them",
         patience.count());
     last();
     spdlog::default_logger()->flush();
@@ -252,13 +257,14 @@ void Operation::WaitAndDrain(const sigset_t& signals, service::Server& server,
   int signal = 0;
   sigwait(&signals, &signal);
   const auto began = steady_clock::now();
-  spdlog::info("draining: new sessions and pictures are refused, {} pictures end first",
-               server.Load().pictures);
+  spdlog::info(
+      "draining: new sessions and pictures are refused, and {} pictures are finished first",
+      server.Load().pictures);
   second_signal_ = std::jthread([signals, began, last](const std::stop_token& stop) {
     while (!stop.stop_requested()) {
       const int again = Taken(signals);
       if (again == 0 || steady_clock::now() - began < kOneRequest) continue;
-      spdlog::warn("a second signal: ending at once");
+      spdlog::warn("a second signal came: the process ends at once");
       last();
       spdlog::default_logger()->flush();
       _exit(128 + again);
@@ -273,11 +279,11 @@ void Operation::WaitAndDrain(const sigset_t& signals, service::Server& server,
     left = server.Load();
   }
   if (left.pictures > 0) {
-    spdlog::warn("{} pictures are not done after {} s and are given up", left.pictures,
+    spdlog::warn("{} pictures are not finished after {} s and are cancelled", left.pictures,
                  flags_.drain_s);
   }
   if (left.viewers > 0) {
-    spdlog::info("{} viewers have not left after {} s; their streams end", left.viewers,
+    spdlog::info("{} viewers have not left after {} s; their streams are ended", left.viewers,
                  flags_.drain_s);
   }
   spdlog::info("stopping");

@@ -36,7 +36,7 @@ absl::StatusOr<std::vector<runs::View>> ReadViews(const PipelineFlags& flags) {
     if (names.insert(views.back().name).second) continue;
     return absl::InvalidArgumentError(
         absl::StrCat("two files of --views are named '", views.back().name,
-                     "', which is what products are named by; rename one"));
+                     "', but products take their names from these files; rename one"));
   }
   return views;
 }
@@ -52,26 +52,27 @@ void AddPipelineOptions(CLI::App& command, PipelineFlags& flags) {
                   "also {run:%Y%m%d%H}, {lead:03d} (hours), {lead_min:04d}, {time:02d}")
       ->required();
   command.add_option("--views", flags.views,
-                     "Scene files, each of which is a view and goes over --scene; products are "
-                     "named by the files' names ({view})");
+                     "Scene files, one for each view; a view replaces the parts of --scene that it "
+                     "has; {view} is the file's name");
   command.add_option(
       "--manifest", flags.manifest,
-      "File with a line for each product; by default manifest.jsonl in their folder");
+      "File with a line for each product; by default manifest.jsonl in the products' folder");
   command.add_option("--movie", flags.movie,
-                     "Also a movie of all times, .webm (VP9) or .mp4 (H.264); of each view if its "
-                     "name has {view}, "
-                     "else of the first");
-  command.add_flag("--done", flags.done_markers,
-                   "Write PRODUCT.done, for sha256sum -c, when a product is whole");
+                     "Also write a movie of all times, .webm (VP9) or .mp4 (H.264); one of each "
+                     "view if its name has {view}, otherwise of the first view");
+  command.add_flag(
+      "--done", flags.done_markers,
+      "Write PRODUCT.done with its SHA-256 (for sha256sum -c) when a product is complete");
   command
       .add_option("--jobs", flags.jobs,
-                  "Pictures under way at a time, so that reading and writing overlap drawing")
+                  "Pictures in progress at a time, so that files are read and written while "
+                  "pictures are drawn")
       ->check(CLI::Range(1, kMaxJobs))
       ->capture_default_str();
   command
       .add_option("--error-seconds", flags.error_seconds,
-                  "Seconds at most for which to measure each picture's error by tracing, in this "
-                  "process alone; 0: take it from a table")
+                  "Maximum seconds for measuring each picture's error by path tracing, not with "
+                  "--server; 0: take the error from a table")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
   AddProductOptions(command, flags.files);
@@ -85,11 +86,10 @@ void AddPipelineOptions(CLI::App& command, PipelineFlags& flags) {
       {"ecflow", runs::ProgressStyle::kEcflow},
       {"none", runs::ProgressStyle::kNone}};
   command
-      .add_option(
-          "--progress", flags.progress,
-          "auto (a bar on a terminal, else a line a product), lines, json, none, or ecflow: "
-          "lines, and in a task of ecFlow its meter 'products', label 'product' and event "
-          "'first'")
+      .add_option("--progress", flags.progress,
+                  "auto (a bar on a terminal, otherwise a line for each product), lines, json, "
+                  "none, or ecflow (lines, and in an ecFlow task also the meter 'products', the "
+                  "label 'product' and the event 'first')")
       ->transform(CLI::CheckedTransformer(kStyles).description(""));
 }
 
@@ -133,7 +133,7 @@ absl::StatusOr<runs::MovieOptions> MovieOptionsOf(const PipelineFlags& flags,
   if (!format.IsPicture()) {
     return absl::InvalidArgumentError(
         absl::StrCat("--movie needs pictures of .png or .jpg, but --product is '", flags.product,
-                     "': omit --movie, or make it of a run of its own"));
+                     "': omit --movie, or make the movie in a separate run with such pictures"));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(options.name, pipeline::ProductName::Parse("--movie", flags.movie));
   const bool of_times = options.name->Has("valid") || options.name->Has("lead") ||

@@ -29,14 +29,16 @@ absl::StatusOr<runs::ProductKind> KindOf(const std::string& flag, const std::str
 }  // namespace
 
 void AddProductOptions(CLI::App& command, ProductFlags& flags) {
-  command.add_flag("--annotate", flags.annotate,
-                   "Burn in title, run and valid time, and in false colours their legend");
+  command.add_flag(
+      "--annotate", flags.annotate,
+      "Draw the title, run time and valid time into the picture, and the legend of false colours");
   command.add_option("--title", flags.title, "With --annotate: the title; by default the storm's");
-  command.add_option("--logo", flags.logo,
-                     "With --annotate: a PNG for the upper right corner, which may be transparent");
+  command.add_option(
+      "--logo", flags.logo,
+      "With --annotate: a PNG file for the upper right corner; it may be transparent");
   command.add_flag("--world-file", flags.world_file,
-                   "Beside each picture from above a world file (.pgw, .jgw, .tfw) with its place "
-                   "in the model's map projection");
+                   "Write a world file (.pgw, .jgw, .tfw) next to each picture from above, with "
+                   "its place in the model's map projection");
 }
 
 absl::StatusOr<runs::ProductFormat> ProductFormatOf(const std::string& flag,
@@ -48,13 +50,14 @@ absl::StatusOr<runs::ProductFormat> ProductFormatOf(const std::string& flag,
   format.title = flags.title;
   format.world_file = flags.world_file;
   if (!flags.annotate && (!flags.title.empty() || !flags.logo.empty())) {
-    return absl::InvalidArgumentError("--title and --logo are burnt in with --annotate: add it");
+    return absl::InvalidArgumentError(
+        "--title and --logo have an effect only with --annotate: add it");
   }
   if (format.Drawn() == v1::IMAGE_FORMAT_EXR && (format.annotate || format.world_file)) {
     return absl::InvalidArgumentError(
         absl::StrCat(flag, " is '", path,
-                     "', which holds light and no pixels for --annotate or --world-file; omit "
-                     "them, or use a .png, .jpg or .tif"));
+                     "', which contains radiance and no pixels for --annotate or --world-file; "
+                     "omit them, or use a .png, .jpg or .tif"));
   }
   std::string png;
   if (!flags.logo.empty()) {

@@ -10,12 +10,13 @@ namespace thunderhead::app {
 void AddReaderFlags(CLI::App& command, ReaderFlags& flags) {
   command
       .add_option("--sandbox-memory", flags.memory_mib,
-                  "MiB that reading one time of a storm file may take; by default this machine's")
+                  "Maximum MiB of memory for reading one time of a storm file; by default this "
+                  "machine's memory")
       ->check(CLI::Range(16.0, 1e9))
       ->capture_default_str();
   command
       .add_option("--sandbox-seconds", flags.seconds,
-                  "Seconds that reading one time of a storm file may take")
+                  "Maximum seconds for reading one time of a storm file")
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
 }

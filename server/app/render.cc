@@ -120,7 +120,8 @@ constexpr float kNightBelow_deg = -6.0F;
 void TellOfNight(const v1::Scene& scene) {
   if (scene.sun().elevation_deg() >= kNightBelow_deg) return;
   std::cerr << absl::StrFormat(
-      "thunderhead: the picture is dark, as the sun is %.0f degrees below the horizon; a scene "
+      "thunderhead: the picture is dark, because the sun is %.0f degrees below the horizon; a "
+      "scene "
       "with \"sun\": {\"azimuthDeg\": 245, \"elevationDeg\": 35} shows it by day\n",
       -scene.sun().elevation_deg());
 }
@@ -133,7 +134,7 @@ absl::Status ByReference(const RenderFlags& flags, const runs::ProductFormat& fo
   if (!format.fingerprint.empty() ||
       (!format.IsPicture() && format.kind != runs::ProductKind::kExr)) {
     return absl::InvalidArgumentError(
-        "--renderer reference writes .png, .jpg and .exr alone, without --annotate and "
+        "--renderer reference writes only .png, .jpg and .exr, without --annotate and "
         "--world-file: omit them");
   }
   return RenderReference(flags.storm, flags.scene, flags.reference, flags.output, flags.device);
@@ -207,14 +208,13 @@ Command AddRender(CLI::App& app) {
   render->add_option("--max-milliseconds", flags->scene.max_milliseconds,
                      "Draw with the most accurate setting of at most this time a frame");
   render
-      ->add_option(
-          "--error-seconds", flags->error_seconds,
-          "Seconds at most for which to measure the picture's error by tracing; 0: take it "
-          "from a table")
+      ->add_option("--error-seconds", flags->error_seconds,
+                   "Maximum seconds for measuring the picture's error by path tracing; 0: take the "
+                   "error from a table")
       ->check(CLI::Range(0.0, 60.0))
       ->capture_default_str();
   render->add_option("--spp", flags->reference.samples_per_pixel,
-                     "Reference: stop after this many samples a pixel");
+                     "Reference: stop after this many samples per pixel");
   render->add_option("--seconds", flags->reference.seconds,
                      "Reference: stop after this many seconds");
   render->add_option("--target-error", flags->reference.target_error,
@@ -225,15 +225,16 @@ Command AddRender(CLI::App& app) {
                    "unscattered; 0 is exact but noisy")
       ->capture_default_str();
   render->add_option("--max-scatterings", flags->reference.light.max_scatterings,
-                     "Reference: leave out light that is scattered more often; by default none");
+                     "Reference: omit light that is scattered more often than this; by default "
+                     "nothing is omitted");
   render
       ->add_option("--detail", flags->reference.light.detail_voxels_per_cell,
                    "Reference: trace the turbulent detail that the light volume draws, on this "
                    "many voxels along a cell's edge; by default without detail")
       ->check(CLI::Range(1, 8));
-  render->add_flag(
-      "--no-air{false}", flags->reference.light.air,
-      "Reference: leave out the air: a black sky, and sunlight as above the atmosphere");
+  render->add_flag("--no-air{false}", flags->reference.light.air,
+                   "Reference: omit the air: the sky is black, and sunlight is as strong as above "
+                   "the atmosphere");
   AddProductOptions(*render, flags->files);
   AddServerFlags(*render, flags->server);
   render->add_option("--device", flags->device, "auto, software or a GPU's number")

@@ -153,8 +153,8 @@ absl::Status SetSlices(std::uint32_t slices, v1::Scene& scene) {
     settings->GetReflection()->SetUInt32(settings, setting, slices);
     return absl::OkStatus();
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat("--slices is for ", NamesOf(sliced, " and "), "; omit it with other renderers"));
+  return absl::InvalidArgumentError(absl::StrCat("--slices is for ", NamesOf(sliced, " and "),
+                                                 "; omit it with other techniques"));
 }
 
 absl::Status SetRendering(const SceneFlags& flags, v1::Scene& scene) {
@@ -192,12 +192,13 @@ void AddTechniqueOptions(CLI::App& command, SceneFlags& flags) {
       command
           .add_option("--quality", flags.preset,
                       "fast (half the samples, no detail), balanced (the default) or true (as "
-                      "balanced, and a picture waits for traced light, which takes minutes)")
+                      "balanced, and a single image waits for the path-traced correction of its "
+                      "light, which takes minutes)")
           ->check(CLI::IsMember({"fast", "balanced", "true"}));
   CLI::Option* preset = command.add_option(
       "--preset", flags.preset, "A named setting, such as the papers' per_field_phase_translucent");
-  CLI::Option* renderer =
-      command.add_option("--renderer", flags.technique, NamesOf(TechniqueFields(), " or "));
+  CLI::Option* renderer = command.add_option("--renderer", flags.technique,
+                                             "Technique: " + NamesOf(TechniqueFields(), " or "));
   quality->excludes(preset)->excludes(renderer);
   preset->excludes(renderer);
   command.add_option("--slices", flags.slices, "Number of slices, or samples along a ray");

@@ -32,8 +32,9 @@ absl::StatusOr<runs::SequenceOptions> SequenceOptionsOf(const SequenceFlags& fla
                                MovieOptionsOf(flags.pipeline, pictures.format));
   if (movie.name.has_value() && shard.count > 1) {
     return absl::InvalidArgumentError(
-        "--movie needs all pictures, but this process makes a share: run sequence once more "
-        "without --shard when all shares are done, with --movie; it draws nothing anew");
+        "--movie needs all pictures, but this process makes only a share of them: omit it, and "
+        "when all shares are done, run sequence once more with --movie and without --shard, which "
+        "draws no picture again");
   }
   return runs::SequenceOptions{flags.storms,        flags.times,      shard,
                                std::move(pictures), std::move(movie), flags.pipeline.progress};
@@ -55,7 +56,7 @@ absl::Status Sequence(const SequenceFlags& flags) {
 Command AddSequence(CLI::App& app) {
   auto flags = std::make_shared<SequenceFlags>();
   CLI::App* command = app.add_subcommand(
-      "sequence", "Render every time of storms in every view; goes on where it was stopped");
+      "sequence", "Render every time of storms in every view; continues where it was stopped");
   command
       ->add_option("STORM", flags->storms,
                    "Storm files or folders; with --server storms' ids there")
@@ -65,8 +66,8 @@ Command AddSequence(CLI::App& app) {
                    "Indices of each storm's times, such as 0,3,6-9; or all, or last")
       ->capture_default_str();
   command->add_option("--shard", flags->shard,
-                      "I/N: make share I, from 0, of N; by default what Slurm's array or a "
-                      "Kubernetes job says, else all");
+                      "I/N: make only share I (from 0) of N shares; by default the share that a "
+                      "Slurm array or a Kubernetes job sets, otherwise all");
   AddPipelineOptions(*command, flags->pipeline);
   return {command, [flags] { return Sequence(*flags); }};
 }

@@ -120,7 +120,7 @@ bool AwaitStorms(const storm_store::StormStore& store, const std::stop_token& st
   }
   if (store.IsSearching()) {
     spdlog::warn(
-        "still searching the folders for storms; those found are served when it has ended");
+        "still searching the folders for storms; the storms are served when the search has ended");
   }
   return !stop.stop_requested();
 }
@@ -234,7 +234,9 @@ absl::Status Serve(ServeFlags flags) {
   gateway_options.port = http.port;
   gateway_options.page_directory = flags.page.empty() ? DefaultPageFolder() : flags.page;
   if (gateway_options.page_directory.empty()) {
-    spdlog::warn("serving no page: none is installed with the program; name one with --page");
+    spdlog::warn(
+        "the page is not served, because it is not installed with the program; name its folder "
+        "with --page");
   }
   gateway_options.find_kept_file = [&server](std::string_view path) {
     return FindResult(*server, path);
@@ -294,7 +296,7 @@ Command AddServe(CLI::App& app) {
             }
             if (flags->data.empty()) {
               return absl::InvalidArgumentError(
-                  "there are no storms to serve; give --data FILE or --data FOLDER, also in the "
+                  "there are no storms to serve; give --data FILE or --data FOLDER, here or in the "
                   "file of --config");
             }
             return Serve(*flags);

@@ -16,7 +16,7 @@
 namespace thunderhead::app {
 namespace {
 
-constexpr char kWho[] = "Who may come";
+constexpr char kWho[] = "Access";
 
 // Flags that --help omits. --print-config lists them.
 constexpr std::array kRarelyChanged = {
@@ -56,7 +56,8 @@ constexpr std::array kRarelyChanged = {
     "--settle-seconds",
     "--stuck-seconds",
 };
-constexpr char kHowMuch[] = "Limits; what is beyond them is refused with the time to try again";
+constexpr char kHowMuch[] =
+    "Limits; a request beyond them is refused, with the time after which to try again";
 
 constexpr std::size_t kMinBudget = std::size_t{64} << 20U;
 // Default budgets for a system that does not report its memory.
@@ -75,9 +76,10 @@ bool IsLoopback(const std::string& host) {
 
 void AddAccessFlags(CLI::App& serve, ServeFlags& flags) {
   serve
-      .add_option("--auth", flags.auth,
-                  "none; tokens FILE, a line each: name, role, SHA-256 of the token; or jwt FILE, "
-                  "the key: PEM for RS256, else a secret for HS256")
+      .add_option(
+          "--auth", flags.auth,
+          "none; or tokens FILE, with a line for each token: name, role, SHA-256 of the token; or "
+          "jwt FILE, with the key of JWTs: a public key in PEM for RS256, or a secret for HS256")
       ->expected(1, 2)
       ->group(kWho);
   serve.add_option("--jwt-issuer", flags.jwt_issuer, "Issuer (iss) that JWTs must have")
@@ -88,17 +90,19 @@ void AddAccessFlags(CLI::App& serve, ServeFlags& flags) {
       .add_option("--tls-cert", flags.tls.certificate,
                   "Certificate chain in PEM, for both ports; read again when it changes")
       ->group(kWho);
-  serve.add_option("--tls-key", flags.tls.key, "Its key in PEM; read again when it changes")
+  serve
+      .add_option("--tls-key", flags.tls.key,
+                  "Private key of --tls-cert in PEM; read again when it changes")
       ->group(kWho);
   serve
       .add_flag("--insecure", flags.insecure,
                 "Serve other machines without --auth or TLS: behind a proxy that has both, or in a "
-                "network that may see and do everything")
+                "network where everyone may see and do everything")
       ->group(kWho);
   serve
       .add_option("--allow-host", flags.allowed_hosts,
-                  "Names under which browsers may open the page, besides localhost, addresses in "
-                  "digits and this machine's own name")
+                  "Host names under which browsers may open the page, in addition to localhost, IP "
+                  "addresses and this machine's own name")
       ->group(kWho);
   serve
       .add_option("--allow-origin", flags.allowed_origins,
@@ -106,14 +110,13 @@ void AddAccessFlags(CLI::App& serve, ServeFlags& flags) {
       ->group(kWho);
   serve
       .add_option("--trusted-proxy", flags.trusted_proxies,
-                  "Addresses or networks (10.1.0.0/16) of proxies before both ports that say by "
-                  "X-Forwarded-For for whom they ask; what others say there is ignored")
+                  "Addresses or networks (10.1.0.0/16) of proxies before both ports whose "
+                  "X-Forwarded-For header is believed; the header of others is ignored")
       ->group(kWho);
   serve
-      .add_option(
-          "--audit-log", flags.audit_log,
-          "File to which refusals and privileged acts are appended, a line each; without it "
-          "they go to standard error")
+      .add_option("--audit-log", flags.audit_log,
+                  "File to which refusals and privileged acts are appended, one per line; without "
+                  "it they go to standard error")
       ->group(kWho);
 }
 
@@ -127,49 +130,55 @@ void AddLimit(CLI::App& serve, const std::string& name, Number& value, double le
 }
 
 void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
-  AddLimit(serve, "--max-sessions", flags.sessions.max_sessions, 1, 1e5, "Sessions");
+  AddLimit(serve, "--max-sessions", flags.sessions.max_sessions, 1, 1e5,
+           "Maximum number of sessions");
   AddLimit(serve, "--max-sessions-each", flags.sessions.max_sessions_per_owner, 1, 1e5,
-           "Sessions opened by one identity: a token's name, or without --auth an address");
+           "Maximum number of sessions opened by one identity, which is a token's name, or without "
+           "--auth an address");
   AddLimit(serve, "--max-viewers", flags.limits.max_viewers_per_session, 1, 1e5,
-           "Viewers of a session");
+           "Maximum number of viewers of a session");
   AddLimit(serve, "--max-connections", flags.gateway.max_connections, 1, 1e5,
-           "Connections of each port");
+           "Maximum number of connections of each port");
   AddLimit(serve, "--max-connections-each", flags.gateway.max_connections_per_address, 1, 1e5,
-           "Those from one address");
+           "Maximum number of connections of each port from one address");
   AddLimit(serve, "--max-handshakes-each", flags.gateway.max_handshakes_per_address, 0, 1e5,
-           "Connections of each port that one address begins by TLS, a second, twice as many at "
-           "once; 0: no limit");
-  AddLimit(serve, "--max-streams", flags.quotas.max_streams, 1, 1e6,
-           "Calls that stay open, and as many answers that clients have not taken yet");
+           "TLS connections per second that one address may start on each port, and twice as many "
+           "at once; 0 for no limit");
+  AddLimit(
+      serve, "--max-streams", flags.quotas.max_streams, 1, 1e6,
+      "Maximum number of calls that stay open, and of responses that clients have not read yet");
   AddLimit(serve, "--max-streams-each", flags.quotas.max_streams_per_identity, 1, 1e6,
-           "Calls that stay open, of one identity");
+           "Maximum number of calls of one identity that stay open");
   AddLimit(serve, "--max-streams-per-connection", flags.limits.max_streams_per_connection, 1, 1e6,
-           "Calls on one gRPC connection; further ones wait in the client");
+           "Maximum number of calls on one gRPC connection; further calls wait in the client");
   AddLimit(serve, "--max-requests", flags.quotas.requests_per_second, 0, 1e6,
-           "Requests a second of one identity, and within one call of Interact; 0 for no limit");
-  AddLimit(serve, "--max-message", flags.max_message_kib, 1, 1 << 20, "KiB of a request message");
-  AddLimit(serve, "--max-picture", flags.max_megapixels, 0.001, 33.6, "Megapixels of a picture");
+           "Requests per second of one identity, and within one call of Interact; 0 for no limit");
+  AddLimit(serve, "--max-message", flags.max_message_kib, 1, 1 << 20,
+           "Maximum KiB of a request message");
+  AddLimit(serve, "--max-picture", flags.max_megapixels, 0.001, 33.6,
+           "Maximum megapixels of a picture");
   AddLimit(serve, "--max-samples", flags.max_megasamples, 0.001, 137439,
-           "Megasamples of a picture: its pixels times its slices");
+           "Maximum megasamples of a picture: its pixels times its slices");
   AddLimit(serve, "--max-render-time", flags.max_render_s, 0.001, 1e6,
-           "Seconds that a picture outside sessions may take once it is begun");
+           "Maximum seconds for a single image once it is begun");
   AddLimit(serve, "--max-predicted-render-time", flags.render_loop.image_limits.max_predicted_s,
            0.001, 1e6,
-           "Seconds of drawing that a picture outside sessions may be predicted to take");
+           "Maximum predicted seconds of drawing for a single image; costlier ones are refused");
   AddLimit(serve, "--max-stills", flags.render_loop.max_waiting_images, 0, 1e6,
-           "Pictures outside sessions that may wait to be drawn");
+           "Maximum number of single images that wait to be drawn");
   AddLimit(serve, "--max-stills-each", flags.render_loop.max_waiting_images_each, 0, 1e6,
-           "Those of one identity");
+           "Maximum number of single images of one identity that wait to be drawn");
   AddLimit(serve, "--max-waiting", flags.executor.max_waiting, 1, 1e6,
-           "Other requests that may wait for a storm to be read, described, mapped or probed");
+           "Maximum number of other requests that wait for a storm to be read, described, mapped "
+           "or probed");
   AddLimit(serve, "--max-waiting-each", flags.executor.max_waiting_each, 1, 1e6,
-           "Those of one identity");
+           "Maximum number of such requests of one identity");
   AddLimit(serve, "--max-wrong-tokens", flags.quotas.wrong_tokens_per_second, 0, 1e6,
-           "Wrong tokens a second of one address; 0 for no limit");
+           "Wrong tokens per second from one address; 0 for no limit");
   AddLimit(serve, "--max-unsent", flags.max_unsent_mib, 128, 1 << 20,
-           "MiB of answers that wait for clients of the HTTP port to take them");
+           "Maximum MiB of responses that wait for clients of the HTTP port to read them");
   AddLimit(serve, "--grpc-memory", flags.grpc_memory_mib, 16, 1 << 20,
-           "MiB of gRPC's buffers, all connections together");
+           "Maximum MiB of gRPC's buffers for all connections together");
 }
 
 // Adds a flag for a size in bytes, or with a unit such as 8GiB.
@@ -182,15 +191,14 @@ void AddMemoryFlag(CLI::App& serve, const std::string& name, std::uint64_t& byte
 }
 
 void AddMemoryFlags(CLI::App& serve, ServeFlags& flags) {
-  AddMemoryFlag(
-      serve, "--memory-budget", flags.memory_bytes,
-      "Memory for storms, pictures and tracing, and for drawing where no GPU does it; e.g. "
-      "8GiB; by default half of what the machine or the cgroup has");
+  AddMemoryFlag(serve, "--memory-budget", flags.memory_bytes,
+                "Memory for storms, pictures and path tracing, and for drawing without a GPU, such "
+                "as 8GiB; by default half of the machine's or cgroup's memory");
   AddMemoryFlag(serve, "--gpu-memory-budget", flags.gpu_memory_bytes,
                 "The GPU's memory for drawing; by default 4GiB");
   AddLimit(serve, "--read-deadline", flags.read_deadline_s, 0.1, 86400,
-           "Seconds for which nothing may come of a storm that is read before its storage is taken "
-           "to hang, or its file to be damaged");
+           "Seconds without data after which the storage of a storm that is read counts as "
+           "hanging, or its file as damaged");
 }
 
 absl::Status CheckReachOfMetrics(const std::string& metrics) {
@@ -199,8 +207,8 @@ absl::Status CheckReachOfMetrics(const std::string& metrics) {
   if (IsLoopback(address.host)) return absl::OkStatus();
   return absl::InvalidArgumentError(
       absl::StrCat("--metrics ", ToString(address),
-                   " lets other machines in, and this port never asks who they are nor encrypts "
-                   "what it says; listen on 127.0.0.1, or accept it with --insecure"));
+                   " can be reached from other machines, and this port neither asks for a token "
+                   "nor encrypts; listen on 127.0.0.1, or accept this with --insecure"));
 }
 
 }  // namespace
@@ -208,27 +216,27 @@ absl::Status CheckReachOfMetrics(const std::string& metrics) {
 void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
   serve
       .add_option("--config", flags.config,
-                  "File with settings: any of these flags and the limits, as `max-sessions = 200`")
+                  "File with settings: any of these flags, and the limits that --print-config "
+                  "lists, as `max-sessions = 200`")
       ->configurable(false);
   serve
       .add_flag("--print-config", flags.print_config,
-                "Print such a file with every setting, its unit and its default, and exit")
+                "Print a file for --config with every setting, its unit and its default, and exit")
       ->configurable(false);
   serve.add_option("--data", flags.data,
-                   "Storm files, or folders of them; the page opens the first");
+                   "Storm files, or folders of them; the page opens the first storm");
   serve.add_option("--http", flags.http, "HOST:PORT to serve the page on")->capture_default_str();
   serve.add_option("--grpc", flags.grpc, "HOST:PORT to serve gRPC on")->capture_default_str();
   serve.add_option("--device", flags.device, "auto, software or a GPU's number")
       ->capture_default_str();
   serve.add_option("--page", flags.page, "Folder with the built page");
-  serve.add_option(
-      "--clouds", flags.clouds,
-      "Folder in which generated clouds are kept; without it they are deleted when the "
-      "server stops");
+  serve.add_option("--clouds", flags.clouds,
+                   "Folder in which generated clouds are kept; without it the clouds are deleted "
+                   "when the server stops");
   serve.add_option(
       "--state", flags.state,
-      "Folder in which sessions and render jobs outlive the server, or 'none'; by default "
-      "$STATE_DIRECTORY, else thunderhead in $XDG_STATE_HOME or ~/.local/state");
+      "Folder in which sessions and render jobs are saved across restarts, or 'none'; by default "
+      "$STATE_DIRECTORY, otherwise the folder thunderhead in $XDG_STATE_HOME or ~/.local/state");
   serve
       .add_option("--roster-timeouts", flags.roster_timeouts,
                   "File with the times after which people of a session count as away, for tests")
@@ -325,11 +333,10 @@ absl::Status CheckReach(const ServeFlags& flags, const Address& http, const Addr
   for (const auto& [flag, address] : {std::pair{"--http", http}, std::pair{"--grpc", grpc}}) {
     if (IsLoopback(address.host)) continue;
     return absl::InvalidArgumentError(absl::StrCat(
-        flag, " ", ToString(address), " lets other machines in, and ",
-        has_auth ? "" : "nobody is asked who they are (--auth none)",
-        has_auth || has_tls ? "" : " and ",
-        has_tls ? "" : "what goes over the wire is not encrypted (no --tls-cert and --tls-key)",
-        "; give what is missing, listen on 127.0.0.1, or accept it with --insecure"));
+        flag, " ", ToString(address), " can be reached from other machines, and ",
+        has_auth ? "" : "no token is needed (--auth none)", has_auth || has_tls ? "" : " and ",
+        has_tls ? "" : "the connection is not encrypted (no --tls-cert and --tls-key)",
+        "; give the missing flags, listen on 127.0.0.1, or accept this with --insecure"));
   }
   return absl::OkStatus();
 }

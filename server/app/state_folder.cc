@@ -63,8 +63,8 @@ absl::StatusOr<State> OpenState(const std::string& folder) {
       path.empty() ? std::make_error_code(std::errc::no_such_file_or_directory) : Create(path);
   if (error && is_default) {
     spdlog::warn(
-        "sessions and render jobs end with the server: no state folder '{}' ({}); name one with "
-        "--state",
+        "sessions and render jobs end with the server, because the state folder '{}' cannot be "
+        "used ({}); name another with --state",
         path, error.message());
     return State();
   }

@@ -62,8 +62,8 @@ absl::StatusOr<runs::WatchOptions> WatchOptionsOf(const WatchFlags& flags) {
                                MovieOptionsOf(flags.pipeline, pictures.format));
   if (pictures.product.Has("time")) {
     return absl::InvalidArgumentError(
-        "--product has {time}, which counts the times of a whole run; files that still come have "
-        "no such number: use {valid:%Y%m%d_%H%M} or {lead_min:04d}");
+        "--product has {time}, the index of a time in the whole run, which is not known while "
+        "files still arrive: use {valid:%Y%m%d_%H%M} or {lead_min:04d}");
   }
   return runs::WatchOptions{flags.folder,        flags.files,      std::move(ready),       end,
                             std::move(pictures), std::move(movie), flags.pipeline.progress};
@@ -89,20 +89,20 @@ Command AddWatch(CLI::App& app) {
       "watch", "Render the files of a folder as a model writes them, each once it is complete");
   command
       ->add_option("FOLDER", flags->folder,
-                   "Folder that the files come to; with --server a storm's id there, whose "
-                   "times are complete by the server's rules")
+                   "Folder in which the files appear; with --server a storm's id there, and the "
+                   "server decides when its times are complete")
       ->required();
   command->add_option("--files", flags->files, "Pattern of their names, such as 'wrfout_d01_*'")
       ->capture_default_str();
   command
       ->add_option("--ready", flags->ready,
-                   "When a file is complete: open, age:SECONDS[,minsize:BYTES], "
-                   "next[,age:SECONDS] or marker:GLOB; it must open as well")
+                   "When a file is complete: open, age:SECONDS[,minsize:BYTES], next[,age:SECONDS] "
+                   "or marker:GLOB; it must be readable as well")
       ->capture_default_str();
   command
       ->add_option("--until", flags->until,
-                   "End after this many files (12 or '12 files'), drawn or found bad, or at a time "
-                   "(2030-05-20T06:00:00Z), or at the earlier of both; by default never")
+                   "End after this many files (12 or '12 files'), including damaged ones, or at a "
+                   "time (2030-05-20T06:00:00Z), or at the earlier of both; by default never")
       ->expected(1, 3);
   AddPipelineOptions(*command, flags->pipeline);
   return {command, [flags] { return Watch(*flags); }};

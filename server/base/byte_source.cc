@@ -81,7 +81,7 @@ class FileBytes final : public ByteSource {
 
 absl::Status NoRegularFile(const std::string& path) {
   return absl::InvalidArgumentError(
-      absl::StrCat(path, ": is no regular file; give the model's output file"));
+      absl::StrCat(path, ": is not a regular file; give the model's output file"));
 }
 
 }  // namespace

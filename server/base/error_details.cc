@@ -81,13 +81,16 @@ absl::Status ShuttingDown() {
 }
 
 absl::Status TooManyConnections() {
-  return WithDetails(absl::ResourceExhaustedError("there are too many connections"),
-                     {.reason = "TOO_MANY_CONNECTIONS"});
+  return WithDetails(
+      absl::ResourceExhaustedError("there are too many connections; close one, or try again later"),
+      {.reason = "TOO_MANY_CONNECTIONS"});
 }
 
 absl::Status TooManyHandshakes() {
-  return WithDetails(absl::ResourceExhaustedError("your address begins TLS too often"),
-                     {.reason = "TOO_MANY_HANDSHAKES"});
+  return WithDetails(
+      absl::ResourceExhaustedError("your address starts too many TLS connections per second; keep "
+                                   "connections open, or try again later"),
+      {.reason = "TOO_MANY_HANDSHAKES"});
 }
 
 }  // namespace thunderhead::base

@@ -36,8 +36,8 @@ absl::Status Full(const char* of_whom, std::size_t max_waiting) {
 absl::Status WaitedTooLong(int hanging) {
   return WithDetails(
       absl::DeadlineExceededError(absl::StrCat(
-          "the server could not begin with that in time: ", hanging,
-          " requests hang, perhaps with a storage that does not answer; try again later")),
+          "the server could not begin this request in time: ", hanging,
+          " requests hang, perhaps on a storage that does not answer; try again later")),
       {.reason = "REQUESTS_HANG",
        .metadata = {{"hanging", absl::StrCat(hanging)}},
        .retry_after = kQueueRetryAfter});
@@ -222,7 +222,7 @@ void Executor::Replace(Clock::time_point now) {
     Leave(*shared_, worker->owner);
     ++hanging;
     spdlog::warn(
-        "a request has run for {} s; others go on beside it",
+        "a request has run for {} s; another thread handles the requests that wait",
         std::chrono::duration_cast<std::chrono::seconds>(now - *worker->busy_since).count());
   }
 }
@@ -253,7 +253,7 @@ void Executor::Watch() {
       // A hanging thread needs a replacement only if tasks are waiting.
       if (!shared_->waiting.empty()) Replace(now);
     } catch (const std::exception& no_memory_or_thread) {
-      spdlog::warn("cannot look after requests: {}", no_memory_or_thread.what());
+      spdlog::warn("cannot supervise requests: {}", no_memory_or_thread.what());
     }
     if (!late.empty()) {
       lock.unlock();

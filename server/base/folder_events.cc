@@ -27,7 +27,8 @@ FolderEvents::FolderEvents()
     : events_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)),
       wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
   if (events_ < 0) {
-    spdlog::warn("no file events ({}): new files are found by the slow rescan", strerror(errno));
+    spdlog::warn("the kernel does not report new files ({}): they are found by a slower search",
+                 strerror(errno));
   }
 }
 
@@ -43,8 +44,8 @@ bool FolderEvents::Watch(const std::string& folder) {
   if (!warned_ && errno != ENOENT) {
     warned_ = true;
     spdlog::warn(
-        "no file events of {} ({}): what is new there is found by the slow rescan; raise "
-        "fs.inotify.max_user_watches if the limit is reached",
+        "the kernel does not report new files in {} ({}): they are found by a slower search; raise "
+        "fs.inotify.max_user_watches if its limit is reached",
         folder, strerror(errno));
   }
   return false;

@@ -9,7 +9,7 @@ namespace thunderhead::base {
 
 absl::Status UnexpectedFailure(const char* what) {
   LogError(absl::InternalError(absl::StrCat("a request failed unexpectedly: ", what)));
-  return WithDetails(absl::InternalError("the server failed at this request; its log says how"),
+  return WithDetails(absl::InternalError("the server failed at this request; its log says why"),
                      {.reason = "UNEXPECTED_FAILURE"});
 }
 

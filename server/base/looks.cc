@@ -14,7 +14,7 @@ Looks::Looks(const std::string& path, std::function<void()> look,
     : patience_(patience),
       shared_(new Shared{.look = std::move(look), .path = path, .pause = pause, .time = time}),
       thread_(
-          absl::StrCat("a look at ", path), [shared = shared_] { Run(shared); }, time) {}
+          absl::StrCat("a check of ", path), [shared = shared_] { Run(shared); }, time) {}
 
 Looks::~Looks() {
   bool hangs = false;

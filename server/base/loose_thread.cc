@@ -29,7 +29,7 @@ void LooseThread::LetGoBy(Time deadline) {
     thread_.join();
     return;
   }
-  spdlog::error("{} hangs and is left behind", name_);
+  spdlog::error("{} does not return, so its thread is abandoned", name_);
   any_left_behind = true;
   thread_.detach();
 }

@@ -207,7 +207,7 @@ absl::Status MemoryBudget::Refusal(MemoryUse use, std::size_t bytes, std::string
   if (bytes > limit) {
     return WithDetails(absl::ResourceExhaustedError(absl::StrCat(
                            needs, ", and the server has ", InWords(limit),
-                           " for all; ask for less, or give it more with ", options_.flag)),
+                           " in all; request less, or start it with a larger ", options_.flag)),
                        {.reason = kTooLarge, .metadata = std::move(metadata), .permanent = true});
   }
   std::string uses;
@@ -225,7 +225,7 @@ absl::Status MemoryBudget::Refusal(MemoryUse use, std::size_t bytes, std::string
   metadata["used"] = absl::StrCat(total);
   return WithDetails(absl::ResourceExhaustedError(absl::StrCat(
                          needs, "; ", InWords(total), " of ", InWords(options_.bytes),
-                         " are in use: ", uses, "; try again when others look at less")),
+                         " are in use: ", uses, "; try again later, when other viewers need less")),
                      {.reason = "MEMORY_BUDGET",
                       .metadata = std::move(metadata),
                       .retry_after = kMemoryRetryAfter});

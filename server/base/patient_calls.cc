@@ -16,7 +16,8 @@ constexpr std::chrono::seconds kRetryAfter{10};
 
 absl::Status NoAnswer(const std::string& storage) {
   return WithDetails(
-      absl::DeadlineExceededError(absl::StrCat(storage, ": its storage does not answer")),
+      absl::DeadlineExceededError(
+          absl::StrCat(storage, ": its storage does not answer; try again later")),
       {.reason = kStorageHangs, .metadata = {{"file", storage}}, .retry_after = kRetryAfter});
 }
 

@@ -93,8 +93,7 @@ absl::StatusOr<volume::CellBox> CheckValues(const volume::RegularGrid& grid,
   }
   if (static_cast<std::size_t>(options.balls) > cloudy) {
     return absl::InvalidArgumentError(absl::StrCat(options.balls, " balls are more than the ",
-                                                   cloudy,
-                                                   " cells that hold something; give fewer"));
+                                                   cloudy, " cells with cloud; give fewer"));
   }
   return box;
 }

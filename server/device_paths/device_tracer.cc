@@ -295,7 +295,8 @@ reference::MakesTracer TracersFor(std::shared_ptr<gl::ProgramCache> programs) {
       return programs->Pieces().During([&] { return DeviceTracer::Create(*medium, programs); });
     });
     if (absl::IsUnimplemented(made.status()) || absl::IsResourceExhausted(made.status())) {
-      spdlog::info("paths are traced on the processors: {}", made.status().ToString());
+      spdlog::info("paths are traced on the CPU instead of the device: {}",
+                   made.status().ToString());
       return reference::TracerOnProcessors(medium);
     }
     if (!made.ok()) return made.status();

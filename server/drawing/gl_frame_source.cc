@@ -149,7 +149,8 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<frame::FineImage> Fine() override {
     if (completed_.has_value()) return *std::exchange(completed_, std::nullopt);
     if (!tone_mapped_.has_value()) {
-      return absl::FailedPreconditionError("no picture was drawn that could be had with more bits");
+      return absl::FailedPreconditionError(
+          "there is no rendered frame to read with more than 8 bits");
     }
     return programs_->Pieces().During(
         [&] { return tone_mapped_->mapper->MapFine(*tone_mapped_->linear); });
@@ -164,7 +165,7 @@ class GlFrameSource final : public FrameSource {
 
   absl::StatusOr<picture::LinearPicture> Linear() override {
     if (!tone_mapped_.has_value()) {
-      return absl::FailedPreconditionError("no picture was drawn whose light could be had");
+      return absl::FailedPreconditionError("there is no rendered frame to read radiance from");
     }
     return programs_->Pieces().During([&]() -> absl::StatusOr<picture::LinearPicture> {
       return frame::PictureOf(*tone_mapped_->linear, programs_->Pieces());

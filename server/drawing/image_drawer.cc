@@ -33,7 +33,7 @@ absl::Status TooCostly(double predicted_s, double max_s) {
   return base::InvalidField(
       "scene.output",
       absl::StrCat("asks for a picture that would take about ", std::lround(predicted_s),
-                   " s to draw here; the server gives one picture at most ", std::lround(max_s),
+                   " s to draw here; the server's limit for one picture is ", std::lround(max_s),
                    " s: ask for fewer pixels, fewer slices or a faster technique"),
       "PICTURE_TOO_COSTLY",
       {{"predicted", absl::StrCat(std::lround(predicted_s))},

@@ -103,9 +103,9 @@ absl::Status Lane::Ended() const {
   if (WorkedMs() > limits_.max_work_ms) return limits_.too_long;
   if (used_ms_ <= limits_.max_ms) return absl::OkStatus();
   return base::WithDetails(
-      absl::ResourceExhaustedError(
-          absl::StrCat("drawing took more than the ", std::lround(1e-3 * limits_.max_ms),
-                       " s that the server gives one picture; ask for fewer pixels or slices")),
+      absl::ResourceExhaustedError(absl::StrCat(
+          "drawing took more than the ", std::lround(1e-3 * limits_.max_ms),
+          " s that the server allows for one picture; request fewer pixels or slices")),
       {.reason = "PICTURE_TOO_COSTLY",
        .metadata = {{"maximum", absl::StrCat(1e-3 * limits_.max_ms)}, {"unit", "s"}},
        .permanent = true});

@@ -304,7 +304,7 @@ bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vecto
     const std::optional<session::Clock::time_point> at = losses_.Lost(time_.Now());
     if (!at.has_value()) {
       why = absl::UnavailableError(
-          absl::StrCat("the device was lost too often and is given up: ", why.message()));
+          absl::StrCat("the device was lost too often and is not opened again: ", why.message()));
       spdlog::critical("{}", std::string(why.message()));
       if (options_.on_device_given_up) options_.on_device_given_up(why);
       return false;

@@ -58,7 +58,8 @@ absl::Status PicturesBeyondShare(std::size_t bytes) {
   return base::WithDetails(
       absl::ResourceExhaustedError(absl::StrCat(
           "the pictures of all your sessions and views would take more than ", base::InWords(bytes),
-          " of memory, which is the most for one; close some, or show them smaller")),
+          " of memory, which is the maximum for one identity; close some, or request smaller "
+          "pictures")),
       {.reason = "MEMORY_SHARE",
        .metadata = {{"maximum", absl::StrCat(bytes)}, {"unit", "bytes"}},
        .retry_after = kShareRetry});
@@ -66,9 +67,10 @@ absl::Status PicturesBeyondShare(std::size_t bytes) {
 
 absl::Status ReferencesBeyondShare(std::size_t references) {
   return base::WithDetails(
-      absl::ResourceExhaustedError(absl::StrCat(
-          "the reference already traces ", references,
-          " pictures for you, which is the most for one; choose another technique in one of them")),
+      absl::ResourceExhaustedError(
+          absl::StrCat("the reference already traces ", references,
+                       " pictures for you, which is the maximum for one identity; choose another "
+                       "technique in one of them")),
       {.reason = "TOO_MANY_REFERENCES",
        .metadata = {{"maximum", absl::StrCat(references)}, {"unit", "pictures"}},
        .retry_after = kShareRetry});

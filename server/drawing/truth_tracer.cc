@@ -117,7 +117,7 @@ absl::Status TruthTracer::Trace(const std::string& owner, std::shared_ptr<const 
     if (owned_.count(owner) == 0 && owned_.size() >= max_owners_) {
       return absl::ResourceExhaustedError(
           absl::StrCat("the server is already tracing ", owned_.size(),
-                       " pictures by the reference; choose another renderer"));
+                       " pictures by the reference; choose another technique, or try again later"));
     }
     Owned& owned = owned_[owner];
     if (owned.source == nullptr) {

@@ -77,7 +77,7 @@ absl::StatusOr<std::string> JoinJpegStrips(const std::vector<std::string>& strip
     const std::optional<Layout> layout = LayoutOf(strip);
     if (!layout.has_value()) {
       return absl::InternalError(
-          absl::StrCat("strip ", i, " of the picture is no baseline JPEG of one scan"));
+          absl::StrCat("strip ", i, " of the picture is not a baseline JPEG with one scan"));
     }
     if (i == 0) {
       joined.append(strip, 0, layout->scan_header);

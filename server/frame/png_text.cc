@@ -78,7 +78,8 @@ absl::StatusOr<PngTexts> TextsOf(const std::string& png_file) {
   Source source{png_file, ""};
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, Fail, Warn);
   png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);
-  if (info == nullptr) return absl::ResourceExhaustedError("no memory to read a PNG");
+  if (info == nullptr)
+    return absl::ResourceExhaustedError("there is not enough memory to read a PNG");
   png_set_read_fn(png, &source, Read);
   PngTexts texts;
   const bool whole = ReadInfo(png, info);

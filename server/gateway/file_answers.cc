@@ -127,7 +127,8 @@ net::awaitable<bool> FileAnswers::SendKept(const Request& request, const KeptFil
   if (!done.ok()) {
     keep = co_await SendStorageFails(request);
   } else if (!opened->ok()) {
-    keep = co_await answers_.SendText(request, http::status::not_found, "This file is gone.\n");
+    keep = co_await answers_.SendText(request, http::status::not_found,
+                                      "This file no longer exists.\n");
   } else {
     std::shared_ptr<const OpenFile> result = **opened;
     keep = co_await SendKeptPart(request, file, std::move(result));

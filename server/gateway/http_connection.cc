@@ -128,9 +128,8 @@ net::awaitable<bool> HttpConnection::Answer(Parser& parser) {
     keep = co_await answers_.SendText(
         request, http::status::forbidden,
         absl::StrCat("This server does not answer to '", std::string(host),
-                     "'. Open it under a name that it knows, such as "
-                     "localhost, or start it with --allow-host and this "
-                     "one.\n"));
+                     "'. Open it under a name that it knows, such as localhost, or start it with "
+                     "--allow-host and this name.\n"));
   } else if (!path.starts_with('/') && path != "*") {
     keep =
         co_await answers_.SendText(request, http::status::bad_request,
@@ -230,9 +229,9 @@ net::awaitable<bool> HttpConnection::AnswerPost(Parser& parser, const std::strin
   const bool is_call =
       IsMethodPath(path) && IsBinaryGrpcWeb(View(request[http::field::content_type]));
   if (is_call && request.version() < 11) {
-    keep =
-        co_await answers_.SendText(request, http::status::http_version_not_supported,
-                                   "Calls need HTTP/1.1, as responses are streamed in chunks.\n");
+    keep = co_await answers_.SendText(
+        request, http::status::http_version_not_supported,
+        "Calls need HTTP/1.1, because responses are streamed in chunks.\n");
     co_return keep;
   }
   if (is_call) {

@@ -73,24 +73,25 @@ std::optional<std::string> FindAmbiguity(const http::request_header<>& request) 
        {http::field::host, http::field::origin, http::field::content_length,
         http::field::content_type, http::field::content_encoding, http::field::authorization}) {
     if (request.count(field) > 1) {
-      return absl::StrCat("A request has one ", std::string(View(http::to_string(field))),
+      return absl::StrCat("A request must have one ", std::string(View(http::to_string(field))),
                           " header, not several.\n");
     }
   }
   const auto coding = request[http::field::content_encoding];
   if (!coding.empty() && !boost::beast::iequals(coding, "identity")) {
-    return "A request's body has no Content-Encoding; send it as it is.\n";
+    return "A request's body must have no Content-Encoding; send it unencoded.\n";
   }
-  if (!HasPlainEncoding(request)) return "The only Transfer-Encoding is 'chunked', once.\n";
+  if (!HasPlainEncoding(request))
+    return "The only supported Transfer-Encoding is 'chunked', given once.\n";
   const bool has_encoding = request.count(http::field::transfer_encoding) > 0;
   if (has_encoding && request.count(http::field::content_length) > 0) {
-    return "A request has Transfer-Encoding or Content-Length, not both.\n";
+    return "A request must have Transfer-Encoding or Content-Length, not both.\n";
   }
   if (has_encoding && request.version() < 11) {
-    return "A request by HTTP/1.0 has no Transfer-Encoding; send Content-Length.\n";
+    return "A request by HTTP/1.0 must have no Transfer-Encoding; send Content-Length.\n";
   }
   if (!NameOfHost(View(request[http::field::host])).has_value()) {
-    return "The Host header's port is no number.\n";
+    return "The Host header's port is not a number.\n";
   }
   return std::nullopt;
 }

@@ -32,7 +32,7 @@ absl::StatusOr<std::shared_ptr<const OpenFile>> OpenFile::Open(const std::string
     return absl::NotFoundError(absl::StrCat("cannot read ", path, ": ", strerror(errno)));
   }
   if (!S_ISREG(information.st_mode)) {
-    return absl::NotFoundError(absl::StrCat("cannot read ", path, ": it is no regular file"));
+    return absl::NotFoundError(absl::StrCat("cannot read ", path, ": it is not a regular file"));
   }
   ::posix_fadvise(descriptor.Get(), 0, 0, POSIX_FADV_SEQUENTIAL);
   return std::shared_ptr<const OpenFile>(new OpenFile(

@@ -73,7 +73,8 @@ void OpenLinks::TellOfRefusal(const ClientLink& newcomer) {
   const auto now = time_.Now();
   if (now - told_at_ < kTellingPause) return;
   spdlog::warn(
-      "refused {} connections of browsers, the last of {}: {} are open, of one address at most {}",
+      "refused {} connections of browsers, the last from {}: {} connections are open, and one "
+      "address may have {}",
       untold_, newcomer.Peer(), links_.size(), most_per_address_);
   told_at_ = now;
   untold_ = 0;

@@ -27,7 +27,7 @@ absl::Status MessageTooLarge() {
 absl::Status AnswersNotTaken() {
   return base::WithDetails(
       absl::ResourceExhaustedError(
-          "too many answers wait for slow clients to take them; try again in a few seconds"),
+          "too many responses wait for slow clients to read them; try again in a few seconds"),
       {.reason = "ANSWERS_NOT_TAKEN"});
 }
 

@@ -20,8 +20,8 @@ constexpr std::chrono::seconds kPause{1};
 
 absl::Status CannotLoad(const std::string& what, const std::string& path, const error_code& error) {
   return absl::InvalidArgumentError(
-      absl::StrCat("cannot take ", path, " as the ", what, " of TLS: ", error.message(),
-                   "; it must be a PEM file that fits the other one"));
+      absl::StrCat("cannot use ", path, " as the ", what, " of TLS: ", error.message(),
+                   "; it must be a PEM file, and the certificate must belong to the key"));
 }
 
 }  // namespace
@@ -83,7 +83,7 @@ void TlsContexts::State::Look() {
   if (loaded.ok()) {
     spdlog::info("{} has changed and was loaded", certificate);
   } else {
-    spdlog::warn("TLS goes on with the former certificate: {}", std::string(loaded.message()));
+    spdlog::warn("TLS continues with the former certificate: {}", std::string(loaded.message()));
   }
 }
 

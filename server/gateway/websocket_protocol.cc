@@ -56,7 +56,7 @@ std::optional<close_reason> FindViolation(const MessageStart& start) {
     return violation(close_code::policy_error, "nothing may follow a half-close");
   }
   if (*start.kind == kHalfCloseKind && start.has_payload) {
-    return violation(close_code::policy_error, "a half-close has no payload");
+    return violation(close_code::policy_error, "a half-close must have no payload");
   }
   return std::nullopt;
 }

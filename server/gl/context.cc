@@ -208,7 +208,7 @@ absl::StatusOr<std::unique_ptr<Context>> OpenAny(const std::vector<EGLDeviceEXT>
   for (std::size_t i = 0; i < gpus.size(); ++i) {
     auto context = OpenGpu(gpus[i], i);
     if (context.ok()) return context;
-    spdlog::info("gpu {} is left aside: {}", i, std::string(context.status().message()));
+    spdlog::info("gpu {} is not used: {}", i, std::string(context.status().message()));
   }
   return OpenSoftware();
 }
@@ -234,7 +234,7 @@ absl::StatusOr<std::unique_ptr<Context>> Context::Create(std::string_view device
   if (context.ok()) {
     const ContextInfo& info = (*context)->Info();
     spdlog::info("drawing on {}: {}, OpenGL {}{}", info.device, info.renderer, info.version,
-                 info.tells_of_loss ? "" : "; its driver does not tell when the device is reset");
+                 info.tells_of_loss ? "" : "; its driver does not report when the device is reset");
   }
   return context;
 }

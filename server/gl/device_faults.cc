@@ -39,7 +39,8 @@ std::unique_ptr<DeviceWatch> WatchDevice() { return std::make_unique<GlWatch>();
 
 absl::Status DeviceLost() {
   return base::WithDetails(
-      absl::UnavailableError("the device was reset and is being made ready again"),
+      absl::UnavailableError(
+          "the device was reset and is being opened again; try again in a few seconds"),
       {.reason = kLostReason, .retry_after = kLostFor});
 }
 
@@ -49,8 +50,8 @@ bool IsDeviceLost(const absl::Status& status) {
 
 absl::Status OutOfDeviceMemory() {
   return base::WithDetails(
-      absl::ResourceExhaustedError("the device has not enough memory for that; ask for fewer "
-                                   "pixels, or try again when others look at less"),
+      absl::ResourceExhaustedError("the device does not have enough memory for this; request fewer "
+                                   "pixels, or try again later, when other viewers need less"),
       {.reason = kOutOfMemoryReason, .retry_after = kFullFor});
 }
 

@@ -54,7 +54,7 @@ bool FindsComputingFaster(const std::string& renderer) {
   const double compute_ms = TrialMs(whole_target, true);
   const bool computes = compute_ms * kClearlyFaster < raster_ms;
   spdlog::info(
-      "{} draws a picture of arithmetic in {:.2f} ms by fragment and in {:.2f} ms by compute "
+      "{} draws a test picture in {:.2f} ms with fragment shaders and in {:.2f} ms with compute "
       "shaders: pictures are {}",
       renderer, raster_ms, compute_ms, computes ? "computed" : "rasterized");
   return computes;

@@ -30,7 +30,7 @@ absl::StatusOr<std::string> ProgramOr(const std::string& given) {
   std::error_code error;
   if (std::filesystem::exists(path, error)) return path.string();
   return absl::InternalError(absl::StrCat(
-      path.string(), ", which reads OpenVDB files, is not there; install Thunderhead whole"));
+      path.string(), ", which reads OpenVDB files, does not exist; install all of Thunderhead"));
 }
 
 }  // namespace

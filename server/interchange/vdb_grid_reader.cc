@@ -268,7 +268,8 @@ absl::StatusOr<VdbVolume> ReadVdbGrid(const std::string& path, std::span<const s
     return absl::DataLossError(absl::StrCat(
         path, ": needs more memory than there is, or is damaged; write it again, or cut it"));
   } catch (const std::exception& error) {
-    return absl::DataLossError(absl::StrCat(path, ": is damaged, or is no OpenVDB file of version ",
+    return absl::DataLossError(absl::StrCat(path,
+                                            ": is damaged, or is not an OpenVDB file of version ",
                                             "10 or before (", error.what(), "); write it again"));
   }
 }

@@ -90,8 +90,8 @@ absl::Status JobBoard::Check(const std::string& id, const Asker& asker) const {
   if (job == jobs_.end()) return NotFound(id);
   if (asker.is_operator || job->second.record.owner == asker.name) return absl::OkStatus();
   return base::WithDetails(
-      absl::PermissionDeniedError("this render job is another's; only who created it, or an "
-                                  "operator, may see or end it"),
+      absl::PermissionDeniedError("this render job belongs to another identity; only its owner or "
+                                  "an operator may see or end it"),
       {.reason = "NOT_YOUR_JOB"});
 }
 

@@ -28,13 +28,14 @@ std::optional<Problem> JobBoard::PausedBecause(const std::string& owner,
   const std::uint64_t own_bytes = own == unfetched.by_owner.end() ? 0 : own->second;
   const auto because = [](const char* whose, std::uint64_t bytes, std::uint64_t maximum,
                           const char* flag) {
-    return Problem{absl::StatusCode::kResourceExhausted, "RESULTS_NOT_FETCHED",
-                   absl::StrCat("no further picture is begun: results ", whose,
-                                " that nobody has fetched take ", bytes, " bytes of ", maximum,
-                                " (", flag, "); fetch some, or forget jobs")};
+    return Problem{
+        absl::StatusCode::kResourceExhausted, "RESULTS_NOT_FETCHED",
+        absl::StrCat("no further picture is begun: the unfetched results ", whose, " take ", bytes,
+                     " bytes of ", maximum, " (", flag, "); fetch some, or forget jobs")};
   };
   if (own_bytes >= limits_.max_result_bytes_per_owner) {
-    return because("of yours", own_bytes, limits_.max_result_bytes_per_owner, "--jobs-quota-each");
+    return because("of your jobs", own_bytes, limits_.max_result_bytes_per_owner,
+                   "--jobs-quota-each");
   }
   if (unfetched.all >= limits_.max_result_bytes) {
     return because("of all jobs", unfetched.all, limits_.max_result_bytes, "--jobs-quota");
@@ -79,8 +80,8 @@ std::optional<Time> JobBoard::AbandonedAt(const Entry& entry, const Unfetched& u
 void JobBoard::EndAbandoned(Entry& entry, Time now, Expired& expired) {
   const Problem problem{
       absl::StatusCode::kResourceExhausted, "RESULTS_NOT_FETCHED",
-      absl::StrCat("nobody fetched results of this job for ", limits_.keep.count(),
-                   " s (--jobs-keep), while they kept it from being drawn on")};
+      absl::StrCat("the results of this job were not fetched for ", limits_.keep.count(),
+                   " s (--jobs-keep), so its other pictures could not be drawn")};
   for (std::size_t i = 0; i < entry.record.pictures.size(); ++i) {
     PictureRecord& picture = entry.record.pictures[i];
     if (picture.state == PictureState::kWaiting) {

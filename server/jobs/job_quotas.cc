@@ -21,13 +21,12 @@ constexpr std::chrono::seconds kRetryAfter{30};
 
 absl::Status TooMany(const std::string& what, std::size_t maximum, const char* unit,
                      const char* reason) {
-  return base::WithDetails(
-      absl::ResourceExhaustedError(absl::StrCat(what, ", and this server allows ", maximum,
-                                                "; try again when some have ended and "
-                                                "their results were fetched")),
-      {.reason = reason,
-       .metadata = {{"maximum", absl::StrCat(maximum)}, {"unit", unit}},
-       .retry_after = kRetryAfter});
+  return base::WithDetails(absl::ResourceExhaustedError(absl::StrCat(
+                               what, ", and this server allows ", maximum,
+                               "; try again when jobs have ended and their results were fetched")),
+                           {.reason = reason,
+                            .metadata = {{"maximum", absl::StrCat(maximum)}, {"unit", unit}},
+                            .retry_after = kRetryAfter});
 }
 
 }  // namespace
@@ -134,10 +133,11 @@ std::vector<ResultFile> JobBoard::MakeRoom() {
     Entry& entry = jobs_.at(picture.job_id);
     PictureRecord& record = entry.record.pictures[picture.place];
     dropped.push_back({picture, record.extension, record.sha256, record.bytes});
-    record.problem = {absl::StatusCode::kNotFound, "RESULT_DROPPED",
-                      absl::StrCat("it was fetched, and dropped to make room: the results of all "
-                                   "jobs may take ",
-                                   limits_.max_result_bytes, " bytes (--jobs-quota)")};
+    record.problem = {
+        absl::StatusCode::kNotFound, "RESULT_DROPPED",
+        absl::StrCat(
+            "it was fetched, and then deleted to free space: the results of all jobs may take ",
+            limits_.max_result_bytes, " bytes (--jobs-quota)")};
     SetState(entry, picture.place, PictureState::kDropped);
   }
   return dropped;

@@ -36,7 +36,7 @@ Problem ProblemOf(const absl::Status& status) {
 Problem EndedServer() {
   return {absl::StatusCode::kInternal, "PICTURE_ENDED_SERVER",
           absl::StrCat("it was begun ", JobBoard::kMaxAttempts,
-                       " times, and each time the server ended without having drawn it")};
+                       " times, and each time the server ended before it was drawn")};
 }
 
 }  // namespace
@@ -313,8 +313,10 @@ void Jobs::Run() {
 void Jobs::Expire(Lock& lock) {
   const JobBoard::Expired expired = board_.Expire(Now());
   if (expired.dropped.empty() && expired.failed == 0) return;
-  spdlog::warn("{} pictures of render jobs are not drawn, and {} results dropped: nobody fetched",
-               expired.failed, expired.dropped.size());
+  spdlog::warn(
+      "{} pictures of render jobs are not drawn, and {} results are deleted, because results were "
+      "not fetched in time",
+      expired.failed, expired.dropped.size());
   Count("failed", expired.failed);
   lock.unlock();
   RemoveDropped(expired.dropped);

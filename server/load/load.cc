@@ -53,7 +53,7 @@ absl::StatusOr<v1::CreateSessionResponse> CreateSession(Transport& transport,
   }
   if (session.viewer_key().empty()) {
     return absl::UnimplementedError(
-        "the server is older than this program and gives no viewers' key: run both in the same "
+        "the server is older than this program and returns no viewers' key: run both in the same "
         "version");
   }
   return session;

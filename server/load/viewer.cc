@@ -50,7 +50,7 @@ void Viewer::ComeAgain(Transport& transport, const std::string& key) {
   Stop();
   // If the call ended on its own, it has already reported its error.
   if (waits_since_s_.has_value() && !ended_)
-    errors_.Add("a viewer left without having had a frame");
+    errors_.Add("a viewer left before it received a frame");
   ended_ = false;
   Join(transport, key, 0.0, takes_video_);
 }

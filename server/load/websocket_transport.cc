@@ -359,8 +359,8 @@ absl::StatusOr<std::unique_ptr<Transport>> MakeSecureWebSocketTransport(const st
     tls->add_certificate_authority(net::buffer(access.tls_roots), error);
   }
   if (error) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "cannot use the certificates that may vouch for a server by TLS: ", error.message()));
+    return absl::InvalidArgumentError(
+        absl::StrCat("cannot use the certificates of authorities for TLS: ", error.message()));
   }
   tls->set_verify_mode(ssl::verify_peer);
   return std::make_unique<WebSocketTransport>(Host{host, port, access.token, std::move(tls)});

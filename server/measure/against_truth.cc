@@ -19,8 +19,8 @@ absl::StatusOr<AgainstTruth> AgainstTruth::Of(const scene::Scene& scene,
   const auto compared = static_cast<double>(std::ranges::count(left_out, false));
   if (compared < reference::kLeastAwayFromSun * static_cast<double>(left_out.size())) {
     return absl::InvalidArgumentError(
-        "the camera looks at hardly anything but the sun, next to which the reference shows no "
-        "aureole; turn it away, widen its field of view or lower the peak cut");
+        "the camera shows little except the sun, and the reference shows no aureole around it; "
+        "turn the camera away, widen its field of view or lower --peak-cut");
   }
   return AgainstTruth(std::move(truth), std::move(left_out));
 }

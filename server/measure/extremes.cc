@@ -24,7 +24,8 @@ Verdict Near(double got, double expected, double tolerance, double without) {
   Verdict verdict = {absl::StrFormat("%.6g +- %.2g", expected, tolerance),
                      absl::StrFormat("%.6g", got), std::abs(got - expected) <= tolerance};
   if (std::abs(without - expected) <= tolerance) {
-    absl::StrAppendFormat(&verdict.got, ", but %.6g would pass without any medium", without);
+    absl::StrAppendFormat(&verdict.got, ", but the bound %.6g would also pass without any medium",
+                          without);
     verdict.passed = false;
   }
   return verdict;

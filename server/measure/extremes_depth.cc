@@ -121,7 +121,7 @@ Extreme Radius(const accuracy::PlainTechnique& plain, float radius_m) {
 // Checks the energy if all scattered light continues forwards. The energy must not grow.
 Extreme LightEnergy(const accuracy::PlainTechnique& plain,
                     const accuracy::Named<scene::Transport>& transport) {
-  return {absl::StrFormat("%s: light is never more than came in, theta_f 90, %s", plain.name,
+  return {absl::StrFormat("%s: light never exceeds the incoming light, theta_f 90, %s", plain.name,
                           transport.name),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
             scene::Scene scene;

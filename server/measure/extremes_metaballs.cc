@@ -33,7 +33,7 @@ Verdict Within(double got, double low, double high, double without) {
   Verdict verdict{absl::StrFormat("%g to %g", low, high), absl::StrFormat("%g", got),
                   got >= low && got <= high};
   if (without >= low && without <= high) {
-    verdict.got += ", but no balls at all would pass";
+    verdict.got += ", but the test would also pass without balls";
     verdict.passed = false;
   }
   return verdict;

@@ -44,7 +44,7 @@ double RelativeRmse(const picture::LinearPicture& image, const picture::LinearPi
 }
 
 double RelativeNoise(const picture::LinearPicture& truth) {
-  THUNDERHEAD_CHECK(!truth.standard_error.empty(), "the truth has no standard error");
+  THUNDERHEAD_CHECK(!truth.standard_error.empty(), "the reference has no standard error");
   double squares = 0.0;
   for (const glm::vec3& error : truth.standard_error)
     squares += Sum(glm::dvec3(error) * glm::dvec3(error));

@@ -27,7 +27,8 @@ void InspectRoot(float root, const char* where, Soundness* found) {
   if (std::isfinite(root) && root >= 0.0F) {
     found->least_light = std::min(found->least_light, std::exp(-depth));
   } else if (found->unsound.empty()) {
-    found->unsound = absl::StrFormat("root of the light's depth %g %s", root, where);
+    found->unsound =
+        absl::StrFormat("square root of the sunlight's optical depth is %g %s", root, where);
   }
 }
 
@@ -41,7 +42,7 @@ void InspectRays(const gl::Texture3D& carried, Soundness* found) {
     if (i % 2 == 0) InspectRoot(texels[i], "along the sun's rays", found);
     const bool grows = i < layer || texels[i] == 0.0F || texels[i] >= texels[i - layer];
     if (grows || !found->unsound.empty()) continue;
-    found->unsound = absl::StrFormat("light's optical depth %g after %g on its ray", texels[i],
+    found->unsound = absl::StrFormat("optical depth %g after %g on the same sun ray", texels[i],
                                      texels[i - layer]);
   }
 }

@@ -23,8 +23,7 @@ absl::Status CheckShape(const PhaseTableContent& content) {
   const std::vector<double>& angles = content.angles_deg;
   if (angles.size() < 2 || angles.size() != content.values.size()) {
     return absl::InvalidArgumentError(
-        absl::StrFormat("%d angles and %d values; give two or more of each, as many of one as of "
-                        "the other",
+        absl::StrFormat("%d angles and %d values; give two or more of each, in equal numbers",
                         angles.size(), content.values.size()));
   }
   if (angles.front() != 0.0 || angles.back() != 180.0) {

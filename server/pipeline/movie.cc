@@ -168,7 +168,7 @@ class MovieWriter {
   absl::Status Add(const frame::RgbImage& image, int frames) {
     if ((image.width_px & ~1) != codec_->width || (image.height_px & ~1) != codec_->height) {
       return absl::InvalidArgumentError(
-          absl::StrCat(path_, ": its pictures differ in size; a movie has one"));
+          absl::StrCat(path_, ": its pictures differ in size; give all of them the same size"));
     }
     for (int i = 0; i < frames; ++i) {
       if (const int code = av_frame_make_writable(frame_.get()); code < 0) {
@@ -206,7 +206,7 @@ class MovieWriter {
     scaler_.reset(sws_getContext(codec_->width, codec_->height, AV_PIX_FMT_RGB24, codec_->width,
                                  codec_->height, AV_PIX_FMT_YUV420P, SWS_BICUBIC | SWS_ACCURATE_RND,
                                  nullptr, nullptr, nullptr));
-    if (scaler_ == nullptr) return absl::InternalError("libswscale converts no RGB");
+    if (scaler_ == nullptr) return absl::InternalError("libswscale cannot convert RGB");
     const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
     sws_setColorspaceDetails(scaler_.get(), bt709, 1, bt709, 0, 0, 1 << 16, 1 << 16);
     return absl::OkStatus();

@@ -70,8 +70,9 @@ absl::StatusOr<ProductName::Part> ProductName::ParseField(std::string_view field
   part.format = formatted ? std::string(field.substr(colon + 1)) : "";
   if (IsTime(part.field)) {
     if (IsTimeFormat(part.format)) return part;
-    return absl::InvalidArgumentError(absl::StrCat(
-        "needs a time's format of %Y %y %m %d %j %H %M %S, such as {", part.field, ":%Y%m%d%H}"));
+    return absl::InvalidArgumentError(
+        absl::StrCat("needs a time format made of %Y %y %m %d %j %H %M %S, such as {", part.field,
+                     ":%Y%m%d%H}"));
   }
   if (IsNumber(part.field)) {
     const std::optional<int> width = formatted ? WidthOf(part.format) : std::optional<int>(0);
@@ -101,7 +102,7 @@ absl::StatusOr<ProductName> ProductName::Parse(std::string_view flag, std::strin
     if (open == std::string_view::npos) break;
     const std::size_t close = text.find('}', open);
     if (text[open] == '}' || close == std::string_view::npos) {
-      return absl::InvalidArgumentError(absl::StrCat(what, "it has a brace without its partner"));
+      return absl::InvalidArgumentError(absl::StrCat(what, "it has an unmatched brace"));
     }
     const std::string_view field = text.substr(open + 1, close - open - 1);
     absl::StatusOr<Part> part = ParseField(field);
@@ -121,7 +122,7 @@ absl::StatusOr<std::string> ProductName::For(const ProductKey& key) const {
     if (of_run && !key.run.has_value()) {
       return absl::InvalidArgumentError(
           absl::StrCat("'", text_, "' asks for {", part.field, "}, but the files of storm ",
-                       key.storm, " do not tell when their run began; use {valid:...}"));
+                       key.storm, " do not say when their run began; use {valid:...}"));
     }
     if (part.field.empty()) {
       absl::StrAppend(&name, part.format);

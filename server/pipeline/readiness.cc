@@ -102,7 +102,7 @@ std::optional<std::string> ReadinessPolicy::WaitsFor(const SeenFile& file,
         return !end.empty() && marker != file.name && (name.ends_with(end) || stem.ends_with(end));
       });
       if (marked) return std::nullopt;
-      return absl::StrCat("no file ", marker_, " marks it");
+      return absl::StrCat("no marker file ", marker_, " exists for it");
     }
   }
   return std::nullopt;

@@ -210,7 +210,7 @@ absl::Status Annotate(const Annotation& annotation, frame::RgbImage& image) {
   }
   const CairoSurface surface = SurfaceOf(image);
   if (cairo_surface_status(surface.get()) != CAIRO_STATUS_SUCCESS) {
-    return absl::ResourceExhaustedError("no memory to annotate the picture in");
+    return absl::ResourceExhaustedError("there is not enough memory to annotate the picture");
   }
   Pen pen(surface.get(), image.width_px, image.height_px);
   double room_px = pen.Width_px() - 2.0 * pen.Margin_px();

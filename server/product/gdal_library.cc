@@ -25,9 +25,9 @@ absl::StatusOr<GdalLibrary> Open() {
     if (library == nullptr) library = dlopen(name, RTLD_NOW | RTLD_LOCAL);
   }
   if (library == nullptr) {
-    return absl::FailedPreconditionError(absl::StrCat("GeoTIFF needs GDAL, which is not there (",
-                                                      dlerror(),
-                                                      "); install Debian's package libgdal32"));
+    return absl::FailedPreconditionError(
+        absl::StrCat("GeoTIFF needs GDAL, which is not installed (", dlerror(),
+                     "); install Debian's package libgdal32"));
   }
   GdalLibrary gdal;
   const bool whole = Find(library, "GDALRegister_GTiff", gdal.RegisterGTiff) &&

@@ -39,7 +39,7 @@ absl::StatusOr<Logo> Logo::Decode(std::string_view png, const std::string& what)
     return absl::DataLossError(absl::StrCat(what, ": ", why, "; give a PNG of at most ",
                                             kMaxSize_px, " x ", kMaxSize_px, " pixels"));
   };
-  if (!png.starts_with(kSignature) || png.size() < kHeightAt + 4) return bad("is no PNG");
+  if (!png.starts_with(kSignature) || png.size() < kHeightAt + 4) return bad("is not a PNG");
   // The size is checked before Cairo allocates memory for it.
   const std::uint32_t width = NumberAt(png, kWidthAt);
   const std::uint32_t height = NumberAt(png, kHeightAt);

@@ -22,7 +22,7 @@ absl::Status CheckGroup(const ScatteringGroup& group, std::size_t cells) {
   if (group.extinction_per_m.size() != cells) {
     return absl::InvalidArgumentError(absl::StrCat("extinction has ", group.extinction_per_m.size(),
                                                    " values for a grid of ", cells,
-                                                   " cells; give one value a cell"));
+                                                   " cells; give one value per cell"));
   }
   const auto usable = [](float value) { return std::isfinite(value) && value >= 0.0F; };
   const auto bad =

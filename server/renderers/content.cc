@@ -15,13 +15,13 @@ void AddNotShown(const scene::Scene& scene, const scene::Capabilities& shows, Co
   }
   if (!scene.lights.empty() && !shows.lights) {
     content->not_shown.push_back(
-        {Code::kLights, "lights besides the sun (metaballs and the reference show them)"});
+        {Code::kLights, "lights in addition to the sun (metaballs and the reference show them)"});
   }
   if (scene.ground.borders && !content->ground.borders) {
     content->not_shown.push_back(
         {Code::kBorders,
-         "coasts and borders (the storm has no map projection, or the server no data of them: "
-         "Debian's package gmt-gshhg-low)"});
+         "coasts and borders (the storm has no map projection, or the server has no data for them: "
+         "install Debian's package gmt-gshhg-low)"});
   }
 }
 

@@ -55,7 +55,7 @@ absl::Status UnknownTechnique(std::string_view name, const TechniqueRegistry& re
     absl::StrAppend(&known, known.empty() ? "" : ", ", std::string(technique->Name()));
   }
   return absl::InvalidArgumentError(absl::StrCat("there is no technique '", std::string(name),
-                                                 "' that draws; there are ", known));
+                                                 "' that draws; the techniques are ", known));
 }
 
 }  // namespace
@@ -194,7 +194,8 @@ absl::StatusOr<LinearFrame> SceneRenderer::Draw(const scene::Scene& asked, const
 absl::StatusOr<LinearFrame> SceneRenderer::DrawBehind() {
   THUNDERHEAD_CHECK(drawn_settings_.has_value() && !DrewCoarse() && drawn_scene_.has_value(),
                     "a whole frame was drawn last");
-  THUNDERHEAD_CHECK(!drawn_settings_->quality.sun_seen, "the storm's aureole is the storm's light");
+  THUNDERHEAD_CHECK(!drawn_settings_->quality.sun_seen,
+                    "the storm's aureole must be part of the storm's light");
   const std::shared_ptr<const volume::HydrometeorFields> fields = drawn_fields_.lock();
   THUNDERHEAD_CHECK(fields != nullptr, "the fields of the frame are gone");
   const scene::Scene scene = scene::WithGroundOf(*drawn_scene_, *fields);
@@ -347,7 +348,8 @@ bool SceneRenderer::DrawsChosen() const {
 }
 
 absl::StatusOr<ChosenFrame> SceneRenderer::DrawChosen(const std::vector<glm::vec2>& places) {
-  THUNDERHEAD_CHECK(DrewCoarse() && drawn_scene_.has_value(), "rays are chosen for a coarse frame");
+  THUNDERHEAD_CHECK(DrewCoarse() && drawn_scene_.has_value(),
+                    "rays can be chosen only for a coarse frame");
   const std::shared_ptr<const volume::HydrometeorFields> fields = drawn_fields_.lock();
   THUNDERHEAD_CHECK(fields != nullptr, "the fields of the frame are gone");
   const scene::Scene scene = scene::WithGroundOf(*drawn_scene_, *fields);

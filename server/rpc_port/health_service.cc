@@ -7,8 +7,9 @@ grpc::ServerUnaryReactor* HealthService::Check(grpc::CallbackServerContext* cont
                                                grpc::health::v1::HealthCheckResponse* response) {
   grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
   if (!request->service().empty() && request->service() != service_) {
-    reactor->Finish({grpc::StatusCode::NOT_FOUND,
-                     "health is told of \"" + service_ + "\" and, without a name, of the server"});
+    reactor->Finish(
+        {grpc::StatusCode::NOT_FOUND, "health is known only for \"" + service_ +
+                                          "\" and, without a name, for the whole server"});
     return reactor;
   }
   using Response = grpc::health::v1::HealthCheckResponse;

@@ -97,8 +97,8 @@ void EcflowReporter::Call(const std::string& argument, const std::string& value)
   if (!value.empty()) arguments.push_back(value);
   if (Spawn(std::move(arguments)) == 0 || complained_) return;
   complained_ = true;
-  std::cerr << "thunderhead: ecFlow is not told of the progress, as ecflow_client " << argument
-            << " failed; the pictures are made all the same" << std::endl;
+  std::cerr << "thunderhead: the progress is not reported to ecFlow, because ecflow_client "
+            << argument << " failed; the pictures are made nevertheless" << std::endl;
 }
 
 }  // namespace thunderhead::runs

@@ -39,7 +39,7 @@ std::string ExitCodesHelp() {
          "a\n"
          "      signal came; try again\n"
          "  78  configuration: no such device, or a folder that may not be written to\n"
-         "  Above 128 only by a signal that leaves no time.";
+         "  A code above 128 means that a signal ended the program at once.";
 }
 
 }  // namespace thunderhead::runs

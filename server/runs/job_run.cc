@@ -39,7 +39,9 @@ absl::Status RunInterrupted() { return absl::CancelledError("interrupted"); }
 
 absl::StatusOr<absl::Time> ParseIso(const std::string& text) {
   if (const auto time = base::ParseUtcTime(text); time.has_value()) return *time;
-  return absl::InternalError(absl::StrCat("the server gave '", text, "' as a time"));
+  return absl::InternalError(
+      absl::StrCat("the server sent '", text,
+                   "', which is not a time; run the server and this program in the same version"));
 }
 
 bool MayComeBack(const absl::Status& status) {
@@ -231,13 +233,12 @@ absl::Status JobRun::Fetch(const JobShare& share, const PictureState& state,
                                FetchWhole(share.job_id, state, stop, &bytes));
   if (pipeline::Sha256(bytes) != state.sha256()) {
     return absl::UnavailableError(
-        absl::StrCat(picture.path, " did not come whole from the server; try again"));
+        absl::StrCat(picture.path, " did not arrive completely from the server; try again"));
   }
   const v1::RenderJobInput& input = about.input();
   const pipeline::InputFile read = InputOf(server_.Address(), picture.server_storm, input.file());
   if (!SameStamp(read, *picture.server_input)) {
-    return absl::AbortedError(
-        absl::StrCat(read.path, " was written to before it was drawn; try again"));
+    return absl::AbortedError(absl::StrCat(read.path, " changed before it was drawn; try again"));
   }
   const View& view = run_.Options().views[picture.view];
   pipeline::ManifestEntry entry = EntryOf(picture.key, view);

@@ -35,8 +35,9 @@ absl::Status AsFileProblem(const std::string& path, const absl::Status& status) 
   // beyond usual clock differences, gives no information.
   const absl::Duration age = absl::Now() - absl::FromUnixNanos(stamp->modified_ns);
   if (absl::AbsDuration(age) > kStillWritten) return status;
-  return absl::UnavailableError(
-      absl::StrCat(status.message(), "; as it changed just now, it may still be being written"));
+  return absl::UnavailableError(absl::StrCat(
+      status.message(),
+      "; it changed just now, so it may still be being written: try again when it is complete"));
 }
 
 absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::string& path) {

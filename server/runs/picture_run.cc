@@ -57,7 +57,7 @@ void AddStages(const v1::RenderImageResponse& response, PictureTimes& times) {
 }
 
 absl::Status ChangedMeanwhile(const std::string& path) {
-  return absl::AbortedError(absl::StrCat(path, " was written to while it was drawn; try again"));
+  return absl::AbortedError(absl::StrCat(path, " changed while it was drawn; try again"));
 }
 
 // Returns true for an error that concerns only one input file and its pictures.
@@ -101,7 +101,8 @@ absl::Status CheckNames(const PictureRunOptions& options,
 absl::StatusOr<pipeline::InputFile> StampOf(const std::string& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) {
-    return absl::NotFoundError(absl::StrCat(path, ": is gone (", std::strerror(errno), ")"));
+    return absl::NotFoundError(
+        absl::StrCat(path, ": no longer exists (", std::strerror(errno), ")"));
   }
   pipeline::InputFile input;
   input.path = path;

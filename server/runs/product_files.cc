@@ -151,9 +151,9 @@ absl::StatusOr<ProductFile> MakeFromPixels(const ProductFormat& format, const st
   }
   if (format.kind == ProductKind::kGeoTiff && place.projection.empty()) {
     return absl::InvalidArgumentError(
-        "the storm has no place on Earth for a GeoTIFF: it is of an idealised run, or its grid is "
-        "of a map projection that is not known; use a .png, with --world-file for metres from the "
-        "middle of its domain");
+        "a GeoTIFF needs the storm's place on Earth, but the run is idealised or its map "
+        "projection is unknown; use a .png, with --world-file for metres from the middle of the "
+        "domain");
   }
   if (!format.annotate && format.kind == ProductKind::kPng) {
     file.bytes = std::move(*picture.mutable_image());
@@ -189,9 +189,9 @@ v1::ImageFormat ProductFormat::Drawn() const {
 absl::Status CheckScene(const ProductFormat& format, const v1::Scene& scene) {
   if (!format.IsMap() || scene.camera().has_top_down()) return absl::OkStatus();
   return absl::InvalidArgumentError(
-      "a map (.tif, .nc or --world-file) is seen from above, and the scene's camera is not: use "
-      "--camera top-down or a scene with camera.topDown; of other views a .png or .exr has the "
-      "camera's place inside");
+      "a map (.tif, .nc or --world-file) must be seen from above, but the scene's camera is not: "
+      "use --camera top-down or a scene with camera.topDown; for another view write a .png or "
+      ".exr, which contains the camera's position");
 }
 
 std::string WorldFilePath(const std::string& path) {

@@ -133,9 +133,9 @@ absl::Status MakeMovies(const MovieOptions& options, const std::vector<PlannedPi
     std::vector<const PlannedPicture*>& movie = movies[path];
     if (!movie.empty() && (movie.front()->key.storm != picture.key.storm ||
                            movie.front()->key.run != picture.key.run)) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("--movie would name the movies of storms ", movie.front()->key.storm,
-                       " and ", picture.key.storm, " '", path, "'; add {storm} or {run:%Y%m%d%H}"));
+      return absl::InvalidArgumentError(absl::StrCat(
+          "--movie would give the movies of storms ", movie.front()->key.storm, " and ",
+          picture.key.storm, " the same name '", path, "'; add {storm} or {run:%Y%m%d%H}"));
     }
     movie.push_back(&picture);
   }

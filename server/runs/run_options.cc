@@ -34,7 +34,7 @@ absl::StatusOr<View> MakeView(const std::string& name, v1::Scene scene) {
   THUNDERHEAD_RETURN_IF_ERROR(service::CheckLimits(scene));
   if (scene.rendering().has_reference()) {
     return absl::InvalidArgumentError(
-        "the reference draws single pictures alone: use thunderhead render, or another renderer");
+        "the reference draws only single images: use thunderhead render, or another technique");
   }
   std::string json;
   (void)google::protobuf::util::MessageToJsonString(scene, &json);

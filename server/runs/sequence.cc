@@ -123,11 +123,11 @@ absl::Status CheckCounts(const Found& found, const std::string& times,
   if (times == "all" && !has("time") && !assumes_run) return absl::OkStatus();
   const absl::Status worst = WorstOf(found.problems);
   return absl::Status(worst.code(),
-                      absl::StrCat(worst.message(), ". Nothing is drawn, as ",
+                      absl::StrCat(worst.message(), ". Nothing is drawn, because ",
                                    times != "all" ? "--times"
                                    : has("time")  ? "{time}"
                                                  : "the start of the run, which is the first time,",
-                                   " is only known with all files"));
+                                   " is known only when all files can be read"));
 }
 
 absl::StatusOr<std::vector<PlannedPicture>> PlanSequence(
@@ -239,9 +239,10 @@ absl::Status RunSequence(SequenceOptions options, ServerLink* server, const std:
   const absl::Status made = server == nullptr ? run->Make(found.storms, pictures, progress, stop)
                                               : MakeByJobs(*server, *run, pictures, progress, stop);
   if (absl::IsCancelled(made)) {
-    return absl::CancelledError(absl::StrCat(
-        "interrupted: ", progress.DrawnCount() + progress.KeptCount(), " of ", pictures.size(),
-        " pictures are made and in ", run->Records().Path(), "; the same command goes on"));
+    return absl::CancelledError(
+        absl::StrCat("interrupted: ", progress.DrawnCount() + progress.KeptCount(), " of ",
+                     pictures.size(), " pictures are made and listed in ", run->Records().Path(),
+                     "; run the same command again to continue"));
   }
   THUNDERHEAD_RETURN_IF_ERROR(made);
   // The movies are made from the pictures that exist, because the missing ones may never arrive.

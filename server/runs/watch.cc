@@ -157,7 +157,8 @@ absl::Status DrawReady(const MovieOptions& movie, WatchedFolder& folder, Picture
 
 absl::Status Ended(const WatchedFolder& folder, bool in_time) {
   if (!in_time && folder.WaitingCount() > 0) {
-    return absl::UnavailableError(absl::StrCat("the time has come, but ", folder.WaitingCount(),
+    return absl::UnavailableError(absl::StrCat("the time of --until has passed, but ",
+                                               folder.WaitingCount(),
                                                " files are not complete or not drawn"));
   }
   if (folder.BadCount() > 0) {
@@ -218,8 +219,8 @@ absl::Status RunWatch(WatchOptions options, const std::stop_token& stop) {
                          std::clamp(options.end.at - absl::Now(), absl::ZeroDuration(), pause)));
   }
   return absl::CancelledError(absl::StrCat("interrupted: the products of ", folder.DoneCount(),
-                                           " files are made and in ", run->Records().Path(),
-                                           "; the same command goes on"));
+                                           " files are made and listed in ", run->Records().Path(),
+                                           "; run the same command again to continue"));
 }
 
 }  // namespace thunderhead::runs

@@ -109,8 +109,8 @@ absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRu
     PauseForLook(stop);
   }
   return absl::CancelledError(absl::StrCat("interrupted: the products of ", watching.TimesDone(),
-                                           " times are made and in ", run.Records().Path(),
-                                           "; the same command goes on"));
+                                           " times are made and listed in ", run.Records().Path(),
+                                           "; run the same command again to continue"));
 }
 
 }  // namespace thunderhead::runs

@@ -114,7 +114,7 @@ void WatchedFolder::Open(const std::string& path, File& file, RunProgress& progr
   if (absl::IsUnavailable(storm.status())) return;
   file.refused = true;
   if (absl::IsInvalidArgument(storm.status())) file.state = State::kOther;
-  progress.Note(path, absl::StrCat(file.state == State::kOther ? "left aside until it changes: "
+  progress.Note(path, absl::StrCat(file.state == State::kOther ? "ignored until it changes: "
                                                                : "waits until it changes: ",
                                    storm.status().message()));
 }

@@ -18,7 +18,8 @@ namespace thunderhead::sandbox {
 namespace {
 
 absl::Status CannotBeCopied(const std::string& path, int error) {
-  return absl::UnavailableError(absl::StrCat(path, ": cannot be copied for its reader (",
+  return absl::UnavailableError(absl::StrCat(path,
+                                             ": cannot be copied for the process that reads it (",
                                              std::strerror(error), "); try again"));
 }
 
@@ -93,7 +94,7 @@ absl::StatusOr<FileBundle> Bundle(const std::vector<std::string>& paths, const O
   for (const std::string& path : paths) {
     const std::optional<base::FileStamp> stamp = base::StampOf(path);
     if (!stamp.has_value()) {
-      return absl::NotFoundError(absl::StrCat(path, ": there is no such file any more"));
+      return absl::NotFoundError(absl::StrCat(path, ": the file no longer exists"));
     }
     bundle.stamps.push_back(*stamp);
     total += static_cast<std::uint64_t>(stamp->size_bytes);

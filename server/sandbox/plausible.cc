@@ -189,7 +189,7 @@ absl::Status CheckPlausible(const volume::HydrometeorFields& fields,
   const glm::ivec3 cells = fields.grid.cells;
   THUNDERHEAD_RETURN_IF_ERROR(
       Require(cells.x == file.cells.x && cells.y == file.cells.y,
-              "the number of its columns, which is not what it was: was the file replaced?"));
+              "the number of its columns, which was different before (was the file replaced?)"));
   const std::size_t columns = static_cast<std::size_t>(cells.x) * static_cast<std::size_t>(cells.y);
   for (const volume::HydrometeorField& field : fields.fields) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckField(field, fields.grid.CellCount()));

@@ -55,13 +55,14 @@ namespace {
 absl::StatusOr<std::span<const std::byte>> MapFile() {
   struct stat information = {};
   if (fstat(kFileDescriptor, &information) != 0) {
-    return absl::UnavailableError(absl::StrCat("cannot be looked at: ", std::strerror(errno)));
+    return absl::UnavailableError(absl::StrCat("cannot be examined: ", std::strerror(errno)));
   }
   const auto size = static_cast<std::size_t>(information.st_size);
   if (size == 0) return std::span<const std::byte>();
   void* const bytes = mmap(nullptr, size, PROT_READ, MAP_PRIVATE, kFileDescriptor, 0);
   if (bytes == MAP_FAILED) {
-    return absl::UnavailableError(absl::StrCat("cannot be mapped: ", std::strerror(errno)));
+    return absl::UnavailableError(
+        absl::StrCat("cannot be mapped into memory: ", std::strerror(errno)));
   }
   close(kFileDescriptor);
   return std::span(static_cast<const std::byte*>(bytes), size);

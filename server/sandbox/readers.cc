@@ -28,8 +28,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::string_view kReaderFailed = "READER_FAILED";
-constexpr char kWhatToDo[] =
-    "; the file may be damaged or hostile: have it written again, or take it away";
+constexpr char kWhatToDo[] = "; the file may be damaged or hostile: write it again, or remove it";
 
 // Counts and logs a failure of a reader, and returns the error for the caller.
 absl::Status Failed(const std::string& path, const char* reason, absl::Status status) {
@@ -50,9 +49,8 @@ absl::Status WasSilent(const std::string& path, milliseconds silence) {
   return Failed(
       path, "time",
       absl::DeadlineExceededError(absl::StrCat(
-          "was ended: nothing had come from it for ",
-          absl::FormatDuration(absl::FromChrono(silence)),
-          " (--read-deadline of `serve`), and it did not wait for its storage", kWhatToDo)));
+          "was ended: it had given no result for ", absl::FormatDuration(absl::FromChrono(silence)),
+          " (--read-deadline of `serve`), although its storage answered", kWhatToDo)));
 }
 
 // Returns the error for a reader that ended without a result.
@@ -70,9 +68,9 @@ absl::Status EndedEarly(const std::string& path, int signal, milliseconds time) 
 }
 
 absl::Status Nonsense(const std::string& path, const std::string& what) {
-  return Failed(path, "nonsense",
-                absl::DataLossError(
-                    absl::StrCat("gave a result that cannot be right, by ", what, kWhatToDo)));
+  return Failed(
+      path, "nonsense",
+      absl::DataLossError(absl::StrCat("gave an impossible value for ", what, kWhatToDo)));
 }
 
 // Returns a text that the reader sent as one printable line of at most 2000 bytes.
@@ -271,12 +269,12 @@ absl::Status Readers::Run(Request request, Reply wanted, milliseconds patience,
 }
 
 absl::StatusOr<std::string> ReaderProgram() {
-  constexpr char kRemedy[] = "; install Thunderhead whole, and start this program again";
+  constexpr char kRemedy[] = "; install all of Thunderhead, and start this program again";
   static const std::string path = (base::ProgramFolder() / kReaderName).string();
   static const std::optional<base::FileStamp> first = base::StampOf(path);
   if (!first.has_value()) {
     return absl::InternalError(
-        absl::StrCat(path, ", which reads storm files, is not there", kRemedy));
+        absl::StrCat(path, ", which reads storm files, does not exist", kRemedy));
   }
   const std::optional<base::FileStamp> now = base::StampOf(path);
   // The change time is ignored, because a backup that links the file under another name changes it.

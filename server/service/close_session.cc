@@ -13,7 +13,7 @@ absl::Status EndSaved(const absl::Status& removed) {
   if (removed.ok()) return removed;
   const absl::Status unsaved = base::WithDetails(
       absl::UnavailableError(absl::StrCat(
-          "the session is closed, but comes back if the server ends before that is saved: ",
+          "the session is closed, but exists again if the server restarts before this is saved: ",
           removed.message())),
       base::DetailsOf(removed));
   return base::WithDetails(unsaved, {.reason = "SESSION_END_NOT_SAVED"});

@@ -31,7 +31,7 @@ absl::Status Saved(Engine& engine, const absl::Status& saved, v1::CreateSessionR
   if (base::DetailsOf(saved).reason == base::kStorageHangs) {
     // The session can be closed because its keys were not sent to any client.
     (void)engine.sessions.Close(response.session_id());
-    return base::Annotate(saved, "no session can be opened, as it could not be kept");
+    return base::Annotate(saved, "no session can be opened, because it cannot be saved");
   }
   if (engine.keeper != nullptr) response.set_durable(saved.ok());
   telemetry::Counted().sessions_opened.Add();

@@ -61,7 +61,7 @@ absl::StatusOr<std::vector<std::size_t>> FieldsAdded(const v1::GetStormMapReques
                                 absl::StrCat("is ", v1::Hydrometeor_Name(request.fields(i)),
                                              ", whose unit differs from that of ",
                                              v1::Hydrometeor_Name(request.fields(0)),
-                                             "; ask for mass and for extinction apart"),
+                                             "; request mass and extinction in separate calls"),
                                 "UNITS_DIFFER");
     }
     if (std::ranges::find(added, index) == added.end()) added.push_back(index);

@@ -15,8 +15,8 @@ absl::StatusOr<std::shared_ptr<session::Session>> FindToSteer(
                                engine.sessions.Find(request.session_id()));
   if (found.role != session::Role::kPresenter) {
     return base::WithDetails(
-        absl::PermissionDeniedError("viewers steer by Interact, after asking for control; this "
-                                    "call takes the presenter's key"),
+        absl::PermissionDeniedError("this call needs the presenter's key; viewers change the scene "
+                                    "with Interact, after asking for control"),
         {.reason = "NOT_PRESENTER"});
   }
   return found.session;

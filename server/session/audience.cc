@@ -105,7 +105,7 @@ absl::Status Audience::Erase(std::uint64_t id, const std::vector<std::uint64_t>&
   const bool any = person != nullptr && person->role == Role::kPresenter;
   if (!any && board_.HasOfOthers(mark_ids, id)) {
     return base::WithDetails(
-        absl::PermissionDeniedError("a viewer erases the own marks only; ask a presenter"),
+        absl::PermissionDeniedError("viewers can erase only their own marks; ask a presenter"),
         {.reason = "NOT_YOUR_MARK"});
   }
   board_.Erase(mark_ids, any ? std::nullopt : std::optional(id));

@@ -17,7 +17,7 @@ absl::Status Locked() { return Denied("control is locked by the presenter", "CON
 
 absl::Status NoSuchPerson(std::uint64_t id) {
   return base::WithDetails(
-      absl::NotFoundError(absl::StrCat("viewer_id is ", id, "; nobody in the session has it")),
+      absl::NotFoundError(absl::StrCat("viewer_id is ", id, "; no one in the session has this id")),
       {.reason = "VIEWER_NOT_FOUND", .metadata = {{"viewer_id", absl::StrCat(id)}}});
 }
 
@@ -136,16 +136,18 @@ void Roster::SetHidden(std::uint64_t id, bool hidden) {
 absl::Status Roster::MaySteer(std::uint64_t id) const {
   if (steering_ == id && id != 0) return absl::OkStatus();
   const Person* const other = Find(steering_);
-  return Denied(other != nullptr ? absl::StrCat(NameOf(*other), " steers; ask for control first")
-                                 : "you do not steer; ask for control first",
+  return Denied(other != nullptr
+                    ? absl::StrCat(NameOf(*other), " is in control; ask for control first")
+                    : "you are not in control; ask for control first",
                 "NOT_STEERING");
 }
 
 absl::Status Roster::PresenterMaySteer() const {
   const Person* const other = Find(steering_);
   if (other == nullptr || other->role == Role::kPresenter) return absl::OkStatus();
-  return Denied(absl::StrCat(NameOf(*other), " steers; take control back first, with Interact"),
-                "NOT_STEERING");
+  return Denied(
+      absl::StrCat(NameOf(*other), " is in control; take control back first, with Interact"),
+      "NOT_STEERING");
 }
 
 absl::Status Roster::AskControl(std::uint64_t id, Time now) {
@@ -176,7 +178,7 @@ absl::Status Roster::MayAnswer(std::uint64_t id) const {
   const Person* const person = Find(id);
   if (person == nullptr) return NoSuchPerson(id);
   if (steering_ == id || person->role == Role::kPresenter) return absl::OkStatus();
-  return Denied("only a presenter or the one who steers gives control", "NOT_STEERING");
+  return Denied("only a presenter or the person in control can give control", "NOT_STEERING");
 }
 
 absl::Status Roster::GiveControl(std::uint64_t from, std::uint64_t to, Time now) {
@@ -211,7 +213,7 @@ absl::Status Roster::TakeControl(std::uint64_t id) {
   Person* const person = FindPerson(id);
   if (person == nullptr) return NoSuchPerson(id);
   if (person->role != Role::kPresenter) {
-    return Denied("only a presenter takes control; ask for it", "NOT_PRESENTER");
+    return Denied("only a presenter can take control; ask for it", "NOT_PRESENTER");
   }
   Give(*person);
   return absl::OkStatus();
@@ -221,7 +223,7 @@ absl::Status Roster::SetRules(std::uint64_t id, const Rules& rules) {
   const Person* const person = Find(id);
   if (person == nullptr) return NoSuchPerson(id);
   if (person->role != Role::kPresenter) {
-    return Denied("only a presenter sets rules", "NOT_PRESENTER");
+    return Denied("only a presenter can set rules", "NOT_PRESENTER");
   }
   rules_ = rules;
   ++revision_;
@@ -338,7 +340,7 @@ void Roster::Give(Person& to) {
   steering_ = to.id;
   away_since_.reset();
   awaited_.reset();
-  // The person who steers must see the session's view, which they steer.
+  // The person in control must see the session's view, which they steer.
   ReturnToView(to);
   to.asks = false;
 }

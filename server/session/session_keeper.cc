@@ -54,8 +54,9 @@ absl::Status SessionKeeper::Restore(const DecodeScene& decode) {
     absl::StatusOr<DecodedScene> decoded = decode(record.scene);
     if (!decoded.ok()) {
       base::LogError(base::Annotate(
-          decoded.status(), absl::StrCat("session ", record.id,
-                                         " is not brought back, but kept until it is too old")));
+          decoded.status(),
+          absl::StrCat("session ", record.id,
+                       " cannot be restored; its record is kept until it is too old")));
       continue;
     }
     kept_[record.id].session = sessions_.Restore(record, std::move(decoded->scene),

@@ -88,9 +88,9 @@ absl::StatusOr<std::uint64_t> Session::TakeRevisionAfter(std::uint64_t expected,
   if (!taken_.empty()) newest = std::max(newest, taken_.rbegin()->first);
   if (newest != expected) {
     return base::WithDetails(
-        absl::AbortedError(absl::StrCat("the scene is at revision ", newest, ", not ", expected,
-                                        ": somebody else changed it; make the change to the "
-                                        "newest scene")),
+        absl::AbortedError(
+            absl::StrCat("the scene is at revision ", newest, ", not ", expected,
+                         ": another person changed it; make the change to the newest scene")),
         {.reason = "REVISION_CHANGED", .metadata = {{"revision", absl::StrCat(newest)}}});
   }
   taken_.emplace(++revision_count_, std::move(update));
@@ -317,7 +317,7 @@ absl::Status Sessions::Close(const std::string& presenter_key) {
     if (presenter_key != found->second->keys().presenter) {
       return base::WithDetails(
           absl::PermissionDeniedError(
-              "the viewers' key does not close a session; the presenter's does"),
+              "the viewers' key cannot close a session; use the presenter's key"),
           {.reason = "NOT_PRESENTER"});
     }
     session = Remove(found);

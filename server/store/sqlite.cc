@@ -69,9 +69,9 @@ absl::Status Database::Error() const {
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) {
     return DamagedFile(path_, message);
   }
-  return absl::UnavailableError(absl::StrCat(
-      path_, " cannot be used: ", message,
-      IsOnFullDisk(path_) ? "; the disk that it is on is full, make some room there" : ""));
+  return absl::UnavailableError(
+      absl::StrCat(path_, " cannot be used: ", message,
+                   IsOnFullDisk(path_) ? "; its disk is full: free some space" : ""));
 }
 
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }

@@ -134,7 +134,7 @@ class OpenSessionStore final : public SqliteSessionStore {
         SetLines(rows.Bytes(15), &session::Mark::domain, &record.marks);
       } else {
         base::LogError(base::Annotate(
-            marks.status(), absl::StrCat("session ", record.id, " comes back without its marks")));
+            marks.status(), absl::StrCat("session ", record.id, " is restored without its marks")));
       }
       records.push_back(std::move(record));
     }

@@ -40,7 +40,7 @@ absl::StatusOr<std::shared_ptr<StateFile>> StateFile::Open(const std::string& pa
   // two transactions.
   absl::StatusOr<FileLock> lock = FileLock::Take(absl::StrCat(path, ".lock"));
   if (!lock.ok()) {
-    return base::Annotate(lock.status(), "each server needs a state folder of its own");
+    return base::Annotate(lock.status(), "each server needs its own state folder");
   }
   THUNDERHEAD_RETURN_IF_ERROR(CreateForThisUser(path));
   THUNDERHEAD_ASSIGN_OR_RETURN(Database database, Database::Open(path));

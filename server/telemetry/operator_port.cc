@@ -42,8 +42,9 @@ Response Text(http::status status, const std::string& text) {
 Response Answer(const http::request<http::empty_body>& request, const OperatorPages& pages) {
   const auto host = request[http::field::host];
   if (pages.allows_host && !pages.allows_host({host.data(), host.size()})) {
-    return Text(http::status::forbidden,
-                "this server does not answer to that name; start it with --allow-host and it\n");
+    return Text(
+        http::status::forbidden,
+        "this server does not answer to that name; start it with --allow-host and this name\n");
   }
   if (request.method() != http::verb::get) {
     return Text(http::status::method_not_allowed, "only GET is answered here\n");

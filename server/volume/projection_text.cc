@@ -96,7 +96,7 @@ absl::StatusOr<ProjectionText> ProjectionText::Parse(std::string_view text) {
     return refused("a rotated pole needs +proj=ob_tran and +o_proj=eqc together");
   }
   if (rotated && (!parsed.Has("o_lat_p") || !parsed.Has("R"))) {
-    return refused("a rotated pole needs +o_lat_p= and, as it is of a sphere, +R=");
+    return refused("a rotated pole needs +o_lat_p= and, because it is on a sphere, +R=");
   }
   const auto has = [&](const char* name) { return parsed.Has(name); };
   if (!has("R") && !has("a") && !has("ellps") && !has("datum")) {

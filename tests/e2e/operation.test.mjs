@@ -117,7 +117,7 @@ test("SIGTERM ends a server that still reads its storms", async () => {
     child.kill("SIGTERM");
     assert.deepEqual(await exit, { code: 0, signal: null });
     // A start that has ended leaves the search running, and then the search ends early.
-    assert.match(said, /told to stop while starting|\bstopping$/m);
+    assert.match(said, /stopped by a signal while starting|\bstopping$/m);
     assert.doesNotMatch(said, /hangs/);
   } finally {
     rmSync(folder, { recursive: true, force: true });

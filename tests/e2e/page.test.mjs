@@ -455,7 +455,7 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   assert.match(await page.getByTestId("lights-shown").innerText(), / Shown by the technique under Look/);
   await unfoldSettings();
   await changing(() => choice.selectOption({ label: "Light volume" }));
-  assert.match(await page.getByTestId("not-shown").innerText(), /lights besides the sun/);
+  assert.match(await page.getByTestId("not-shown").innerText(), /lights in addition to the sun/);
   await lights();
   assert.match(
     await page.getByTestId("lights-shown").innerText(),
@@ -493,7 +493,7 @@ test("a cumulus as a surface, and the parts of its light", async () => {
   const whole = await stillAfter(() => setNumber(page, "exposure", 0)); // the same exposure for all parts
   await screenshot("10-cumulus");
   assert.ok(spread(whole).deviation > 8, "the picture is nearly uniform");
-  assert.match(await page.getByTestId("not-shown").innerText(), /made from a seed/);
+  assert.match(await page.getByTestId("not-shown").innerText(), /generated from a seed/);
   let last = whole;
   for (const label of ["Direct sunlight", "Inter-reflection", "Sky and ground", "Corona"]) {
     const part = await stillAfter(() => page.getByTestId("cumulus-component").selectOption({ label }));

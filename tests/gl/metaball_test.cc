@@ -567,7 +567,7 @@ TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
   EXPECT_EQ(frame.slices, 0);
   // The metaballs' noise stands for turbulent detail.
   EXPECT_THAT(NotShown(frame),
-              ElementsAre("structure finer than the metaballs, but for noise on their surfaces"));
+              ElementsAre("structure finer than the metaballs, except noise on their surfaces"));
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   EXPECT_THAT(NotShown(Draw()), Contains(HasSubstr("albedo")));
   test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
@@ -595,7 +595,7 @@ TEST_F(MetaballSceneTest, LightsBesidesTheSunAreShownOrSaidNotToBe) {
   for (const auto renderer :
        {test_support::kLightVolume, test_support::kHalfAngle, test_support::kCumulus}) {
     test_support::SetTechnique(&scene_.rendering.technique, renderer);
-    EXPECT_THAT(NotShown(Draw()), Contains(HasSubstr("lights besides the sun")));
+    EXPECT_THAT(NotShown(Draw()), Contains(HasSubstr("lights in addition to the sun")));
     scene_.lights.clear();
     EXPECT_THAT(Stages(), IsEmpty()) << "none to draw again";
     EXPECT_THAT(NotShown(Draw()), Not(Contains(HasSubstr("lights"))));

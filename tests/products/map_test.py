@@ -1,4 +1,4 @@
-"""Top-down products are where the model says: clouds of known cells, found in the picture, by GDAL's own programs."""
+"""Tests that top-down products are where the model says. GDAL's programs locate clouds of known cells in the picture."""
 
 import json
 import os
@@ -33,7 +33,10 @@ PIXEL_M = 150000 / 300
 
 
 def blobs(values: numpy.ndarray) -> list[tuple[float, float]]:
-    """Centres (column, row, in pixels from the upper left corner) of what stands out, one for each cloud, from the left."""
+    """Returns the centres of the bright spots, one for each cloud, from left to right.
+
+    A centre is (column, row) in pixels from the upper left corner.
+    """
     bright = numpy.argwhere(values > 0.5 * values.max())
     groups: list[list[numpy.ndarray]] = []
     for at in bright:
@@ -48,7 +51,7 @@ def brightness(file: pathlib.Path) -> numpy.ndarray:
 
 
 def between(values: numpy.ndarray, column: float, row: float) -> float:
-    """The value at a place in pixels, from those of pixels' middles, bilinear."""
+    """Returns the value at a place in pixels, interpolated linearly in both directions between the middles of pixels."""
     x, y = int(column - 0.5), int(row - 0.5)
     a, b = column - 0.5 - x, row - 0.5 - y
     return float((1 - b) * ((1 - a) * values[y, x] + a * values[y, x + 1]) + b * ((1 - a) * values[y + 1, x] + a * values[y + 1, x + 1]))
@@ -67,7 +70,7 @@ class MapTest(ProductTest):
         return output
 
     def expect_clouds(self, found: list[tuple[float, float]], coordinates: dict[str, numpy.ndarray]) -> None:
-        """`found` are degrees east and north."""
+        """Checks that the places `found`, in degrees east and north, are those of the clouds."""
         self.assertEqual(len(found), len(CLOUDS))
         for x, y in CLOUDS:
             lon, lat = coordinates["lon"][y, x], coordinates["lat"][y, x]
@@ -140,7 +143,7 @@ class MapTest(ProductTest):
             self.assertAlmostEqual(found, wanted, places=2)
 
     def test_a_grid_of_degrees_stays_one(self) -> None:
-        """Near the equator, degrees of longitude are equally long all over the domain, so nothing is resampled."""
+        """Near the equator a degree of longitude has the same length in the whole domain, so nothing is resampled."""
         storm = self.folder / "degrees.nc"
         lat = 8.0 + 0.02 * numpy.arange(CELLS)
         lon = 7.0 + 0.03 * numpy.arange(CELLS)
@@ -195,9 +198,9 @@ class MapTest(ProductTest):
         said = self.render(SAMPLE, self.folder / "view.png", "--world-file", code=64)
         self.assertIn("camera is not: use --camera top-down", said)
         said = self.render(SAMPLE, self.folder / "view.nc", "--camera", "top-down", "--annotate", code=64)
-        self.assertIn("holds light and no pixels", said)
+        self.assertIn("contains radiance and no pixels", said)
         said = self.render(SAMPLE, self.folder / "view.tif", "--camera", "top-down", "--renderer", "reference", code=64)
-        self.assertIn("--renderer reference writes .png, .jpg and .exr alone", said)
+        self.assertIn("--renderer reference writes only .png, .jpg and .exr", said)
         self.assertEqual([file.name for file in self.folder.iterdir()], [])
 
     def test_without_gdal_it_names_the_package(self) -> None:

@@ -162,9 +162,10 @@ TEST_F(CommandLineTest, WrongUsageIsABadRequest) {
   ExpectError(render_ + " --renderer metaball --slices 9", 64, "for light_volume and half_angle;");
   ExpectError(render_ + " --camera kite", 64, "orbit, spotter or top-down");
   ExpectError("serve --data " + kSample + " --http nowhere", 64, "--http");
-  ExpectError("serve --data " + kSample + " --http 0.0.0.0:0", 64, "accept it with --insecure");
-  ExpectError("serve --data " + kSample + " --grpc 0.0.0.0:0", 64, "nobody is asked who they are");
-  ExpectError("serve --data " + kSample + " --metrics 0.0.0.0:0", 64, "--metrics 0.0.0.0:0 lets");
+  ExpectError("serve --data " + kSample + " --http 0.0.0.0:0", 64, "accept this with --insecure");
+  ExpectError("serve --data " + kSample + " --grpc 0.0.0.0:0", 64, "no token is needed");
+  ExpectError("serve --data " + kSample + " --metrics 0.0.0.0:0", 64,
+              "--metrics 0.0.0.0:0 can be reached");
   ExpectError("serve --data " + kSample + " --auth tokens /dev/null", 78, "is not a file");
   ExpectError("serve --data " + kSample + " --auth king", 64, "none, tokens FILE or jwt FILE");
   ExpectError("serve --data " + kSample + " --tls-cert x", 64, "belong together");
@@ -205,7 +206,8 @@ TEST_F(CommandLineTest, InspectDescribesTheSample) {
   EXPECT_THAT(table.out, HasSubstr("snow     scheme WSM6"));
   EXPECT_EQ(storm.turbulence_source(), v1::StormDescription::TURBULENCE_SOURCE_GRADIENT);
   EXPECT_THAT(table.out, HasSubstr("turbulence from contrasts of the fields"));
-  EXPECT_THAT(table.out, HasSubstr("detail stays: no wind (U, V, W) was read from the file"));
+  EXPECT_THAT(table.out,
+              HasSubstr("detail does not move: no wind (U, V, W) was read from the file"));
   const Outcome windy =
       Run("inspect " THUNDERHEAD_SOURCE_DIR "/samples/supercell-500m.nc --time 1");
   EXPECT_THAT(windy.out, HasSubstr("detail drifts with the mean wind of the lowest 6 km, 4.8 m/s "
@@ -318,7 +320,7 @@ TEST_F(CommandLineTest, HelpSaysWhatQualityMeans) {
   const Outcome outcome = Run("render --help");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("fast (half the samples, no detail)"));
-  EXPECT_THAT(outcome.out, HasSubstr("waits for traced light"));
+  EXPECT_THAT(outcome.out, HasSubstr("waits for the path-traced"));
 }
 
 TEST_F(CommandLineTest, QualityFastAndBalancedDoNotWait) {

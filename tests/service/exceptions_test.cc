@@ -96,7 +96,7 @@ TEST_P(ExceptionsTest, AreInternalErrorsOfTheirOwnCall) {
   const grpc::Status status = GetParam()(guarded);
   EXPECT_THAT(::testing::internal::GetCapturedStdout(), HasSubstr(kThrownByStore));
   EXPECT_EQ(status.error_code(), StatusCode::INTERNAL);
-  EXPECT_EQ(status.error_message(), "the server failed at this request; its log says how");
+  EXPECT_EQ(status.error_message(), "the server failed at this request; its log says why");
   EXPECT_EQ(ReasonOf(status), "UNEXPECTED_FAILURE");
   guarded.service().store->throws = false;
   EXPECT_TRUE(GetParam()(guarded).ok());

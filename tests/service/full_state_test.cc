@@ -64,7 +64,7 @@ TEST_F(SmallStateDisk, AServerThatFindsItFullAtItsStartSaysSo) {
   EXPECT_NE(program.Wait().code, 0);
   std::ifstream said(err);
   const std::string text{std::istreambuf_iterator<char>(said), {}};
-  EXPECT_THAT(text, HasSubstr("the disk that it is on is full, make some room there"));
+  EXPECT_THAT(text, HasSubstr("its disk is full: free some space"));
   EXPECT_THAT(text, HasSubstr(state_));
 }
 
@@ -141,7 +141,7 @@ TEST_F(FullStateTest, EndsOfSessionsThatAreNotSavedSaySo) {
   grpc::Status closed;
   for (; closed.ok() && !keys.empty(); keys.pop_back()) closed = Close(keys.back());
   EXPECT_EQ(closed.error_code(), grpc::StatusCode::UNAVAILABLE) << "the disk never was full";
-  EXPECT_THAT(closed.error_message(), HasSubstr("the session is closed, but comes back"));
+  EXPECT_THAT(closed.error_message(), HasSubstr("the session is closed, but exists again"));
   EXPECT_THAT(closed.error_message(), HasSubstr("full"));
   fs::remove(FillerPath());
   ASSERT_FALSE(keys.empty());

@@ -1331,7 +1331,7 @@ TEST(InteractTest, BadMessagesAreRefusedAndTheCallGoesOn) {
   v1::InteractRequest mark;
   mark.mutable_add_mark()->add_rays();
   const auto refused = group.presenter->Answer(group.presenter->Send(mark)).refused();
-  EXPECT_THAT(refused.status().message(), HasSubstr("add_mark.rays[0].direction has no length"));
+  EXPECT_THAT(refused.status().message(), HasSubstr("add_mark.rays[0].direction has length 0"));
   v1::InteractRequest sun = SunTo(120.0F);
   sun.mutable_update_scene()->mutable_scene()->mutable_sun()->set_elevation_deg(400.0F);
   EXPECT_THAT(group.presenter->Answer(group.presenter->Send(sun)).refused().status().message(),

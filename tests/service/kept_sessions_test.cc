@@ -483,8 +483,10 @@ TEST_F(KeptSessionsTest, ASceneThatCannotBeReadIsSkippedAndKeptUntilItIsTooOld) 
   });
   ::testing::internal::CaptureStdout();
   Start();
-  EXPECT_THAT(::testing::internal::GetCapturedStdout(),
-              HasSubstr("is not brought back, but kept until it is too old: its scene is damaged"));
+  EXPECT_THAT(
+      ::testing::internal::GetCapturedStdout(),
+      HasSubstr(
+          "cannot be restored; its record is kept until it is too old: its scene is damaged"));
   EXPECT_EQ(CodeOf(damaged.session_id()), grpc::StatusCode::NOT_FOUND);
   EXPECT_EQ(CodeOf(other.session_id()), grpc::StatusCode::OK);
   EXPECT_EQ(store_->Records().size(), 2U);
@@ -543,9 +545,10 @@ TEST_F(KeptSessionsTest, AnEndThatCannotBeSavedSaysSo) {
   store_->FailWith(absl::ResourceExhaustedError("the disk is full"));
   const grpc::Status unsaved = Close(closed.session_id());
   EXPECT_EQ(unsaved.error_code(), grpc::StatusCode::UNAVAILABLE);
-  EXPECT_EQ(unsaved.error_message(),
-            "the session is closed, but comes back if the server ends before that is saved: the "
-            "disk is full");
+  EXPECT_EQ(
+      unsaved.error_message(),
+      "the session is closed, but exists again if the server restarts before this is saved: the "
+      "disk is full");
   EXPECT_EQ(ReasonOf(unsaved), "SESSION_END_NOT_SAVED");
   EXPECT_EQ(CodeOf(closed.session_id()), grpc::StatusCode::NOT_FOUND);
   EXPECT_EQ(store_->Records().size(), 2U);
@@ -587,7 +590,7 @@ TEST_F(KeptSessionsTest, AStoreThatHangsRefusesWhatItWouldHaveToKeep) {
   EXPECT_EQ(service_->server().Load().sessions, 2) << "nobody could enter it";
   const grpc::Status closed = Close(goes.session_id());
   EXPECT_EQ(closed.error_code(), grpc::StatusCode::UNAVAILABLE);
-  EXPECT_THAT(closed.error_message(), HasSubstr("the session is closed, but comes back"));
+  EXPECT_THAT(closed.error_message(), HasSubstr("the session is closed, but exists again"));
   EXPECT_EQ(CodeOf(goes.session_id()), grpc::StatusCode::NOT_FOUND);
   EXPECT_EQ(CodeOf(stays.session_id()), grpc::StatusCode::OK);
   store_->saving.Open();

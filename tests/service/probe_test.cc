@@ -265,7 +265,7 @@ TEST(ProbeTest, BadRequestsNameTheField) {
   expect(request, "point.x is nan");
   request.Clear();
   SetRay(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, request);
-  expect(request, "ray.direction has no length");
+  expect(request, "ray.direction has length 0");
   SetRay(1e9, 0.0, 0.0, 0.0, 0.0, 1.0, request);
   expect(request, "ray.origin.x_m is 1e+09");
   request.Clear();

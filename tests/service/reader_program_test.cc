@@ -67,7 +67,7 @@ TEST_F(ReaderProgramTest, AReplacedReaderIsNotStarted) {
   fs::rename(folder_.File("newer"), reader_);
   const grpc::Status refused = Describe("tower");
   EXPECT_EQ(refused.error_code(), grpc::StatusCode::UNAVAILABLE);
-  EXPECT_THAT(refused.error_message(), HasSubstr("was replaced; install Thunderhead whole"));
+  EXPECT_THAT(refused.error_message(), HasSubstr("was replaced; install all of Thunderhead"));
 }
 
 }  // namespace

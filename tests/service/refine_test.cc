@@ -227,7 +227,7 @@ TEST_F(RefineTest, SessionsTakeTurnsAndOneTooManyIsTold) {
   ASSERT_TRUE(AwaitSamples(two, 1, 16));
   Watcher three(service_.stub(), service_.Open(TracedFrom(180.0F)));
   ASSERT_TRUE(three.Await([](const Messages& messages) { return !messages.empty(); }));
-  EXPECT_THAT(three.Messages().front().problem().message(), HasSubstr("choose another renderer"));
+  EXPECT_THAT(three.Messages().front().problem().message(), HasSubstr("choose another technique"));
 }
 
 TEST_F(RefineTest, OneIdentityHasHalfOfThePlaces) {

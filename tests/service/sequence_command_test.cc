@@ -388,11 +388,11 @@ TEST_F(SequenceCommand, AFileThatIsCutShortIsNamedAndLeavesTheOthersAlone) {
   EXPECT_EQ(Run(Arguments("out")).code, 65) << Contents(err_);
   // Which time is the last, and which has the number 1, depends on the missing file.
   EXPECT_EQ(Run(Arguments("out", {"--times", "last"})).code, 65);
-  EXPECT_THAT(Contents(err_), HasSubstr("Nothing is drawn, as --times is only known"));
+  EXPECT_THAT(Contents(err_), HasSubstr("Nothing is drawn, because --times is known only"));
   std::vector<std::string> numbered = Arguments("numbered");
   numbered[3] = folder_.File("numbered/{time}_{view}.png");
   EXPECT_EQ(Run(numbered).code, 65);
-  EXPECT_THAT(Contents(err_), HasSubstr("{time} is only known with all files"));
+  EXPECT_THAT(Contents(err_), HasSubstr("{time} is known only when all files can be read"));
   EXPECT_FALSE(fs::exists(folder_.File("numbered")));
 }
 
@@ -437,7 +437,7 @@ TEST_F(SequenceCommand, AnInputThatChangesWhileItIsReadNeverMakesAPicture) {
   }
   HangNoLonger(file);
   EXPECT_EQ(program->Wait().code, 75) << Contents(err_);
-  EXPECT_THAT(Contents(err_), HasSubstr("was written to while it was drawn; try again"));
+  EXPECT_THAT(Contents(err_), HasSubstr("changed while it was drawn; try again"));
   for (const auto& [name, entry] : EntriesOf(folder_.File("out/manifest.jsonl"))) {
     EXPECT_NE(entry.input.path, file) << name;
   }

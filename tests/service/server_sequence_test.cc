@@ -209,7 +209,7 @@ TEST_F(ServerSequence, SaysWhatItEndsFor) {
   EXPECT_EQ(client->Wait().code, 75) << Errors();
   close(both);
   fs::remove(held);
-  EXPECT_THAT(Errors(), HasSubstr("the same command goes on"));
+  EXPECT_THAT(Errors(), HasSubstr("run the same command again to continue"));
 }
 
 // Runs as an office would: TLS, a token with the pipeline role, shares in two views, and their

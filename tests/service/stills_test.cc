@@ -163,7 +163,8 @@ TEST(StillsTest, OneThatWouldTakeTooLongIsRefusedAtOnceByName) {
   EXPECT_EQ(refused.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
   EXPECT_THAT(refused.error_message(),
               HasSubstr("scene.output asks for a picture that would take"));
-  EXPECT_THAT(refused.error_message(), HasSubstr("at most 10 s: ask for fewer pixels"));
+  EXPECT_THAT(refused.error_message(),
+              HasSubstr("limit for one picture is 10 s: ask for fewer pixels"));
   EXPECT_TRUE(drawn.End().ok());
   EXPECT_EQ(service.store->Reads(), 1) << "it was read";
 }

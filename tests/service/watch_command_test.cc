@@ -351,7 +351,7 @@ TEST_F(WatchCommand, AtTheEndItSaysWhatIsMissing) {
   EXPECT_THAT(Contents(err_),
               HasSubstr("thunderhead: waits until it changes: " + RunFile(inbox_, 1)));
   EXPECT_THAT(Contents(err_),
-              HasSubstr("thunderhead: left aside until it changes: " + inbox_ + "/README"));
+              HasSubstr("thunderhead: ignored until it changes: " + inbox_ + "/README"));
   EXPECT_THAT(Contents(err_), HasSubstr("1 files are not complete"));
   ExpectFinished(folder_.File("out"), Products(1));
   WriteRunFile(inbox_, 1, 1.0, true);

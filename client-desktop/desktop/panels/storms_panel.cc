@@ -33,7 +33,7 @@ void DrawStorm(Ui& ui, const v1::StormSummary& storm) {
 
 void StormsPanel(Ui& ui) {
   if (ui.storms.storms.storms().empty())
-    Quiet("The server has no storms, or has not told them yet.");
+    Quiet("The server has no storms, or has not listed them yet.");
   ImGui::BeginDisabled(!ui.state.Steers());
   for (const v1::StormSummary& storm : ui.storms.storms.storms()) {
     ImGui::PushID(storm.id().c_str());

@@ -107,7 +107,7 @@ std::vector<scene::NotShown> NotShownByCumulus(const scene::Scene& scene,
                                                const volume::HydrometeorFields& fields) {
   using Code = scene::NotShown::Code;
   if (CumulusOf(scene).source != scene::CumulusSource::kStorm) {
-    return {{Code::kStorm, "the storm: a cloud made from a seed stands in its place"}};
+    return {{Code::kStorm, "the storm (a cloud generated from a seed is shown instead)"}};
   }
   std::vector<scene::NotShown> not_shown;
   for (const volume::HydrometeorField& field : fields.fields) {
@@ -115,8 +115,9 @@ std::vector<scene::NotShown> NotShownByCumulus(const scene::Scene& scene,
       not_shown.push_back({Code::kFields, std::string(physics::NameOf(field.hydrometeor))});
     }
   }
-  not_shown.push_back(
-      {Code::kFineStructure, "cloud inside the surface, or thinner than its extinction"});
+  not_shown.push_back({Code::kFineStructure,
+                       "structure inside the surface, and cloud with less extinction than the "
+                       "surface's threshold"});
   return not_shown;
 }
 

@@ -52,7 +52,8 @@ class LightVolumeTechnique final : public Technique {
     const auto& asked = std::get<scene::LightVolume>(scene.rendering.technique);
     if (asked.traced_light != asked.TracedLightShown()) {
       content.not_shown.push_back(
-          {scene::NotShown::Code::kTracedLight, "traced light (diffusion transport shows it)"});
+          {scene::NotShown::Code::kTracedLight,
+           "the path-traced correction of the light (choose diffusion transport for it)"});
     }
     return content;
   }

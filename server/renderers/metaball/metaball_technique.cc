@@ -84,7 +84,7 @@ class MetaballTechnique final : public Technique {
     using Code = scene::NotShown::Code;
     content.not_shown.push_back(
         {Code::kFineStructure,
-         "structure finer than the metaballs, but for noise on their surfaces"});
+         "structure finer than the metaballs, except noise on their surfaces"});
     if (scene::IsPaper(scene::MediumSettingsOf(scene.rendering.technique)->transport)) {
       content.not_shown.push_back(
           {Code::kFieldOptics, "the fields' albedo, phase functions and false colours"});

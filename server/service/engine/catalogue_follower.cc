@@ -108,7 +108,8 @@ bool CatalogueFollower::Move(session::Session& session,
   scene.set_storm_id(place->storm_id);
   scene.set_time_index(place->time_index);
   if (const absl::Status ready = PrepareScene(store_, loop_.Techniques(), scene); !ready.ok()) {
-    spdlog::warn("a session cannot follow {}: {}", place->storm_id, std::string(ready.message()));
+    spdlog::warn("a session cannot show the change of storm {}: {}", place->storm_id,
+                 std::string(ready.message()));
     return true;
   }
   const absl::StatusOr<std::uint64_t> revision = session.TakeRevisionAfter(newest->revision);

@@ -47,7 +47,7 @@ absl::Status CheckSize(const Limits& limits, const v1::Scene& scene) {
 absl::Status TooManyViewers(std::size_t maximum) {
   return base::WithDetails(
       absl::ResourceExhaustedError(absl::StrCat("the session already has the maximum of ", maximum,
-                                                " viewers; try again when somebody has left")),
+                                                " viewers; try again when a viewer has left")),
       {.reason = "TOO_MANY_VIEWERS",
        .metadata = {{"maximum", absl::StrCat(maximum)}, {"unit", "viewers"}},
        .retry_after = kViewerRetry});
@@ -56,7 +56,7 @@ absl::Status TooManyViewers(std::size_t maximum) {
 absl::Status RenderedTooLong(std::chrono::milliseconds limit) {
   return base::WithDetails(absl::ResourceExhaustedError(absl::StrCat(
                                "the picture was not ready after the ", limit.count(),
-                               " ms that this server gives one; ask for a smaller one")),
+                               " ms that this server allows for one; request a smaller one")),
                            {.reason = "RENDER_TIME_EXCEEDED",
                             .metadata = {{"maximum", absl::StrCat(limit.count())}, {"unit", "ms"}},
                             .retry_after = kRenderRetry});

@@ -54,11 +54,12 @@ absl::Status CheckKinds(const v1::Scene& scene, const std::string& path,
     const FieldDescriptor* const field = fields[i];
     const auto& reflection = *message->GetReflection();
     if (field->real_containing_oneof() != nullptr && !reflection.HasField(*message, field)) {
-      return base::InvalidField("update_mask",
-                                absl::StrCat("names '", path, "', but the scene's ",
-                                             field->real_containing_oneof()->name(), " is not ",
-                                             field->name(), "; name the whole of it"),
-                                "KIND_DIFFERS");
+      return base::InvalidField(
+          "update_mask",
+          absl::StrCat("names '", path, "', but the scene's ",
+                       field->real_containing_oneof()->name(), " is not ", field->name(),
+                       "; name the whole of it, as in 'camera' or 'rendering'"),
+          "KIND_DIFFERS");
     }
     message = &reflection.GetMessage(*message, field);
   }
@@ -127,8 +128,8 @@ absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const Sc
 // changed the scene, so the update is no longer valid.
 absl::Status Overruled() {
   return base::WithDetails(
-      absl::AbortedError("somebody else steered while the storm of this update was read, and "
-                         "changed the scene; make the change to the newest scene"),
+      absl::AbortedError("another person changed the scene while the storm of this update was "
+                         "read; make the change to the newest scene"),
       {.reason = "REVISION_CHANGED"});
 }
 

@@ -49,8 +49,8 @@ absl::Status JoinedTooLate(std::chrono::milliseconds limit) {
 
 absl::Status Replaced() {
   return base::WithDetails(
-      absl::AbortedError("somebody has joined with this connection's participant_key, and it did "
-                         "not answer when asked; join again"),
+      absl::AbortedError("another connection has joined with this connection's participant_key, "
+                         "because this one did not answer CheckAlive; join again"),
       {.reason = "CONNECTION_REPLACED"});
 }
 
@@ -397,8 +397,8 @@ class InteractCall : public InteractReactor,
       case v1::InteractRequest::kAlive:
         return absl::OkStatus();
       case v1::InteractRequest::kJoin:
-        return base::InvalidField("join", "comes a second time; it must be the first message only",
-                                  "ALREADY_JOINED");
+        return base::InvalidField(
+            "join", "was sent a second time; send it only as the first message", "ALREADY_JOINED");
       default:
         return requests_->Obey(shared_from_this(), request);
     }

@@ -71,8 +71,8 @@ absl::StatusOr<session::Ray> RayOf(const v1::Ray& message, const std::string& pa
   const glm::dvec3 direction(to.x(), to.y(), to.z());
   const double length = glm::length(direction);
   if (!(length > 0.0)) {
-    return base::InvalidField(absl::StrCat(path, ".direction"),
-                              "has no length; it must point somewhere", "VALUE_OUT_OF_RANGE");
+    return base::InvalidField(absl::StrCat(path, ".direction"), "has length 0; give a direction",
+                              "VALUE_OUT_OF_RANGE");
   }
   const v1::RayOrigin& from = message.origin();
   return session::Ray{glm::dvec3(from.x_m(), from.y_m(), from.z_m()), direction / length};
@@ -82,8 +82,9 @@ absl::StatusOr<std::string> ParticipantKeyOf(const std::string& key, const std::
   if (key.empty()) return base::RandomHex(kParticipantKeyWords);
   const auto is_digit = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
   if (key.size() != 8 * kParticipantKeyWords || !std::ranges::all_of(key, is_digit)) {
-    return base::InvalidField(
-        path, "is not one that Joined gave; leave it out to come as a new person", "KEY_MALFORMED");
+    return base::InvalidField(path,
+                              "is not a key that Joined returned; omit it to join as a new person",
+                              "KEY_MALFORMED");
   }
   return key;
 }

@@ -61,8 +61,9 @@ absl::Status PersonRequests::Obey(const std::shared_ptr<Asker>& asker,
     case v1::InteractRequest::kSetRules:
       return ChangeRoster(*asker, request);
     default:
-      return base::InvalidField("message", "is missing, or newer than this server",
-                                "MESSAGE_UNKNOWN");
+      return base::InvalidField(
+          "message", "is missing, or unknown to this version of the server; set one of its fields",
+          "MESSAGE_UNKNOWN");
   }
 }
 

@@ -29,8 +29,9 @@ constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 20;
 // Returns the error for a missing file. Either it was just dropped, or an operator removed it from
 // the folder.
 absl::Status Gone() {
-  return base::WithDetails(absl::NotFoundError("the picture's file is gone; ask for it again"),
-                           {.reason = "NO_SUCH_RESULT"});
+  return base::WithDetails(
+      absl::NotFoundError("the picture's file no longer exists; request the picture in a new job"),
+      {.reason = "NO_SUCH_RESULT"});
 }
 
 // The file of a result, read from an offset. Only one thread at a time may use it.

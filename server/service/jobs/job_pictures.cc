@@ -67,7 +67,7 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
     if (!path_.empty()) {
       THUNDERHEAD_ASSIGN_OR_RETURN(const auto stamp, files_->StampOf(path_));
       if (stamp != stamp_) {
-        return absl::AbortedError(absl::StrCat(path_, " was written to while it was drawn"));
+        return absl::AbortedError(absl::StrCat(path_, " changed while it was drawn"));
       }
     }
     jobs::DrawnPicture drawn;
@@ -102,8 +102,8 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
         std::ranges::find(storm->times, order.valid_time, &storm_store::StormTime::valid_time);
     if (time == storm->times.end()) {
       return base::WithDetails(
-          absl::NotFoundError(absl::StrCat("storm '", storm->id, "' has no time ", order.valid_time,
-                                           " any more; its file was deleted")),
+          absl::NotFoundError(absl::StrCat("storm '", storm->id, "' no longer has the time ",
+                                           order.valid_time, "; its file was deleted")),
           {.reason = "TIME_GONE", .field = "scene.time_index"});
     }
     scene.set_time_index(static_cast<std::uint32_t>(time - storm->times.begin()));

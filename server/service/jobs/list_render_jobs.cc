@@ -14,7 +14,7 @@ absl::Status List(const jobs::Jobs& jobs, const access::Caller& caller,
   const jobs::Asker asker = AskerOf(caller);
   if (request.everybodys() && !asker.is_operator) {
     return base::WithDetails(
-        absl::PermissionDeniedError("only operators may list everybody's render jobs"),
+        absl::PermissionDeniedError("only operators may list the render jobs of all identities"),
         {.reason = "ROLE_MAY_NOT", .metadata = {{"role", access::NameOf(caller.identity().role)}}});
   }
   for (const jobs::JobView& job : jobs.List(asker.name, request.everybodys(), request.label())) {

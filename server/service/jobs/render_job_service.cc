@@ -10,8 +10,8 @@ namespace {
 
 absl::Status NoJobs() {
   return base::WithDetails(
-      absl::FailedPreconditionError("this server keeps no render jobs; whoever runs it may start "
-                                    "it with --state FOLDER, or --jobs-folder"),
+      absl::FailedPreconditionError("this server has no render jobs; its operator can start it "
+                                    "with --state FOLDER or --jobs-folder FOLDER"),
       {.reason = "NO_JOBS_HERE"});
 }
 

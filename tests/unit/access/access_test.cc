@@ -90,10 +90,10 @@ TEST(TokenListTest, WrongLinesAreNamedAndNotRepeated) {
   };
   EXPECT_THAT(complaint("ben viewer hunter2"), HasSubstr("line 2"));
   EXPECT_THAT(complaint("ben viewer hunter2"), Not(HasSubstr("hunter2")));
-  EXPECT_THAT(complaint("ben king " + Sha256("x")), HasSubstr("'king' is no role"));
+  EXPECT_THAT(complaint("ben king " + Sha256("x")), HasSubstr("'king' is not a role"));
   EXPECT_THAT(complaint("ben viewer"), HasSubstr("three words"));
   EXPECT_THAT(std::string(TokenList::Parse("# nobody\n").status().message()),
-              HasSubstr("nobody could enter"));
+              HasSubstr("no one could use the server"));
 }
 
 TEST(TokenFileTest, IsReadAgainWhenItChanges) {
@@ -279,7 +279,7 @@ TEST_F(JwtTest, APublicKeyIsForRs256Alone) {
   EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_HS256, public_key), {}, kNow).ok());
   EXPECT_FALSE(key->Verify(Sign({}, JWT_ALG_NONE, ""), {}, kNow).ok());
   EXPECT_THAT(std::string(JwtKey::Parse(private_key).status().message()),
-              HasSubstr("no public RSA key"));
+              HasSubstr("not a public RSA key"));
   EXPECT_THAT(std::string(JwtKey::Parse("short").status().message()), HasSubstr("32"));
 }
 

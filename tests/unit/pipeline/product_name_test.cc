@@ -38,18 +38,18 @@ TEST(ProductName, FieldsAreFilledIn) {
 TEST(ProductName, WhatIsWrongIsNamed) {
   EXPECT_THAT(NameOf("{strom}.png"),
               HasSubstr("--product is '{strom}.png'; {strom}: is not one of"));
-  EXPECT_THAT(NameOf("{valid}.png"), HasSubstr("{valid}: needs a time's format"));
-  EXPECT_THAT(NameOf("{valid:%Q}.png"), HasSubstr("needs a time's format"));
-  EXPECT_THAT(NameOf("{valid:%Y/%m}.png"), HasSubstr("needs a time's format"));
+  EXPECT_THAT(NameOf("{valid}.png"), HasSubstr("{valid}: needs a time format"));
+  EXPECT_THAT(NameOf("{valid:%Q}.png"), HasSubstr("needs a time format"));
+  EXPECT_THAT(NameOf("{valid:%Y/%m}.png"), HasSubstr("needs a time format"));
   EXPECT_THAT(NameOf("{lead:d}.png"), HasSubstr("needs a width"));
   EXPECT_THAT(NameOf("{lead:099d}.png"), HasSubstr("needs a width"));
   EXPECT_THAT(NameOf("{storm:%Y}.png"), HasSubstr("is not one of"));
-  EXPECT_THAT(NameOf("a{storm.png"), HasSubstr("a brace without its partner"));
-  EXPECT_THAT(NameOf("storm}.png"), HasSubstr("a brace without its partner"));
+  EXPECT_THAT(NameOf("a{storm.png"), HasSubstr("an unmatched brace"));
+  EXPECT_THAT(NameOf("storm}.png"), HasSubstr("an unmatched brace"));
   EXPECT_THAT(NameOf("out/"), HasSubstr("must name a file"));
   ProductKey unknown = Key();
   unknown.run.reset();
-  EXPECT_THAT(NameOf("{run:%Y}.png", unknown), HasSubstr("do not tell when their run began"));
+  EXPECT_THAT(NameOf("{run:%Y}.png", unknown), HasSubstr("do not say when their run began"));
   EXPECT_EQ(NameOf("{storm}.png", unknown), "supercell.png");
 }
 

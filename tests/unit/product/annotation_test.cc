@@ -178,8 +178,8 @@ TEST(Logo, WhatIsNoPngIsRefusedByName) {
     EXPECT_THAT(logo.status().message(), HasSubstr(text));
   };
   const std::string png = LogoPng(64, 64);
-  expect("", "no PNG");
-  expect("GIF89a", "no PNG");
+  expect("", "not a PNG");
+  expect("GIF89a", "not a PNG");
   expect(png.substr(0, png.size() / 2), "damaged");
   std::string huge = png;
   huge[16] = '\x7f';

@@ -39,7 +39,8 @@ TEST(RosterTest, PresenterSteersOnComing) {
   EXPECT_EQ(group.roster.steering(), group.presenter);
   EXPECT_TRUE(group.roster.MaySteer(group.presenter).ok());
   EXPECT_EQ(ReasonOf(group.roster.MaySteer(group.ana)), "NOT_STEERING");
-  EXPECT_EQ(group.roster.MaySteer(group.ana).message(), "Teacher steers; ask for control first");
+  EXPECT_EQ(group.roster.MaySteer(group.ana).message(),
+            "Teacher is in control; ask for control first");
 }
 
 TEST(RosterTest, NobodySteersWithTheIdOfNobody) {

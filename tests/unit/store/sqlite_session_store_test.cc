@@ -200,7 +200,7 @@ TEST_F(SqliteSessionStoreTest, WhatWasSavedOutlivesAKilledProcess) {
   const absl::Status refusal = Refusal();
   EXPECT_EQ(refusal.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(refusal.message()),
-              AllOf(HasSubstr("held by another process"), HasSubstr("folder of its own")));
+              AllOf(HasSubstr("held by another process"), HasSubstr("its own state folder")));
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
   EXPECT_THAT(Loaded(), ElementsAre(SessionRecordOf("a")));
