@@ -79,6 +79,7 @@ class Evener {
   }
 
   absl::StatusOr<EvenColumns> Make(const EvenOptions& options);
+  absl::StatusOr<std::string> Projection(const EvenOptions& options);
 
  private:
   double Distance_m(const EarthPlace& a, const EarthPlace& b) const {
@@ -91,8 +92,10 @@ class Evener {
   bool Fits(const std::string& projection, const EvenColumns& even) const;
   absl::StatusOr<double> Reach_m() const;
   absl::StatusOr<ColumnMesh> MeshOn(const MapProjection& map, const EvenColumns& even) const;
-  void ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m, EvenColumns& even) const;
-  static absl::StatusOr<EvenColumns> Follow(const EvenColumns& like, EvenColumns even);
+  void ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m, const EvenOptions& options,
+                  EvenColumns& even) const;
+  absl::StatusOr<EvenColumns> Measured(const EvenOptions& options) const;
+  absl::Status ChooseMap(const EvenOptions& options, EvenColumns& even) const;
   absl::Status Resample(const EvenOptions& options, EvenColumns& even) const;
 
   const ModelColumns& model_;
@@ -264,7 +267,7 @@ absl::StatusOr<ColumnMesh> Evener::MeshOn(const MapProjection& map, const EvenCo
 
 // Chooses the number of even columns and their distances.
 void Evener::ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m,
-                        EvenColumns& even) const {
+                        const EvenOptions& options, EvenColumns& even) const {
   // A model's axis may point anywhere, for example near a pole.
   const double east = std::cos(even.grid_north_rad) * std::cos(even.grid_north_rad);
   glm::dvec2 spacing_m(east * even.mean_m.x + (1.0 - east) * even.mean_m.y,
@@ -273,6 +276,13 @@ void Evener::ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m,
   for (const glm::dvec2& at_m : mesh.plane_m) half_m = glm::max(half_m, glm::abs(at_m - middle_m));
   // A column of which less than a quarter is in the domain is left out.
   constexpr double kLeastShare = 0.25;
+  if (options.columns.has_value()) {
+    even.columns = *options.columns;
+    spacing_m = glm::max(spacing_m, 2.0 * half_m / (glm::dvec2(even.columns) + 2.0 * kLeastShare));
+    even.dx_m = spacing_m.x;
+    even.dy_m = spacing_m.y;
+    return;
+  }
   const auto columns = [&] {
     return glm::max(glm::ceil(2.0 * half_m / spacing_m - 2.0 * kLeastShare), 1.0);
   };
@@ -286,7 +296,8 @@ void Evener::ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m,
   even.dy_m = spacing_m.y;
 }
 
-absl::Status Evener::Resample(const EvenOptions& options, EvenColumns& even) const {
+// Sets the projection of resampled columns and its error.
+absl::Status Evener::ChooseMap(const EvenOptions& options, EvenColumns& even) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const double reach_m, Reach_m());
   // The scale of a stereographic projection at an angle c from its centre is 1 / cos(c / 2)^2.
   const double cosine = std::cos(0.5 * reach_m / earth_m_);
@@ -298,19 +309,16 @@ absl::Status Evener::Resample(const EvenOptions& options, EvenColumns& even) con
         reach_m / 1e3, 100.0 * even.largest_error,
         2e-3 * earth_m_ * std::acos(1.0 / std::sqrt(1.0 + options.largest_error))));
   }
-  const bool follows = options.like != nullptr;
-  even.projection = follows ? options.like->projection : StereographicAt(middle_, model_.Earth());
+  even.projection = StereographicAt(middle_, model_.Earth());
+  return absl::OkStatus();
+}
+
+absl::Status Evener::Resample(const EvenOptions& options, EvenColumns& even) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection map, MapProjection::Open(even.projection));
   const std::optional<glm::dvec2> middle_m = map.WorldOf(middle_);
   if (!middle_m.has_value()) return BeyondTheMap();
   THUNDERHEAD_ASSIGN_OR_RETURN(const ColumnMesh mesh, MeshOn(map, even));
-  if (follows) {
-    even.columns = options.like->columns;
-    even.dx_m = options.like->dx_m;
-    even.dy_m = options.like->dy_m;
-  } else {
-    ChooseGrid(mesh, *middle_m, even);
-  }
+  ChooseGrid(mesh, *middle_m, options, even);
   const glm::dvec2 spacing_m(even.dx_m, even.dy_m);
   const EvenGrid grid{even.columns, spacing_m,
                       *middle_m - 0.5 * glm::dvec2(even.columns - 1) * spacing_m};
@@ -323,26 +331,9 @@ absl::Status Evener::Resample(const EvenOptions& options, EvenColumns& even) con
   return absl::OkStatus();
 }
 
-// Gives the columns the distances and the projection of `like`, whose columns are even.
-absl::StatusOr<EvenColumns> Evener::Follow(const EvenColumns& like, EvenColumns even) {
-  const glm::dvec2 like_m(like.dx_m, like.dy_m);
-  const glm::dvec2 errors = glm::max(like_m / even.shortest_m - 1.0, 1.0 - like_m / even.longest_m);
-  even.largest_error = std::max(errors.x, errors.y);
-  constexpr double kMost = 0.01;
-  if (!(even.largest_error <= kMost) || like.model_columns != even.model_columns) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "the columns are %.0f m by %.0f m apart on average, and %.0f m by %.0f m at the first "
-        "time; read the times as separate storms",
-        even.mean_m.x, even.mean_m.y, like.dx_m, like.dy_m));
-  }
-  even.columns = like.columns;
-  even.dx_m = like.dx_m;
-  even.dy_m = like.dy_m;
-  even.projection = like.projection;
-  return even;
-}
-
-absl::StatusOr<EvenColumns> Evener::Make(const EvenOptions& options) {
+// Returns the columns without their places among the model's columns. If they must be resampled,
+// their number and distances are not set either.
+absl::StatusOr<EvenColumns> Evener::Measured(const EvenOptions& options) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const Distances x, Measure(0));
   THUNDERHEAD_ASSIGN_OR_RETURN(const Distances y, Measure(1));
   EvenColumns even;
@@ -354,9 +345,8 @@ absl::StatusOr<EvenColumns> Evener::Make(const EvenOptions& options) {
   THUNDERHEAD_ASSIGN_OR_RETURN(even.grid_north_rad, GridNorth_rad());
   // Columns without a projection must also be at right angles, with north up.
   const bool upright = model_.IsProjected() || std::max(x.largest_turn, y.largest_turn) <= kEven;
-  if (options.like != nullptr && !options.like->Resampled()) return Follow(*options.like, even);
-  if (x.AreEven() && y.AreEven() && upright && options.like == nullptr) {
-    even.columns = model_.Count();
+  const bool may_stay = options.columns.value_or(model_.Count()) == model_.Count();
+  if (x.AreEven() && y.AreEven() && upright && may_stay) {
     even.dx_m = x.mean_m;
     even.dy_m = y.mean_m;
     const auto error = [](const Distances& each) {
@@ -364,23 +354,48 @@ absl::StatusOr<EvenColumns> Evener::Make(const EvenOptions& options) {
     };
     even.largest_error = std::max(error(x), error(y));
     if (std::optional<std::string> projection = EvenProjection(even); projection.has_value()) {
+      even.columns = model_.Count();
       even.projection = *std::move(projection);
       return even;
     }
   }
-  THUNDERHEAD_RETURN_IF_ERROR(Resample(options, even));
+  THUNDERHEAD_RETURN_IF_ERROR(ChooseMap(options, even));
   return even;
 }
 
-}  // namespace
+absl::StatusOr<std::string> Evener::Projection(const EvenOptions& options) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(EvenColumns even, Measured(options));
+  return std::move(even.projection);
+}
 
-absl::StatusOr<EvenColumns> MakeEven(const ColumnPlaces& places, const EvenOptions& options) {
+absl::StatusOr<EvenColumns> Evener::Make(const EvenOptions& options) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(EvenColumns even, Measured(options));
+  if (even.columns == glm::ivec2(0)) THUNDERHEAD_RETURN_IF_ERROR(Resample(options, even));
+  return even;
+}
+
+// Returns what `make` returns for the columns.
+template <typename Made>
+absl::StatusOr<Made> WithEvener(const ColumnPlaces& places,
+                                absl::StatusOr<Made> (Evener::*make)(const EvenOptions&),
+                                const EvenOptions& options) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const ModelColumns model, ModelColumns::Of(places));
   const std::optional<EarthPlace> middle = model.Middle();
   if (!middle.has_value()) return BeyondTheMap();
   THUNDERHEAD_ASSIGN_OR_RETURN(MapProjection local,
                                MapProjection::Open(StereographicAt(*middle, model.Earth())));
-  return Evener(model, *middle, std::move(local)).Make(options);
+  return (Evener(model, *middle, std::move(local)).*make)(options);
+}
+
+}  // namespace
+
+absl::StatusOr<EvenColumns> MakeEven(const ColumnPlaces& places, const EvenOptions& options) {
+  return WithEvener(places, &Evener::Make, options);
+}
+
+absl::StatusOr<std::string> ProjectionOfEven(const ColumnPlaces& places,
+                                             const EvenOptions& options) {
+  return WithEvener(places, &Evener::Projection, options);
 }
 
 std::string AssumptionOf(const EvenColumns& even) {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -73,9 +74,9 @@ struct EvenOptions {
   // The largest error that is accepted for resampled columns. Distances in one plane are right to
   // 1 % up to about 1270 km from its middle.
   double largest_error = 0.01;
-  // If set, resampled columns get its projection, number and distances. It describes another time
-  // of a domain that moves.
-  const EvenColumns* like = nullptr;
+  // If set, the even columns have this number, which is that of another time of a domain that
+  // moves.
+  std::optional<glm::ivec2> columns;
 };
 
 // Returns columns that are even in true metres. If the distances between all neighbouring columns,
@@ -85,6 +86,11 @@ struct EvenOptions {
 // farther if there would be more than twice as many. INVALID_ARGUMENT if the places are not usable,
 // or if the domain is too large for the accepted error.
 absl::StatusOr<EvenColumns> MakeEven(const ColumnPlaces& places, const EvenOptions& options = {});
+
+// Returns the projection that MakeEven gives the columns, with the same errors. It takes less time,
+// because it does not resample.
+absl::StatusOr<std::string> ProjectionOfEven(const ColumnPlaces& places,
+                                             const EvenOptions& options = {});
 
 // Returns a sentence for users that says what was done with the model's columns. It is empty if
 // they were not resampled.
