@@ -131,8 +131,9 @@ VdbMetadata OriginOf(const scene::Scene& scene, const storm_store::StormInfo& st
     metadata["origin_latitude_deg"] = middle->latitude_deg;
     metadata["origin_longitude_deg"] = middle->longitude_deg;
   }
-  if (!storm.projection.empty()) {
-    metadata["projection"] = storm.projection;
+  if (const std::string& projection = storm_store::ProjectionTextOf(storm, time_index);
+      !projection.empty()) {
+    metadata["projection"] = projection;
     metadata["true_north_deg"] = storm_store::TrueNorthOf_deg(storm, time_index);
   }
   return metadata;

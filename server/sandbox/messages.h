@@ -73,13 +73,12 @@ void VisitOptional(Archive& archive, std::optional<Value>& value) {
   value = has == 1 ? std::optional(known) : std::nullopt;
 }
 
-// Sends at most kMostTexts texts.
+// Sends at most `most` texts.
 template <typename Archive>
-void VisitTexts(Archive& archive, std::vector<std::string>& texts) {
-  constexpr std::size_t kMostTexts = 100;
-  auto count = static_cast<std::uint32_t>(std::min(texts.size(), kMostTexts));
+void VisitTexts(Archive& archive, std::vector<std::string>& texts, std::size_t most) {
+  auto count = static_cast<std::uint32_t>(std::min(texts.size(), most));
   archive(count);
-  texts.resize(std::min<std::size_t>(count, kMostTexts));
+  texts.resize(std::min<std::size_t>(count, most));
   for (std::string& text : texts) archive(text);
 }
 
@@ -116,8 +115,8 @@ void Visit(Archive& archive, storm_files::VerticalGrid& grid) {
 template <typename Archive>
 void Visit(Archive& archive, storm_files::StormFile& file) {
   auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, run_start, latitude_deg,
-         longitude_deg, middles, projection, member, assumptions, part, parts, reader, version, id,
-         device, modified_ns] = file;
+         longitude_deg, middles, projection, projections, member, assumptions, part, parts, reader,
+         version, id, device, modified_ns] = file;
   archive(cells);
   archive(dx_m);
   archive(dy_m);
@@ -147,8 +146,10 @@ void Visit(Archive& archive, storm_files::StormFile& file) {
   VisitOptional(archive, longitude_deg);
   archive(middles);
   archive(projection);
+  VisitTexts(archive, projections, times.size());
   archive(member);
-  VisitTexts(archive, assumptions);
+  constexpr std::size_t kMostAssumptions = 100;
+  VisitTexts(archive, assumptions, kMostAssumptions);
   archive(part.of);
   archive(part.at_all_times);
 }

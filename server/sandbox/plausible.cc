@@ -173,7 +173,8 @@ absl::Status CheckPlausible(const storm_files::StormFile& file) {
                          return Within(middle.latitude_deg, -90.0, 90.0) &&
                                 Within(middle.longitude_deg, -360.0, 360.0);
                        });
-  return Require(place && middles, "its place");
+  const bool projections = file.projections.empty() || file.projections.size() == file.times.size();
+  return Require(place && middles && projections, "its place");
 }
 
 absl::Status CheckPlausible(const storm_files::VerticalGrid& grid) {

@@ -92,7 +92,8 @@ absl::Status Map(Engine& engine, const storm_store::StormInfo& storm,
   for (const std::size_t index : added) {
     response.add_fields(ToMessage(fields->fields[index].hydrometeor));
   }
-  response.set_projection(storm.projection);
+  response.set_projection(
+      storm_store::ProjectionTextOf(storm, static_cast<std::size_t>(time_index)));
   const StormPlaces places(storm, time_index, *fields);
   ToMessage(map, places, response);
   if (request.with_places()) {

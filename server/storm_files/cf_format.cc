@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/time/time.h"
 #include "base/status.h"
 #include "netcdf/netcdf_file.h"
@@ -38,13 +39,22 @@ std::string RunOf(const CfMetadata& metadata) {
   return run;
 }
 
-void SetPlace(const EvenColumns& even, StormFile& file) {
+volume::EarthPlace MiddleOf(const EvenColumns& even) {
   // Rounding must not turn Greenwich into a place west of it.
   constexpr double kRounding_deg = 1e-9;
-  const double longitude_deg = even.middle.longitude_deg;
-  file.longitude_deg = std::abs(longitude_deg) < kRounding_deg ? 0.0 : longitude_deg;
-  file.latitude_deg = even.middle.latitude_deg;
-  file.projection = even.projection;
+  volume::EarthPlace middle = even.middle;
+  if (std::abs(middle.longitude_deg) < kRounding_deg) middle.longitude_deg = 0.0;
+  return middle;
+}
+
+// Returns StormFile::grid. Files of a series that follows a storm have equal steps between their
+// coordinates, to the accuracy of single precision, but other true distances. It is empty if the
+// columns have no coordinates.
+std::string GridOf(const CfMetadata& metadata) {
+  if (metadata.x.unit == CfAxisUnit::kNone) return "";
+  return absl::StrFormat("%d x %d columns, %.3g x %.3g %s", metadata.x.cells, metadata.y.cells,
+                         metadata.x.Spacing(), metadata.y.Spacing(),
+                         metadata.x.unit == CfAxisUnit::kDegrees ? "degrees" : "m");
 }
 
 class CfFormat final : public StormFormat {
@@ -91,7 +101,18 @@ class CfFormat final : public StormFormat {
         file.dx_m = even.dx_m;
         file.dy_m = even.dy_m;
       }
-      if (!even.projection.empty()) SetPlace(even, file);
+      if (!even.projection.empty()) {
+        const volume::EarthPlace middle = MiddleOf(even);
+        file.longitude_deg = middle.longitude_deg;
+        file.latitude_deg = middle.latitude_deg;
+        file.projection = even.projection;
+        file.grid = GridOf(metadata);
+        for (const std::shared_ptr<const CfPlaces>& moved : metadata.moved) {
+          const EvenColumns& at_record = moved == nullptr ? even : *moved->even;
+          file.middles.push_back(MiddleOf(at_record));
+          file.projections.push_back(at_record.projection);
+        }
+      }
     }
     file.reader =
         MakeRecordReader([metadata = std::make_shared<const CfMetadata>(std::move(metadata))](

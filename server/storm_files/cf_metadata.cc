@@ -165,10 +165,32 @@ absl::Status ReadColumns(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   THUNDERHEAD_RETURN_IF_ERROR(read(y_on, CfDirection::kY, single, &metadata->y));
   THUNDERHEAD_RETURN_IF_ERROR(read(x_on, CfDirection::kX, metadata->y.Spacing(), &metadata->x));
   const std::string& field = metadata->fields.front().variable.name;
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      metadata->places, PlaceColumns(file, field, metadata->dimensions, metadata->x, metadata->y));
+  THUNDERHEAD_ASSIGN_OR_RETURN(metadata->places, PlaceColumns(file, field, metadata->dimensions, {},
+                                                              metadata->x, metadata->y));
   metadata->order.cells = {x_on.length, y_on.length, z_on.length};
   metadata->order.reversed = {metadata->x.reversed, metadata->y.reversed, false};
+  return absl::OkStatus();
+}
+
+// Places the columns at each record, if they move.
+absl::Status ReadMoves(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
+  const std::string& field = metadata->fields.front().variable.name;
+  std::vector<std::shared_ptr<const CfPlaces>> moved(metadata->times.size());
+  bool moves = false;
+  for (std::size_t record = 1; record < moved.size(); ++record) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        std::optional<CfPlaces> places,
+        PlaceColumnsAgain(file, field, metadata->dimensions, metadata->places, record, metadata->x,
+                          metadata->y));
+    if (!places.has_value() || places->even == nullptr) continue;
+    moved[record] = std::make_shared<const CfPlaces>(*std::move(places));
+    moves = true;
+  }
+  if (!moves) return absl::OkStatus();
+  metadata->moved = std::move(moved);
+  metadata->assumptions.push_back(
+      "The domain moves, and each time is shown at its own place, with its own distances and map "
+      "projection.");
   return absl::OkStatus();
 }
 
@@ -349,6 +371,7 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root) {
       ReadCfTimes(file, metadata.fields.front().variable.name, metadata.dimensions.time));
   metadata.times = std::move(times.times);
   metadata.run_start = times.run_start;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadMoves(file, &metadata));
   for (std::vector<std::string>* more : {&metadata.places.assumptions, &times.assumptions}) {
     metadata.assumptions.insert(metadata.assumptions.end(), more->begin(), more->end());
   }

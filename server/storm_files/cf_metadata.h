@@ -3,6 +3,7 @@
 // series of files.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,7 +41,9 @@ struct CfMetadata {
   CfDimensions dimensions;
   CfAxis x;
   CfAxis y;
-  CfPlaces places;
+  CfPlaces places;  // at the first record
+  // The columns at each record, if they move: null where they are as at the first. Otherwise empty.
+  std::vector<std::shared_ptr<const CfPlaces>> moved;
   CfHeights heights;
   CfOrder order;
   std::vector<absl::Time> times;        // at least one; in year 1 if the file gives no dates

@@ -37,6 +37,7 @@ glm::dvec2 Way_m(const EarthPlace& from, const EarthPlace& to) {
 
 // Arrays of latitude and longitude, x fastest, in the order of the storm's axes.
 struct PlaceArrays {
+  bool has_time = false;
   int columns = 0;
   int rows = 0;
   std::vector<float> latitude_deg;
@@ -81,17 +82,19 @@ std::optional<CfVariable> FindPlaceVariable(const netcdf::NetcdfFile& file,
 absl::StatusOr<std::optional<PlaceArrays>> ReadPlaceArrays(const netcdf::NetcdfFile& file,
                                                            const std::string& field,
                                                            const CfDimensions& dimensions,
-                                                           const CfAxis& x, const CfAxis& y) {
+                                                           std::size_t record, const CfAxis& x,
+                                                           const CfAxis& y) {
   const auto latitude = FindPlaceVariable(file, field, dimensions, CfDirection::kY);
   const auto longitude = FindPlaceVariable(file, field, dimensions, CfDirection::kX);
   if (!latitude.has_value() || !longitude.has_value()) return std::optional<PlaceArrays>();
   PlaceArrays arrays;
+  arrays.has_time = latitude->time >= 0 || longitude->time >= 0;
   arrays.columns = x.cells;
   arrays.rows = y.cells;
   const CfOrder order{{static_cast<std::size_t>(x.cells), static_cast<std::size_t>(y.cells), 1},
                       {x.reversed, y.reversed, false}};
-  THUNDERHEAD_ASSIGN_OR_RETURN(arrays.latitude_deg, ReadOnAxes(file, *latitude, order, 0));
-  THUNDERHEAD_ASSIGN_OR_RETURN(arrays.longitude_deg, ReadOnAxes(file, *longitude, order, 0));
+  THUNDERHEAD_ASSIGN_OR_RETURN(arrays.latitude_deg, ReadOnAxes(file, *latitude, order, record));
+  THUNDERHEAD_ASSIGN_OR_RETURN(arrays.longitude_deg, ReadOnAxes(file, *longitude, order, record));
   const auto degrees = [&](const CfVariable& variable, CfDirection direction) {
     return static_cast<float>(*DegreesIn(file.TextOrEmpty(variable.name, "units"), direction));
   };
@@ -229,8 +232,8 @@ absl::Status NoCoordinate(const netcdf::NetcdfFile& file, const CfAxis& axis) {
 
 // Sets the even columns, whose distances are true metres.
 absl::Status MakeColumnsEven(const netcdf::NetcdfFile& file, const ColumnPlaces& columns,
-                             CfPlaces& places) {
-  absl::StatusOr<EvenColumns> even = MakeEven(columns);
+                             const CfPlacing& at, CfPlaces& places) {
+  absl::StatusOr<EvenColumns> even = MakeEven(columns, {.columns = at.columns});
   if (!even.ok()) return base::Annotate(even.status(), file.Path());
   places.dx_m = even->ModelSpacing_m().x;
   places.dy_m = even->ModelSpacing_m().y;
@@ -315,28 +318,53 @@ absl::Status CheckSameUnits(const netcdf::NetcdfFile& file, const CfAxis& x, con
 }  // namespace
 
 absl::StatusOr<CfPlaces> PlaceColumns(const netcdf::NetcdfFile& file, const std::string& field,
-                                      const CfDimensions& dimensions, CfAxis& x, CfAxis& y) {
+                                      const CfDimensions& dimensions, const CfPlacing& at,
+                                      CfAxis& x, CfAxis& y) {
   CfPlaces places;
   if (IsEarthDegrees(file, x, y)) {
-    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, PlacesInDegrees(file, field, x, y), places));
+    THUNDERHEAD_RETURN_IF_ERROR(
+        MakeColumnsEven(file, PlacesInDegrees(file, field, x, y), at, places));
     return places;
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckSameUnits(file, x, y));
-  THUNDERHEAD_ASSIGN_OR_RETURN(auto arrays, ReadPlaceArrays(file, field, dimensions, x, y));
+  THUNDERHEAD_ASSIGN_OR_RETURN(auto arrays,
+                               ReadPlaceArrays(file, field, dimensions, at.record, x, y));
   if (arrays.has_value() && x.unit == CfAxisUnit::kNone) {
     THUNDERHEAD_RETURN_IF_ERROR(OrientAxes(file, *arrays, x, y));
-    THUNDERHEAD_ASSIGN_OR_RETURN(arrays, ReadPlaceArrays(file, field, dimensions, x, y));
+    THUNDERHEAD_ASSIGN_OR_RETURN(arrays, ReadPlaceArrays(file, field, dimensions, at.record, x, y));
+  }
+  if (arrays.has_value() && arrays->has_time) {
+    places.listed = std::make_shared<const ColumnPlaces>(PlacesOfArrays(*arrays));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const auto on_map,
                                PlacesByMapping(file, field, x, y, arrays, places));
   if (on_map.has_value()) {
-    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, *on_map, places));
+    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, *on_map, at, places));
   } else if (arrays.has_value() && std::min(x.cells, y.cells) > 1) {
-    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, PlacesOfArrays(*arrays), places));
+    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, PlacesOfArrays(*arrays), at, places));
   } else {
     THUNDERHEAD_RETURN_IF_ERROR(PlaceNowhere(file, x, y, places));
   }
   return places;
+}
+
+absl::StatusOr<std::optional<CfPlaces>> PlaceColumnsAgain(const netcdf::NetcdfFile& file,
+                                                          const std::string& field,
+                                                          const CfDimensions& dimensions,
+                                                          const CfPlaces& first, std::size_t record,
+                                                          CfAxis x, CfAxis y) {
+  if (first.listed == nullptr || first.even == nullptr || record == 0) {
+    return std::optional<CfPlaces>();
+  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const auto arrays,
+                               ReadPlaceArrays(file, field, dimensions, record, x, y));
+  if (!arrays.has_value() || PlacesOfArrays(*arrays) == *first.listed) {
+    return std::optional<CfPlaces>();
+  }
+  absl::StatusOr<CfPlaces> places =
+      PlaceColumns(file, field, dimensions, {record, first.even->columns}, x, y);
+  if (!places.ok()) return base::Annotate(places.status(), absl::StrCat("record ", record));
+  return std::optional(*std::move(places));
 }
 
 }  // namespace thunderhead::storm_files

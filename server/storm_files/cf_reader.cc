@@ -15,24 +15,6 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// Returns the faces of layers whose middles are `middles_m`, upwards, with the column running
-// fastest. A face lies half-way between two middles. The outermost ones are as far from the middle
-// as the other face of the layer.
-std::vector<float> FacesOfMiddles(const std::vector<float>& middles_m, std::size_t columns) {
-  const std::size_t layers = middles_m.size() / columns;
-  std::vector<float> faces_m(middles_m.size() + columns);
-  for (std::size_t i = 0; i < columns; ++i) {
-    const auto middle = [&](std::size_t layer) { return middles_m[layer * columns + i]; };
-    for (std::size_t face = 1; face < layers; ++face) {
-      faces_m[face * columns + i] = 0.5F * (middle(face - 1) + middle(face));
-    }
-    const std::size_t last = layers - 1;
-    faces_m[i] = layers > 1 ? 2.0F * middle(0) - faces_m[columns + i] : 0.0F;
-    faces_m[layers * columns + i] = 2.0F * middle(last) - faces_m[last * columns + i];
-  }
-  return faces_m;
-}
-
 class CfSource final : public LayerSource {
  public:
   CfSource(std::shared_ptr<const CfMetadata> metadata, std::size_t record, netcdf::NetcdfFile file)
@@ -43,9 +25,12 @@ class CfSource final : public LayerSource {
     domain_.time = metadata_.times[record];
     domain_.cells = {metadata_.x.cells, metadata_.y.cells,
                      static_cast<int>(metadata_.order.cells[2])};
-    domain_.dx_m = metadata_.places.dx_m;
-    domain_.dy_m = metadata_.places.dy_m;
-    domain_.even = metadata_.places.even;
+    const CfPlaces& places = metadata_.moved.empty() || metadata_.moved[record] == nullptr
+                                 ? metadata_.places
+                                 : *metadata_.moved[record];
+    domain_.dx_m = places.dx_m;
+    domain_.dy_m = places.dy_m;
+    domain_.even = places.even;
     domain_.on_terrain = heights.kind != CfHeightKind::kAxis &&
                          (heights.kind != CfHeightKind::kAboveGround || heights.faces_m[0] == 0.0);
     domain_.fixed_heights = heights.kind != CfHeightKind::kPressure &&
@@ -115,14 +100,15 @@ absl::StatusOr<std::vector<float>> CfSource::FacesOfArray(
   if (heights.above_ground && !terrain_m.empty()) {
     for (std::size_t i = 0; i < heights_m.size(); ++i) heights_m[i] += terrain_m[i % columns];
   }
-  if (heights.kind == CfHeightKind::kMiddles) heights_m = FacesOfMiddles(heights_m, columns);
-  // Layers below the ground get no thickness, so they count as missing. The lowest layer begins at
-  // the ground.
+  if (heights.kind == CfHeightKind::kMiddles) {
+    // A single layer begins at sea level if the ground is not known.
+    std::vector<float> ground_m = terrain_m;
+    if (ground_m.empty() && domain_.cells.z == 1) ground_m.assign(columns, 0.0F);
+    heights_m = InterfacesBetween(heights_m, ground_m, domain_.cells.z, columns);
+  }
+  // Layers below the ground get no thickness, so they count as missing.
   for (std::size_t i = 0; i < heights_m.size() && !terrain_m.empty(); ++i) {
     const float ground_m = terrain_m[i % columns];
-    if (heights.kind == CfHeightKind::kMiddles && i < columns && heights_m[i] > ground_m) {
-      heights_m[i] = ground_m;
-    }
     if (heights_m[i] < ground_m) heights_m[i] = ground_m;
   }
   return heights_m;

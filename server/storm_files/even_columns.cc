@@ -87,6 +87,7 @@ class Evener {
       : model_(model), middle_(middle), local_(std::move(local)), earth_(local_.Figure()) {}
 
   absl::StatusOr<EvenColumns> Make(const EvenOptions& options);
+  absl::StatusOr<std::string> Projection(const EvenOptions& options);
 
  private:
   double Distance_m(const EarthPlace& a, const EarthPlace& b) const {
@@ -104,11 +105,12 @@ class Evener {
   bool KeepIfEven(EvenColumns& even) const;
   absl::StatusOr<double> Reach_m() const;
   std::vector<WideMap> ConformalMaps() const;
-  absl::Status MakeWide(EvenColumns& even) const;
+  absl::Status ChooseWideMap(bool may_stay, EvenColumns& even) const;
   absl::StatusOr<ColumnMesh> MeshOn(const MapProjection& map, const EvenColumns& even) const;
-  void ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m, EvenColumns& even) const;
-  static absl::StatusOr<EvenColumns> Follow(const EvenColumns& like, EvenColumns even);
-  absl::Status Resample(const EvenColumns* like, EvenColumns& even) const;
+  void ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m, const EvenOptions& options,
+                  EvenColumns& even) const;
+  absl::StatusOr<EvenColumns> Measured(const EvenOptions& options) const;
+  absl::Status Resample(const EvenOptions& options, EvenColumns& even) const;
 
   const ModelColumns& model_;
   const EarthPlace middle_;
@@ -342,10 +344,11 @@ std::vector<WideMap> Evener::ConformalMaps() const {
   return maps;
 }
 
-// Makes the columns of a domain on which no flat map has true distances everywhere.
-absl::Status Evener::MakeWide(EvenColumns& even) const {
+// Chooses the map of a domain on which no flat map has true distances everywhere. The columns stay
+// as they are if their own map is chosen and `may_stay`.
+absl::Status Evener::ChooseWideMap(bool may_stay, EvenColumns& even) const {
   constexpr double kGoodMap = 0.2;
-  const bool is_map = model_.IsProjected();
+  const bool is_map = model_.IsProjected() && may_stay;
   EvenColumns kept = even;
   const absl::Status keeps = is_map ? Keep(TrueAtMiddle(model_.Projection()), kept)
                                     : absl::InvalidArgumentError("the columns have no map");
@@ -372,7 +375,7 @@ absl::Status Evener::MakeWide(EvenColumns& even) const {
   even.least_scale = best->least_scale;
   even.largest_scale = best->largest_scale;
   even.largest_error = best->Error();
-  return Resample(nullptr, even);
+  return absl::OkStatus();
 }
 
 // Returns the positions of the model's columns on a map. Between columns of a projection that are
@@ -425,7 +428,7 @@ absl::StatusOr<ColumnMesh> Evener::MeshOn(const MapProjection& map, const EvenCo
 
 // Chooses the number of even columns and their distances.
 void Evener::ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m,
-                        EvenColumns& even) const {
+                        const EvenOptions& options, EvenColumns& even) const {
   // A model's axis may point anywhere, for example near a pole.
   const double east = std::cos(even.grid_north_rad) * std::cos(even.grid_north_rad);
   glm::dvec2 spacing_m(east * even.mean_m.x + (1.0 - east) * even.mean_m.y,
@@ -434,6 +437,13 @@ void Evener::ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m,
   for (const glm::dvec2& at_m : mesh.plane_m) half_m = glm::max(half_m, glm::abs(at_m - middle_m));
   // A column of which less than a quarter is in the domain is left out.
   constexpr double kLeastShare = 0.25;
+  if (options.columns.has_value()) {
+    even.columns = *options.columns;
+    spacing_m = glm::max(spacing_m, 2.0 * half_m / (glm::dvec2(even.columns) + 2.0 * kLeastShare));
+    even.dx_m = spacing_m.x;
+    even.dy_m = spacing_m.y;
+    return;
+  }
   const auto columns = [&] {
     return glm::max(glm::ceil(2.0 * half_m / spacing_m - 2.0 * kLeastShare), 1.0);
   };
@@ -450,8 +460,8 @@ void Evener::ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m,
   even.dy_m = spacing_m.y;
 }
 
-// Resamples the columns to a grid in the projection of `even`, or to that of another time.
-absl::Status Evener::Resample(const EvenColumns* like, EvenColumns& even) const {
+// Resamples the columns to a grid in the projection of `even`.
+absl::Status Evener::Resample(const EvenOptions& options, EvenColumns& even) const {
   // Each column needs about 100 bytes here.
   constexpr double kMostColumns = 1e8;
   const glm::ivec2& count = model_.Count();
@@ -460,18 +470,11 @@ absl::Status Evener::Resample(const EvenColumns* like, EvenColumns& even) const 
         absl::StrCat("the grid has ", count.x, " x ", count.y,
                      " columns, which are too many to resample; cut a smaller region"));
   }
-  if (like != nullptr) even.projection = like->projection;
   THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection map, MapProjection::Open(even.projection));
   const std::optional<glm::dvec2> middle_m = map.WorldOf(middle_);
   if (!middle_m.has_value()) return BeyondTheMap();
   THUNDERHEAD_ASSIGN_OR_RETURN(const ColumnMesh mesh, MeshOn(map, even));
-  if (like != nullptr) {
-    even.columns = like->columns;
-    even.dx_m = like->dx_m;
-    even.dy_m = like->dy_m;
-  } else {
-    ChooseGrid(mesh, *middle_m, even);
-  }
+  ChooseGrid(mesh, *middle_m, options, even);
   const glm::dvec2 spacing_m(even.dx_m, even.dy_m);
   const EvenGrid grid{even.columns, spacing_m,
                       *middle_m - 0.5 * glm::dvec2(even.columns - 1) * spacing_m};
@@ -484,28 +487,9 @@ absl::Status Evener::Resample(const EvenColumns* like, EvenColumns& even) const 
   return absl::OkStatus();
 }
 
-// Gives the columns the distances and the projection of `like`, whose columns are even.
-absl::StatusOr<EvenColumns> Evener::Follow(const EvenColumns& like, EvenColumns even) {
-  const glm::dvec2 like_m(like.dx_m, like.dy_m);
-  even.least_scale = std::min(1.0, Least(like_m / even.longest_m));
-  even.largest_scale = std::max(1.0, Largest(like_m / even.shortest_m));
-  even.largest_error = std::max(even.largest_scale - 1.0, 1.0 - even.least_scale);
-  constexpr double kMost = 0.01;
-  const double most = like.IsTooWide() ? like.largest_error + kMost : kMost;
-  if (!(even.largest_error <= most) || like.model_columns != even.model_columns) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "the columns are %.0f m by %.0f m apart on average, and %.0f m by %.0f m at the first "
-        "time; read the times as separate storms",
-        even.mean_m.x, even.mean_m.y, like.dx_m, like.dy_m));
-  }
-  even.columns = like.columns;
-  even.dx_m = like.dx_m;
-  even.dy_m = like.dy_m;
-  even.projection = like.projection;
-  return even;
-}
-
-absl::StatusOr<EvenColumns> Evener::Make(const EvenOptions& options) {
+// Returns the columns without their places among the model's columns. If they must be resampled,
+// their number and distances are not set either.
+absl::StatusOr<EvenColumns> Evener::Measured(const EvenOptions& options) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const Distances x, Measure(0));
   THUNDERHEAD_ASSIGN_OR_RETURN(const Distances y, Measure(1));
   EvenColumns even;
@@ -517,22 +501,43 @@ absl::StatusOr<EvenColumns> Evener::Make(const EvenOptions& options) {
   THUNDERHEAD_ASSIGN_OR_RETURN(even.grid_north_rad, GridNorth_rad());
   // Columns without a projection must also be at right angles, with north up.
   const bool upright = model_.IsProjected() || std::max(x.largest_turn, y.largest_turn) <= kEven;
-  if (options.like != nullptr && !options.like->Resampled()) return Follow(*options.like, even);
-  if (x.AreEven() && y.AreEven() && upright && options.like == nullptr && KeepIfEven(even)) {
-    return even;
-  }
+  const bool may_stay = options.columns.value_or(model_.Count()) == model_.Count();
+  if (x.AreEven() && y.AreEven() && upright && may_stay && KeepIfEven(even)) return even;
   THUNDERHEAD_ASSIGN_OR_RETURN(even.reach_m, Reach_m());
   // The scale of a stereographic projection at an angle c from its centre is 1 / cos(c / 2)^2.
   const double cosine = std::cos(0.5 * even.reach_m / MeanRadius_m(earth_));
   even.largest_scale = 1.0 / (cosine * cosine);
   even.largest_error = even.largest_scale - 1.0;
-  if (options.like == nullptr && even.IsTooWide()) {
-    THUNDERHEAD_RETURN_IF_ERROR(MakeWide(even));
+  if (even.IsTooWide()) {
+    THUNDERHEAD_RETURN_IF_ERROR(ChooseWideMap(may_stay, even));
   } else {
     even.projection = StereographicAt(middle_, model_.Earth());
-    THUNDERHEAD_RETURN_IF_ERROR(Resample(options.like, even));
   }
   return even;
+}
+
+absl::StatusOr<std::string> Evener::Projection(const EvenOptions& options) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(EvenColumns even, Measured(options));
+  return std::move(even.projection);
+}
+
+absl::StatusOr<EvenColumns> Evener::Make(const EvenOptions& options) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(EvenColumns even, Measured(options));
+  if (even.columns == glm::ivec2(0)) THUNDERHEAD_RETURN_IF_ERROR(Resample(options, even));
+  return even;
+}
+
+// Returns what `make` returns for the columns.
+template <typename Made>
+absl::StatusOr<Made> WithEvener(const ColumnPlaces& places,
+                                absl::StatusOr<Made> (Evener::*make)(const EvenOptions&),
+                                const EvenOptions& options) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const ModelColumns model, ModelColumns::Of(places));
+  const std::optional<EarthPlace> middle = model.Middle();
+  if (!middle.has_value()) return BeyondTheMap();
+  THUNDERHEAD_ASSIGN_OR_RETURN(MapProjection local,
+                               MapProjection::Open(StereographicAt(*middle, model.Earth())));
+  return (Evener(model, *middle, std::move(local)).*make)(options);
 }
 
 // Returns "The columns were resampled to even distances of ...".
@@ -563,12 +568,12 @@ std::string PercentText(double scale) {
 }  // namespace
 
 absl::StatusOr<EvenColumns> MakeEven(const ColumnPlaces& places, const EvenOptions& options) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const ModelColumns model, ModelColumns::Of(places));
-  const std::optional<EarthPlace> middle = model.Middle();
-  if (!middle.has_value()) return BeyondTheMap();
-  THUNDERHEAD_ASSIGN_OR_RETURN(MapProjection local,
-                               MapProjection::Open(StereographicAt(*middle, model.Earth())));
-  return Evener(model, *middle, std::move(local)).Make(options);
+  return WithEvener(places, &Evener::Make, options);
+}
+
+absl::StatusOr<std::string> ProjectionOfEven(const ColumnPlaces& places,
+                                             const EvenOptions& options) {
+  return WithEvener(places, &Evener::Projection, options);
 }
 
 std::vector<std::string> AssumptionsOf(const EvenColumns& even) {

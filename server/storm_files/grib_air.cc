@@ -19,22 +19,6 @@ double Thickness_m(double low_pressure_Pa, double high_pressure_Pa, double virtu
 
 }  // namespace
 
-std::vector<float> InterfacesBetween(const std::vector<float>& height_m,
-                                     const std::vector<float>& ground_m, std::size_t columns) {
-  const std::size_t levels = height_m.size() / columns;
-  std::vector<float> interfaces(height_m.size() + columns);
-  for (std::size_t column = 0; column < columns; ++column) {
-    const auto level = [&](std::size_t index) { return height_m[index * columns + column]; };
-    for (std::size_t i = 1; i < levels; ++i) {
-      interfaces[i * columns + column] = 0.5F * (level(i - 1) + level(i));
-    }
-    const std::size_t last = levels - 1;
-    interfaces[column] = ground_m.empty() ? 1.5F * level(0) - 0.5F * level(1) : ground_m[column];
-    interfaces[levels * columns + column] = 1.5F * level(last) - 0.5F * level(last - 1);
-  }
-  return interfaces;
-}
-
 void CutAtGround(const std::vector<double>& level_pressure_Pa, const std::vector<float>& height_m,
                  const std::vector<float>& surface_pressure_Pa, const std::vector<float>& ground_m,
                  std::vector<float>& interface_height_m) {

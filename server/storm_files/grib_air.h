@@ -1,5 +1,5 @@
-// The arithmetic of levels and air for GRIB files: heights of the interfaces between levels,
-// hydrostatic heights, vapour, and the phase of cloud water. This code does not depend on files.
+// The arithmetic of levels and air for GRIB files: levels under the ground, hydrostatic heights,
+// vapour, and the phase of cloud water. This code does not depend on files.
 //
 // All arrays have the column running fastest, then levels upwards. Missing values are NaN.
 #pragma once
@@ -10,13 +10,6 @@
 namespace thunderhead::storm_files {
 
 inline constexpr double kStandardGravity_m_per_s2 = 9.80665;  // of geopotential heights
-
-// Returns the heights of the interfaces, one more than levels. They lie half-way between levels.
-// The lowest is at the ground. The highest is as far above the last level as the interface under
-// that level is below it. If `ground_m` is empty, the lowest is placed likewise. There must be at
-// least two levels.
-std::vector<float> InterfacesBetween(const std::vector<float>& height_m,
-                                     const std::vector<float>& ground_m, std::size_t columns);
 
 // Moves to the ground all interfaces that bound a level below the ground, so that such a level is
 // empty. These are levels whose pressure exceeds the ground's, or whose height is less. An empty

@@ -289,7 +289,7 @@ absl::StatusOr<Values> GribSource::IsobaricInterfaces() {
     THUNDERHEAD_ASSIGN_OR_RETURN(const Values virtual_K, VirtualTemperature());
     FillHeights(layers_.levels, virtual_K, has_height, surface_Pa, ground_m, heights_m);
   }
-  Values interfaces_m = InterfacesBetween(heights_m, ground_m, Columns());
+  Values interfaces_m = InterfacesBetween(heights_m, ground_m, domain_.cells.z, Columns());
   CutAtGround(layers_.levels, heights_m, surface_Pa, ground_m, interfaces_m);
   return interfaces_m;
 }
@@ -301,7 +301,7 @@ absl::StatusOr<Values> GribSource::InterfaceHeights_m() {
     case GribVertical::kHeights: {
       THUNDERHEAD_ASSIGN_OR_RETURN(const Values heights_m, LevelHeights());
       THUNDERHEAD_ASSIGN_OR_RETURN(const Values ground_m, Terrain_m());
-      return InterfacesBetween(heights_m, ground_m, Columns());
+      return InterfacesBetween(heights_m, ground_m, domain_.cells.z, Columns());
     }
     case GribVertical::kHydrostatic: {
       THUNDERHEAD_ASSIGN_OR_RETURN(const Values virtual_K, VirtualTemperature());

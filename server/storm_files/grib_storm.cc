@@ -107,6 +107,11 @@ StormFile DescribeGribStorm(std::shared_ptr<const GribStorm> storm) {
                 static_cast<int>(contents.times.front().levels.size())};
   file.dx_m = even.dx_m;
   file.dy_m = even.dy_m;
+  // A grid that follows a storm has other true distances in each file.
+  if (!contents.grid.IsUnstructured()) {
+    file.grid = absl::StrFormat("%d x %d columns, %.6g x %.6g of its map", contents.grid.columns,
+                                contents.grid.rows, contents.grid.step.x, contents.grid.step.y);
+  }
   for (const GribLayers& layers : contents.times) file.times.push_back(layers.time);
   for (const GribHydrometeor& hydrometeor : contents.times.front().hydrometeors) {
     file.fields.push_back(hydrometeor.hydrometeor);

@@ -71,7 +71,11 @@ std::vector<float> InterfacesBetween(const std::vector<float>& middles_m,
         const float ground = ground_m.empty() ? kMissing : ground_m[column];
         if (ground < above) height_m = ground;
       } else if (!std::isnan(below)) {
-        height_m = below + 0.5F * (below - middle(face - 2, column));
+        const float lower_m = interfaces[static_cast<std::size_t>(face - 1) * columns + column];
+        height_m = 2.0F * below - lower_m;
+        if (const float next = middle(face - 2, column); !std::isnan(next)) {
+          height_m = below + 0.5F * (below - next);
+        }
       }
     }
   }

@@ -60,6 +60,8 @@ struct StormPart {
 struct StormFile {
   std::string path;
   glm::ivec3 cells{0};  // west-east, south-north, bottom-top
+  // Distances between columns at the first record. Those of other records of a domain that moves
+  // can differ.
   double dx_m = 0.0;
   double dy_m = 0.0;
   // A text that is equal for all files whose columns belong to one grid, even if that grid moves.
@@ -78,7 +80,9 @@ struct StormFile {
   // The middle of the domain at each record, if the domain moves (a moving nest). Otherwise empty.
   std::vector<volume::EarthPlace> middles;
   std::string projection;  // the grid's projection, as PROJ writes it; empty if none
-  std::string member;      // the ensemble member, e.g. "mem05"; empty if the file has only one run
+  // The projection at each record, if the domain moves. Otherwise empty.
+  std::vector<std::string> projections;
+  std::string member;  // the ensemble member, e.g. "mem05"; empty if the file has only one run
   // The reader's assumptions where the file says nothing, for users. Each text is one sentence.
   std::vector<std::string> assumptions;
   // Set if the file alone is not a storm. StormFormats::DescribeTogether describes such files.

@@ -90,6 +90,7 @@ class WrfFormat final : public StormFormat {
     }
     file.middles = metadata.place.middles;
     file.projection = metadata.place.projection;
+    file.projections = metadata.place.projections;
     std::ranges::copy(metadata.assumptions, std::back_inserter(file.assumptions));
     file.reader =
         MakeRecordReader([metadata = std::make_shared<const WrfMetadata>(std::move(metadata))](

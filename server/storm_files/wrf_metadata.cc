@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <initializer_list>
 #include <iterator>
 #include <memory>
@@ -341,6 +342,34 @@ std::string ModelName(const netcdf::NetcdfFile& file) {
   return std::string(absl::StripAsciiWhitespace(name));
 }
 
+// Calls `use` with the places of the columns at a record, if they differ from those at the first.
+absl::Status WithMovedPlaces(const WrfMetadata& metadata, const netcdf::NetcdfFile& file,
+                             std::size_t record,
+                             const std::function<absl::Status(const ColumnPlaces&)>& use) {
+  if (metadata.even == nullptr || record == 0) return absl::OkStatus();
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::optional<ColumnPlaces> places,
+      ReadWrfColumns(file, metadata.columns, glm::ivec2(metadata.cells), record));
+  if (!places.has_value() || *places == metadata.places) return absl::OkStatus();
+  return base::Annotate(use(*places), absl::StrCat(metadata.path, ": record ", record));
+}
+
+// Reads the projection at each record, if the domain moves.
+absl::Status ReadProjections(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
+  WrfPlace& place = metadata.place;
+  place.projections.assign(place.middles.size(), place.projection);
+  for (std::size_t record = 1; record < place.projections.size(); ++record) {
+    THUNDERHEAD_RETURN_IF_ERROR(
+        WithMovedPlaces(metadata, file, record, [&](const ColumnPlaces& places) -> absl::Status {
+          THUNDERHEAD_ASSIGN_OR_RETURN(
+              place.projections[record],
+              ProjectionOfEven(places, {.columns = metadata.even->columns}));
+          return absl::OkStatus();
+        }));
+  }
+  return absl::OkStatus();
+}
+
 // Measures the true distances between columns, and finds columns that are even.
 absl::Status MeasureColumns(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
   metadata.nominal_m = {metadata.dx_m, metadata.dy_m};
@@ -355,19 +384,11 @@ absl::Status MeasureColumns(const netcdf::NetcdfFile& file, WrfMetadata& metadat
   if (!even.ok()) return base::Annotate(even.status(), file.Path());
   metadata.places = *places;
   place.projection = even->projection;
-  // Places are stored as floats. They do not give lengths more accurately than this. Over the whole
-  // domain a difference counts if it is a tenth of a column.
-  constexpr double kAccuracy = 1e-3;
-  constexpr double kColumns = 0.1;
-  const glm::dvec2 measured_m = even->ModelSpacing_m();
-  const glm::dvec2 off = glm::abs(metadata.nominal_m / measured_m - 1.0);
-  const auto differs = [&](int axis) {
-    return off[axis] > kAccuracy || off[axis] * columns[axis] > kColumns;
-  };
-  if (differs(0)) metadata.dx_m = measured_m.x;
-  if (differs(1)) metadata.dy_m = measured_m.y;
   metadata.even = std::make_shared<const EvenColumns>(*std::move(even));
-  return absl::OkStatus();
+  const glm::dvec2 distances_m = metadata.DistancesOf(metadata.even.get());
+  metadata.dx_m = distances_m.x;
+  metadata.dy_m = distances_m.y;
+  return ReadProjections(file, metadata);
 }
 
 }  // namespace
@@ -376,9 +397,37 @@ std::string_view WrfVariableOf(Hydrometeor hydrometeor) {
   return kHydrometeorVariables[physics::IndexOf(hydrometeor)];
 }
 
+glm::dvec2 WrfMetadata::DistancesOf(const EvenColumns* even_at_record) const {
+  if (even_at_record == nullptr) return nominal_m;
+  // Places are stored as floats. They do not give lengths more accurately than this. Over the whole
+  // domain a difference counts if it is a tenth of a column.
+  constexpr double kAccuracy = 1e-3;
+  constexpr double kColumns = 0.1;
+  const glm::dvec2 measured_m = even_at_record->ModelSpacing_m();
+  const glm::dvec2 off = glm::abs(nominal_m / measured_m - 1.0);
+  const auto differs = [&](int axis) {
+    return off[axis] > kAccuracy || off[axis] * even_at_record->model_columns[axis] > kColumns;
+  };
+  return {differs(0) ? measured_m.x : nominal_m.x, differs(1) ? measured_m.y : nominal_m.y};
+}
+
 bool WrfMetadata::IsShared(Hydrometeor hydrometeor) const {
   const std::string& variable = variables[physics::IndexOf(hydrometeor)];
   return !variable.empty() && std::ranges::count(variables, variable) > 1;
+}
+
+absl::StatusOr<std::shared_ptr<const EvenColumns>> EvenColumnsAt(const WrfMetadata& metadata,
+                                                                 const netcdf::NetcdfFile& file,
+                                                                 std::size_t record) {
+  std::shared_ptr<const EvenColumns> even = metadata.even;
+  THUNDERHEAD_RETURN_IF_ERROR(
+      WithMovedPlaces(metadata, file, record, [&](const ColumnPlaces& places) -> absl::Status {
+        THUNDERHEAD_ASSIGN_OR_RETURN(EvenColumns moved,
+                                     MakeEven(places, {.columns = metadata.even->columns}));
+        even = std::make_shared<const EvenColumns>(std::move(moved));
+        return absl::OkStatus();
+      }));
+  return even;
 }
 
 absl::StatusOr<WrfMetadata> ReadWrfMetadata(const std::string& path) {

@@ -56,8 +56,10 @@ struct WrfMetadata {
   std::string path;
   WrfLayout layout;
   glm::ivec3 cells{0};  // west-east, south-north, bottom-top
-  double dx_m = 0.0;  // mean true distances between neighbouring columns; the attributes DX and DY
-  double dy_m = 0.0;  // if the columns have no place on Earth
+  // Mean true distances between neighbouring columns at the first record. They are the attributes
+  // DX and DY if the columns have no place on Earth.
+  double dx_m = 0.0;
+  double dy_m = 0.0;
   glm::dvec2 nominal_m{0.0};  // the attributes DX and DY, which are lengths on the model's map
   WrfColumnNames columns;
   ColumnPlaces places;                       // at the first record
@@ -93,6 +95,10 @@ struct WrfMetadata {
   WrfPlace place;
   std::vector<std::string> assumptions;  // for users; each text is one sentence
 
+  // Returns the distances along x and y between columns that are even as `even` says, or DX and DY
+  // if it is null. Distances that agree with DX and DY to their accuracy are DX and DY.
+  glm::dvec2 DistancesOf(const EvenColumns* even_at_record) const;
+
   // Returns whether another field comes from the same variable.
   bool IsShared(physics::Hydrometeor hydrometeor) const;
 };
@@ -106,5 +112,12 @@ absl::StatusOr<WrfMetadata> ReadWrfMetadata(const std::string& path);
 
 // Does the same for a file that is already open.
 absl::StatusOr<WrfMetadata> ReadWrfMetadata(const netcdf::NetcdfFile& file);
+
+// Returns the even columns at a record of `file`, which has this metadata. A domain that moves (a
+// moving nest) has other distances and another projection at each record, but always the same
+// number of columns. Returns null without a place on Earth.
+absl::StatusOr<std::shared_ptr<const EvenColumns>> EvenColumnsAt(const WrfMetadata& metadata,
+                                                                 const netcdf::NetcdfFile& file,
+                                                                 std::size_t record);
 
 }  // namespace thunderhead::storm_files

@@ -218,7 +218,9 @@ absl::StatusOr<WrfPlace> ReadWrfPlace(const netcdf::NetcdfFile& file, const WrfL
   place.longitude = names->longitude;
   THUNDERHEAD_ASSIGN_OR_RETURN(place.middles, ReadMiddles(file, layout, *names, first));
   if (!place.middles.empty()) {
-    place.assumptions.push_back("The domain moves, and each time is shown at its own place.");
+    place.assumptions.push_back(
+        "The domain moves, and each time is shown at its own place, with its own distances and "
+        "map projection.");
   }
   return place;
 }

@@ -20,6 +20,7 @@ struct WrfPlace {
   std::string latitude;    // the variable of the columns' latitudes; empty if none is used
   std::string longitude;   // and of their longitudes
   std::string projection;  // as a PROJ string; empty if the grid has no projection
+  std::vector<std::string> projections;  // at each time, if the domain moves; otherwise empty
   std::vector<std::string> assumptions;
 };
 

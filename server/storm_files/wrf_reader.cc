@@ -13,7 +13,6 @@
 #include "netcdf/netcdf_file.h"
 #include "storm_files/even_columns.h"
 #include "storm_files/fields_on_heights.h"
-#include "storm_files/wrf_columns.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -32,8 +31,9 @@ class WrfSource final : public LayerSource {
     domain_.record = record;
     domain_.time = metadata_.times[record];
     domain_.cells = metadata_.cells;
-    domain_.dx_m = metadata_.dx_m;
-    domain_.dy_m = metadata_.dy_m;
+    const glm::dvec2 distances_m = metadata_.DistancesOf(even.get());
+    domain_.dx_m = distances_m.x;
+    domain_.dy_m = distances_m.y;
     domain_.even = std::move(even);
     domain_.on_terrain = !metadata_.heights.middles.per_level;
     domain_.heights_from = HeightsFrom();
@@ -286,22 +286,6 @@ absl::StatusOr<ModelWind> WrfSource::Wind() {
   THUNDERHEAD_RETURN_IF_ERROR(
       ReadVariable(w, Cells() + Columns(), Changes::kAtEachTime, wind.w_m_per_s));
   return wind;
-}
-
-// Returns the even columns at a record. They change with time if the domain moves (a moving nest).
-absl::StatusOr<std::shared_ptr<const EvenColumns>> EvenColumnsAt(const WrfMetadata& metadata,
-                                                                 const netcdf::NetcdfFile& file,
-                                                                 std::size_t record) {
-  if (metadata.even == nullptr || record == 0) return metadata.even;
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      const std::optional<ColumnPlaces> places,
-      ReadWrfColumns(file, metadata.columns, glm::ivec2(metadata.cells), record));
-  if (!places.has_value() || *places == metadata.places) return metadata.even;
-  absl::StatusOr<EvenColumns> even = MakeEven(*places, {.like = metadata.even.get()});
-  if (!even.ok()) {
-    return base::Annotate(even.status(), absl::StrCat(metadata.path, ": record ", record));
-  }
-  return std::make_shared<const EvenColumns>(*std::move(even));
 }
 
 }  // namespace

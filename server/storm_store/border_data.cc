@@ -359,8 +359,12 @@ std::shared_ptr<const volume::BorderMap> BorderData::MapOf(const StormInfo& stor
   const volume::BorderGrid around = BorderGridOf(grid);
   const glm::dvec2 size_m = glm::dvec2(around.texels) * around.texel_m;
   const volume::EarthPlace middle = MiddleOf(storm, time_index).value_or(volume::EarthPlace());
-  const Key key{storm.projection, middle.latitude_deg, middle.longitude_deg,
-                around.low_m.x,   around.low_m.y,      size_m.x,
+  const Key key{ProjectionTextOf(storm, time_index),
+                middle.latitude_deg,
+                middle.longitude_deg,
+                around.low_m.x,
+                around.low_m.y,
+                size_m.x,
                 size_m.y};
   const std::lock_guard lock(mutex_);
   std::erase_if(maps_, [](const auto& made) { return made.second.expired(); });

@@ -20,6 +20,9 @@ void InsertDeleted(const CataloguedStorm& from, std::size_t time, CataloguedStor
   while (at < storm.sources.size() && TimeOf(storm, at) < valid) ++at;
   StormTime kept = from.info.times[time];
   kept.deleted = true;
+  // The storm may now begin with another time, at another place.
+  kept.middle = MiddleOf(from.info, time);
+  kept.projection = ProjectionTextOf(from.info, time);
   storm.files.push_back(FileOf(from, time));
   storm.sources.insert(storm.sources.begin() + static_cast<std::ptrdiff_t>(at),
                        {storm.files.size() - 1, from.sources[time].record});

@@ -361,6 +361,10 @@ std::optional<volume::EarthPlace> MiddleAt(const storm_files::StormFile& file, s
   return volume::EarthPlace{*file.latitude_deg, *file.longitude_deg};
 }
 
+const std::string& ProjectionAt(const storm_files::StormFile& file, std::size_t record) {
+  return file.projections.empty() ? file.projection : file.projections[record];
+}
+
 // Drops files that were found before under another path or through a link.
 void DropRepeated(std::vector<NamedStorm>& storms) {
   std::set<std::string> seen;
@@ -524,23 +528,35 @@ std::vector<std::vector<storm_files::StormFile>> FilesOfRuns(
 
 namespace {
 
-// Sets the storm's map projection if PROJ accepts it. The file is untrusted, so this is also the
-// check of its text.
-void SetProjection(const storm_files::StormFile& file, CataloguedStorm& storm) {
+// Returns the map projection at a time of the storm if PROJ accepts it, and an empty text
+// otherwise. The file is untrusted, so this is also the check of its text.
+std::string CheckedProjection(std::size_t time, CataloguedStorm& storm) {
+  const storm_files::StormFile& file = FileOf(storm, time);
+  const std::string& text = ProjectionAt(file, storm.sources[time].record);
+  const std::optional<volume::EarthPlace> middle = MiddleOf(storm.info, time);
+  if (text.empty() || !middle.has_value()) return "";
+  const auto projection = volume::MapProjection::Of(text, *middle);
+  if (projection.ok()) return text;
+  std::string note = absl::StrCat(file.path, ": the storm is shown without a map: ",
+                                  std::string(projection.status().message()));
+  if (std::ranges::find(storm.notes, note) == storm.notes.end()) {
+    storm.notes.push_back(std::move(note));
+  }
+  return "";
+}
+
+// Sets the map projection of the storm's first time, and that of other times if it differs.
+void SetProjections(CataloguedStorm& storm) {
   StormInfo& info = storm.info;
-  if (file.projection.empty() || !info.latitude_deg.has_value() ||
-      !info.longitude_deg.has_value()) {
-    return;
+  info.projection = CheckedProjection(0, storm);
+  if (const auto projection = ProjectionOf(info, 0); projection.has_value()) {
+    info.true_north_deg = projection->TrueNorth_deg(*MiddleOf(info, 0)).value_or(0.0);
   }
-  const volume::EarthPlace middle{*info.latitude_deg, *info.longitude_deg};
-  const auto projection = volume::MapProjection::Of(file.projection, middle);
-  if (!projection.ok()) {
-    storm.notes.push_back(absl::StrCat(file.path, ": the storm is shown without a map: ",
-                                       std::string(projection.status().message())));
-    return;
+  const std::string& first = ProjectionAt(FileOf(storm, 0), storm.sources[0].record);
+  for (std::size_t time = 1; time < info.times.size(); ++time) {
+    if (ProjectionAt(FileOf(storm, time), storm.sources[time].record) == first) continue;
+    info.times[time].projection = CheckedProjection(time, storm);
   }
-  info.projection = file.projection;
-  info.true_north_deg = projection->TrueNorth_deg(middle).value_or(0.0);
 }
 
 }  // namespace
@@ -588,7 +604,6 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
       })) {
     info.run_start = FormatValidTime(*first.run_start);
   }
-  SetProjection(first, storm);
   for (const storm_files::StormFile& file : files) {
     for (const std::string& assumption : file.assumptions) {
       if (std::ranges::find(info.assumptions, assumption) == info.assumptions.end()) {
@@ -596,8 +611,9 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
       }
     }
   }
-  AddNotes(storm.notes, files, info.assumptions);
   storm.files = std::move(files);
+  SetProjections(storm);
+  AddNotes(storm.notes, storm.files, info.assumptions);
   return storm;
 }
 

@@ -28,19 +28,21 @@ std::string DomainOf(const StormInfo& storm) {
 
 std::optional<volume::MapProjection> ProjectionOf(const StormInfo& storm, std::size_t time_index) {
   const std::optional<volume::EarthPlace> middle = MiddleOf(storm, time_index);
-  if (storm.projection.empty() || !middle.has_value()) return std::nullopt;
-  auto projection = volume::MapProjection::Of(storm.projection, *middle);
+  const std::string& text = ProjectionTextOf(storm, time_index);
+  if (text.empty() || !middle.has_value()) return std::nullopt;
+  auto projection = volume::MapProjection::Of(text, *middle);
   if (!projection.ok()) return std::nullopt;
   return *std::move(projection);
 }
 
 double TrueNorthOf_deg(const StormInfo& storm, std::size_t time_index) {
-  if (time_index >= storm.times.size() || !storm.times[time_index].middle.has_value()) {
-    return storm.true_north_deg;
-  }
+  const bool own =
+      time_index < storm.times.size() && (storm.times[time_index].middle.has_value() ||
+                                          storm.times[time_index].projection.has_value());
+  if (!own) return storm.true_north_deg;
   const std::optional<volume::MapProjection> projection = ProjectionOf(storm, time_index);
   if (!projection.has_value()) return 0.0;
-  return projection->TrueNorth_deg(*storm.times[time_index].middle).value_or(0.0);
+  return projection->TrueNorth_deg(*MiddleOf(storm, time_index)).value_or(0.0);
 }
 
 namespace {

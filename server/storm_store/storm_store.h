@@ -37,6 +37,9 @@ struct StormTime {
   std::uint64_t version = 0;
   // The middle of the domain at this time, if the domain moves. Otherwise use StormInfo.
   std::optional<volume::EarthPlace> middle = {};
+  // The grid's map projection at this time, if it differs from that of StormInfo. It is empty if
+  // there is none at this time.
+  std::optional<std::string> projection = {};
 
   bool operator==(const StormTime&) const = default;
 };
@@ -48,17 +51,17 @@ struct StormInfo {
   std::vector<std::string> files;
   std::vector<StormTime> times;  // in order of valid time
   glm::ivec3 file_cells{0};      // west-east, south-north, bottom-top, as in the file
-  double dx_m = 0.0;
-  double dy_m = 0.0;
+  double dx_m = 0.0;  // distances between columns at the first time; those of other times of a
+  double dy_m = 0.0;  // domain that moves can differ
   std::vector<physics::Hydrometeor> fields;  // fields in the file
   std::optional<double> latitude_deg;        // latitude of the middle of the domain at the first
                                              // time; nothing if idealised
   std::optional<double> longitude_deg;
   std::optional<std::string> run_start;  // start of the model run, in the format of valid times;
                                          // nothing if unknown
-  // The grid's map projection in PROJ's notation. volume::MapProjection::Of accepts it, with the
-  // middle of the domain at latitude_deg and longitude_deg. It is empty if the grid has no
-  // projection.
+  // The grid's map projection at the first time, in PROJ's notation. volume::MapProjection::Of
+  // accepts it, with the middle of the domain at latitude_deg and longitude_deg. It is empty if the
+  // grid has no projection.
   std::string projection;
   // The direction of true north in the middle of the domain, in degrees clockwise from the grid's
   // north (the world's y axis), at the first time. It is 0 without a projection.
@@ -74,6 +77,14 @@ inline std::optional<volume::EarthPlace> MiddleOf(const StormInfo& storm, std::s
   }
   if (!storm.latitude_deg.has_value() || !storm.longitude_deg.has_value()) return std::nullopt;
   return volume::EarthPlace{*storm.latitude_deg, *storm.longitude_deg};
+}
+
+// Returns the map projection at a time of the storm, in PROJ's notation. It is empty if the grid
+// has none.
+inline const std::string& ProjectionTextOf(const StormInfo& storm, std::size_t time_index) {
+  const bool own =
+      time_index < storm.times.size() && storm.times[time_index].projection.has_value();
+  return own ? *storm.times[time_index].projection : storm.projection;
 }
 
 // Returns the map projection of a storm's world coordinates at a time, or nothing for a storm

@@ -34,8 +34,9 @@ PictureTexts TextsOf(const v1::RenderImageResponse& picture, const storm_store::
     texts["thunderhead.focal_length_px"] =
         absl::StrCat(0.5 * picture.scene().output().width_px() / half_width);
   }
-  if (!storm.projection.empty()) {
-    texts[kProjectionText] = storm.projection;
+  if (const std::string& projection = storm_store::ProjectionTextOf(storm, time_index);
+      !projection.empty()) {
+    texts[kProjectionText] = projection;
     const volume::EarthPlace middle =
         storm_store::MiddleOf(storm, time_index).value_or(volume::EarthPlace());
     texts[kMiddleText] = absl::StrFormat("%.7f %.7f", middle.latitude_deg, middle.longitude_deg);

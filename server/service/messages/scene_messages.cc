@@ -394,8 +394,9 @@ void ToMessage(const storm_store::StormInfo& storm, const volume::HydrometeorFie
     message.set_latitude_deg(middle->latitude_deg);
     message.set_longitude_deg(middle->longitude_deg);
   }
-  message.set_projection(storm.projection);
-  if (!storm.projection.empty()) {
+  message.set_projection(
+      storm_store::ProjectionTextOf(storm, static_cast<std::size_t>(time_index)));
+  if (!message.projection().empty()) {
     message.set_true_north_deg(
         storm_store::TrueNorthOf_deg(storm, static_cast<std::size_t>(time_index)));
   }

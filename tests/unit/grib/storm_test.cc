@@ -149,6 +149,26 @@ class GribStormTest : public ::testing::Test {
   testing::TemporaryFolder folder_;
 };
 
+// The files of a grid that follows a storm are of one run and one grid, but each has its own true
+// distances and map projection.
+TEST_F(GribStormTest, AGridThatMovesIsOneStorm) {
+  Layout layout;
+  const auto first = Describe(layout);
+  layout.forecast = 2;
+  layout.grid.first_latitude += 5'000'000;
+  layout.grid.first_longitude -= 2'000'000;
+  const auto second = Describe(layout);
+  ASSERT_TRUE(first.ok() && second.ok()) << first.status() << second.status();
+  EXPECT_EQ(first->run, second->run);
+  EXPECT_EQ(first->grid, second->grid);
+  EXPECT_FALSE(first->grid.empty());
+  EXPECT_NEAR(*second->latitude_deg - *first->latitude_deg, 5.0, 1e-6);
+  EXPECT_NE(first->projection, second->projection);
+  EXPECT_LT(second->dx_m, 0.99 * first->dx_m);
+  layout.grid.step *= 2;
+  EXPECT_NE(Describe(layout)->grid, first->grid);
+}
+
 bool Is(const Message& message, int category, int number, int level, int type = 105) {
   return message.category == category && message.number == number && message.level.value == level &&
          message.level.type == type;
@@ -647,7 +667,7 @@ TEST(GribAir, LevelsBelowTheGroundAreEmpty) {
   const std::vector<double> pressure = {100'000.0, 90'000.0, 80'000.0};
   const std::vector<float> heights = {100.0F, 1000.0F, 2000.0F};
   const auto cut = [&](const std::vector<float>& surface, const std::vector<float>& ground) {
-    std::vector<float> interfaces = InterfacesBetween(heights, ground, 1);
+    std::vector<float> interfaces = InterfacesBetween(heights, ground, 3, 1);
     CutAtGround(pressure, heights, surface, ground, interfaces);
     return interfaces;
   };

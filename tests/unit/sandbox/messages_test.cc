@@ -141,6 +141,7 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   expected.longitude_deg = 9.0;
   expected.middles = {{11.0, 12.0}, {13.0, 14.0}};
   expected.projection = "+proj=merc";
+  expected.projections = {"+proj=merc", "+proj=merc +lat_ts=20"};
   expected.member = "mem05";
   expected.assumptions = {"one", "two"};
   expected.part = {.of = "part", .at_all_times = true};
@@ -149,8 +150,8 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   expected.modified_ns = 15;
   const storm_files::StormFile received = Sent(expected);
   const auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, run_start,
-               latitude_deg, longitude_deg, middles, projection, member, assumptions, part, parts,
-               reader, version, id, device, modified_ns] = received;
+               latitude_deg, longitude_deg, middles, projection, projections, member, assumptions,
+               part, parts, reader, version, id, device, modified_ns] = received;
   EXPECT_EQ(cells, expected.cells);
   EXPECT_EQ(dx_m, expected.dx_m);
   EXPECT_EQ(dy_m, expected.dy_m);
@@ -165,6 +166,7 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   EXPECT_EQ(longitude_deg, expected.longitude_deg);
   EXPECT_EQ(middles, expected.middles);
   EXPECT_EQ(projection, expected.projection);
+  EXPECT_EQ(projections, expected.projections);
   EXPECT_EQ(member, expected.member);
   EXPECT_EQ(assumptions, expected.assumptions);
   EXPECT_EQ(part.of, expected.part.of);

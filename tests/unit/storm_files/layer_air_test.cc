@@ -1,12 +1,18 @@
 #include "storm_files/layer_air.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace thunderhead::storm_files {
 namespace {
+
+using ::testing::Each;
+using ::testing::ElementsAre;
+using ::testing::IsNan;
 
 constexpr float kMissingAir = std::numeric_limits<float>::quiet_NaN();
 
@@ -39,6 +45,25 @@ TEST(GeopotentialToHeight, DividesTheSumByGravity) {
   EXPECT_FLOAT_EQ(values[0], 1100.0F);
   EXPECT_TRUE(std::isnan(values[1]));
   EXPECT_TRUE(std::isnan(values[2])) << "a hundred thousand kilometres up is no height";
+}
+
+TEST(InterfacesBetween, LieHalfWayAndBeginAtTheGround) {
+  const auto faces = [](const std::vector<float>& middles_m, const std::vector<float>& ground_m) {
+    return InterfacesBetween(middles_m, ground_m, static_cast<int>(middles_m.size()), 1);
+  };
+  const float missing = std::nanf("");
+  EXPECT_THAT(faces({100.0F, 300.0F, 700.0F}, {20.0F}), ElementsAre(20.0F, 200.0F, 500.0F, 900.0F));
+  // A ground that is not known, or not below the lowest middle, is not used.
+  const std::vector<std::vector<float>> unusable = {{}, {missing}, {150.0F}};
+  for (const std::vector<float>& ground_m : unusable) {
+    EXPECT_THAT(faces({100.0F, 300.0F, 700.0F}, ground_m),
+                ElementsAre(0.0F, 200.0F, 500.0F, 900.0F));
+  }
+  // Levels under the ground may have no heights.
+  EXPECT_THAT(faces({missing, 300.0F, 700.0F}, {250.0F}),
+              ElementsAre(IsNan(), 250.0F, 500.0F, 900.0F));
+  EXPECT_THAT(faces({300.0F}, {100.0F}), ElementsAre(100.0F, 500.0F));
+  EXPECT_THAT(faces({300.0F}, {}), Each(IsNan()));
 }
 
 }  // namespace
