@@ -103,6 +103,14 @@ std::string_view StartOf(const std::vector<BundledFile>& files) {
 
 constexpr std::uint64_t kLargestRequest = 64 << 10;
 
+// Returns unused memory to the system before large fields are copied into the shared memory.
+// Otherwise this process would hold what reading needed, the fields and their copy at once. This
+// takes a part of a second, so it is done for large fields only.
+void ReturnUnusedMemory(const volume::HydrometeorFields& fields) {
+  constexpr std::size_t kLarge_bytes = std::size_t{1} << 30;
+  if (fields.Bytes() >= kLarge_bytes) malloc_trim(0);
+}
+
 // The time after which an idle reader ends. It is longer than the time for which the server keeps
 // an idle reader, so normally the server ends the reader.
 constexpr std::chrono::minutes kLongestRest{10};
@@ -132,6 +140,9 @@ class Reader {
   }
   // Describes the file, or all files as one time, once for all requests.
   absl::Status Describe(const Request& request);
+  // Returns the storm of the file that has the record, which becomes the record of that storm.
+  // Returns null if none has it.
+  const storm_files::StormFile* StormWith(std::uint64_t& record) const;
   // Describes each file separately.
   absl::Status AnswerDescriptions();
 
@@ -168,11 +179,17 @@ absl::Status Reader::Describe(const Request& request) {
   } else if (!file_.has_value()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(file_, formats_.DescribeTogether(paths_));
   }
-  // A part that belongs to all times has no time itself.
-  if (request.wanted == Wanted::kDescription) return absl::OkStatus();
-  if (request.record < file_->times.size()) return absl::OkStatus();
-  return absl::DataLossError(absl::StrCat(request.path, ": has no record ", request.record,
-                                          "; the file is shorter than it was: was it replaced?"));
+  return absl::OkStatus();
+}
+
+const storm_files::StormFile* Reader::StormWith(std::uint64_t& record) const {
+  if (record < file_->times.size()) return &*file_;
+  record -= file_->times.size();
+  for (const storm_files::StormFile& other : file_->others) {
+    if (record < other.times.size()) return &other;
+    record -= other.times.size();
+  }
+  return nullptr;
 }
 
 absl::Status Reader::Answer(const Request& request) {
@@ -185,9 +202,17 @@ absl::Status Reader::Answer(const Request& request) {
   THUNDERHEAD_RETURN_IF_ERROR(Describe(request));
   if (request.wanted == Wanted::kDescription) {
     Send(Reply::kDescription, *file_);
-  } else if (request.wanted == Wanted::kVerticalGrid) {
+    return absl::OkStatus();
+  }
+  std::uint64_t record = request.record;
+  const storm_files::StormFile* const storm = StormWith(record);
+  if (storm == nullptr) {
+    return absl::DataLossError(absl::StrCat(request.path, ": has no record ", request.record,
+                                            "; the file is shorter than it was: was it replaced?"));
+  }
+  if (request.wanted == Wanted::kVerticalGrid) {
     THUNDERHEAD_ASSIGN_OR_RETURN(storm_files::VerticalGrid grid,
-                                 file_->reader->ReadVerticalGrid(request.record));
+                                 storm->reader->ReadVerticalGrid(record));
     Send(Reply::kGrid, grid);
   } else {
     Sender server(STDOUT_FILENO);
@@ -197,7 +222,8 @@ absl::Status Reader::Answer(const Request& request) {
       return absl::OkStatus();
     };
     THUNDERHEAD_ASSIGN_OR_RETURN(volume::HydrometeorFields fields,
-                                 file_->reader->Read(request.record, request.grid, progress));
+                                 storm->reader->Read(record, request.grid, progress));
+    ReturnUnusedMemory(fields);
     Send(Reply::kFields, fields);
   }
   return absl::OkStatus();

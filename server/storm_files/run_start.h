@@ -8,8 +8,8 @@
 
 namespace thunderhead::storm_files {
 
-// Returns nothing if the file does not contain the start. Only WRF files contain it
-// (SIMULATION_START_DATE).
+// Returns nothing if the file does not contain the start. WRF files (SIMULATION_START_DATE) and
+// GRIB files contain it.
 std::optional<absl::Time> RunStart(const StormFile& file);
 
 }  // namespace thunderhead::storm_files

@@ -123,11 +123,11 @@ void Read(const std::shared_ptr<const base::ByteSource>& bytes) {
     const auto values = grib::DecodeValues(**plain, field);
     if (values.ok() && values->size() != field.points) std::abort();
   }
-  static_cast<void>(storm_files::GribPartOf(**index));
-  const auto storm =
-      storm_files::MakeGribStorm("fuzzed", {{"fuzzed", [&] { return plain; }}}, {*index});
-  if (!storm.ok()) return;
-  const storm_files::StormFile file = storm_files::DescribeGribStorm(*storm);
+  static_cast<void>(storm_files::GribPartsOf(**index));
+  const auto storms =
+      storm_files::MakeGribStorms("fuzzed", {{"fuzzed", [&] { return plain; }}}, {*index});
+  if (!storms.ok()) return;
+  const storm_files::StormFile file = storm_files::DescribeGribStorm(storms->front());
   if (file.times.empty() || file.fields.empty() || file.cells.x <= 0) std::abort();
   const auto fields = file.reader->Read(0, std::nullopt, {});
   if (fields.ok() && fields->fields.size() != file.fields.size()) std::abort();
