@@ -67,6 +67,7 @@ absl::StatusOr<std::vector<GribPart>> GribPartsOf(const grib::Index& index) {
     return std::vector<GribPart>{{.kind = GribPartKind::kWhole}};
   }
   std::vector<GribPart> found;
+  found.reserve(parts.size());
   for (const auto& [key, part] : parts) {
     found.push_back({.kind = part.is_invariant ? GribPartKind::kInvariant : GribPartKind::kFields,
                      .of = key.first,
