@@ -93,23 +93,23 @@ absl::Status CheckGroups(const Octets& section5, std::uint64_t values,
   const std::uint64_t length_step = section5.Unsigned(42, 1);
   const std::uint64_t last_length = section5.Unsigned(43, 4);
   const std::uint64_t length_bits = section5.Unsigned(47, 1);
-  // A field with one value everywhere has no groups.
-  if (groups == 0) return absl::OkStatus();
-  constexpr std::uint64_t kMostBits = 32;
-  if (groups > values || std::max({reference_bits, width_bits, length_bits}) > kMostBits) {
-    return BadData(absl::StrCat("have ", groups, " groups for ", values, " values"));
-  }
   Bits bits(data);
   if (differences) {
     const std::uint64_t order = section5.Unsigned(48, 1);
     const std::uint64_t octets = section5.Unsigned(49, 1);
-    if (order < 1 || order > 2 || octets > 4) {
+    if ((order < 1 && groups > 0) || order > 2 || octets > 4) {
       return BadData(absl::StrCat("have differences of order ", order, " in ", octets, " bytes"));
     }
     if (values < order) return BadData("have fewer values than the order of their differences");
     const std::uint64_t extra = 8 * octets * (order + 1);
     if (!bits.Has(extra)) return BadData("end before their groups");
     bits.Skip(extra);
+  }
+  // A field with one value everywhere has no groups.
+  if (groups == 0) return absl::OkStatus();
+  constexpr std::uint64_t kMostBits = 32;
+  if (groups > values || std::max({reference_bits, width_bits, length_bits}) > kMostBits) {
+    return BadData(absl::StrCat("have ", groups, " groups for ", values, " values"));
   }
   const std::uint64_t lists = (groups * reference_bits + 7) / 8 + (groups * width_bits + 7) / 8 +
                               (groups * length_bits + 7) / 8;

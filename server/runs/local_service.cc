@@ -53,7 +53,7 @@ absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::st
   if (storms.size() == 1) return store;
   const std::string names =
       absl::StrJoin(storms, ", ", [](std::string* out, const storm_store::StormInfoPtr& storm) {
-        absl::StrAppend(out, storm->files.front());
+        absl::StrAppend(out, storm->path.empty() ? storm->files.front() : storm->path);
       });
   return absl::InvalidArgumentError(
       absl::StrCat(path, " holds ", storms.size(), " storms; name one of ", names));

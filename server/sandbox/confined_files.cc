@@ -110,9 +110,18 @@ absl::StatusOr<storm_files::StormFile> ConfinedFiles::DescribeTogether(
 // Sets the members that are not sent.
 void ConfinedFiles::Own(const std::string& path, const std::vector<std::string>& paths,
                         storm_files::StormFile& file) {
+  std::vector<storm_files::StormFile> others = std::move(file.others);
+  file.others.clear();
   file.path = path;
   file.parts = paths;
   file.reader = std::make_shared<ConfinedRecordReader>(shared_from_this(), file);
+  std::size_t records = file.times.size();
+  for (storm_files::StormFile& other : others) {
+    other.first_record = records;
+    Own(path, paths, other);
+    records += other.times.size();
+  }
+  file.others = std::move(others);
 }
 
 std::vector<absl::StatusOr<storm_files::StormFile>> ConfinedFiles::DescribeEach(
@@ -151,7 +160,7 @@ absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
     const storm_files::StormFile& of, std::size_t record,
     const std::optional<storm_files::VerticalGrid>& grid,
     const storm_files::ReadCheckpoint& checkpoint) {
-  Request request = RequestFor(Wanted::kFields, of.path, of.parts, record);
+  Request request = RequestFor(Wanted::kFields, of.path, of.parts, of.first_record + record);
   request.grid = grid;
   volume::HydrometeorFields fields;
   THUNDERHEAD_RETURN_IF_ERROR(Run(std::move(request), Reply::kFields, options_.limits.time,
@@ -165,12 +174,12 @@ absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
 absl::StatusOr<storm_files::VerticalGrid> ConfinedFiles::ReadVerticalGrid(
     const storm_files::StormFile& of, std::size_t record) {
   storm_files::VerticalGrid grid;
-  THUNDERHEAD_RETURN_IF_ERROR(Run(RequestFor(Wanted::kVerticalGrid, of.path, of.parts, record),
-                                  Reply::kGrid, options_.limits.time, {},
-                                  [&grid](Receiver& from_reader) {
-                                    Visit(from_reader, grid);
-                                    return CheckPlausible(grid);
-                                  }));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      Run(RequestFor(Wanted::kVerticalGrid, of.path, of.parts, of.first_record + record),
+          Reply::kGrid, options_.limits.time, {}, [&grid](Receiver& from_reader) {
+            Visit(from_reader, grid);
+            return CheckPlausible(grid);
+          }));
   return grid;
 }
 

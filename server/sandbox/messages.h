@@ -110,13 +110,17 @@ void Visit(Archive& archive, storm_files::VerticalGrid& grid) {
 // The functions below use structured bindings with all members of a type. If a type gets a new
 // member, its function therefore does not compile until it handles the member.
 
-// Sends all members except those that the server sets itself: `path`, `parts`, `reader`, `version`,
-// `id`, `device` and `modified_ns`. Times are sent as seconds and nanoseconds since 1970.
+template <typename Archive>
+void VisitOthers(Archive& archive, std::vector<storm_files::StormFile>& others);
+
+// Sends all members except those that the server sets itself: `path`, `parts`, `reader`,
+// `first_record`, `version`, `id`, `device` and `modified_ns`. Times are sent as seconds and
+// nanoseconds since 1970.
 template <typename Archive>
 void Visit(Archive& archive, storm_files::StormFile& file) {
   auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, run_start, latitude_deg,
          longitude_deg, middles, projection, projections, member, assumptions, part, parts, reader,
-         version, id, device, modified_ns] = file;
+         others, first_record, version, id, device, modified_ns] = file;
   archive(cells);
   archive(dx_m);
   archive(dy_m);
@@ -152,6 +156,16 @@ void Visit(Archive& archive, storm_files::StormFile& file) {
   VisitTexts(archive, assumptions, kMostAssumptions);
   archive(part.of);
   archive(part.at_all_times);
+  VisitOthers(archive, others);
+}
+
+// Sends the other storms of a file, which have no others themselves.
+template <typename Archive>
+void VisitOthers(Archive& archive, std::vector<storm_files::StormFile>& others) {
+  auto count = static_cast<std::uint32_t>(others.size());
+  archive(count);
+  others.resize(std::min<std::size_t>(count, storm_files::kMaxStorms));
+  for (storm_files::StormFile& other : others) Visit(archive, other);
 }
 
 // The descriptions of several files, or why they cannot be described. Of a file, `code` is absl's

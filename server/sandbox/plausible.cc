@@ -147,6 +147,10 @@ absl::Status CheckAir(const volume::AirDensity& air, const glm::ivec3& cells) {
 }  // namespace
 
 absl::Status CheckPlausible(const storm_files::StormFile& file) {
+  for (const storm_files::StormFile& other : file.others) {
+    THUNDERHEAD_RETURN_IF_ERROR(Require(other.others.empty(), "the number of its storms"));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckPlausible(other));
+  }
   static const absl::Time kFirst = absl::FromCivil(absl::CivilYear(0), absl::UTCTimeZone());
   static const absl::Time kLast = absl::FromCivil(absl::CivilYear(10'000), absl::UTCTimeZone());
   const bool in_time = std::ranges::all_of(

@@ -1,5 +1,7 @@
 #include "sandbox/reader_main.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <optional>
 #include <span>
@@ -25,6 +27,14 @@ std::string_view StartOf(const std::vector<BundledFile>& files) {
           std::min(bytes.size(), storm_files::UnknownFile::kStart_bytes)};
 }
 
+// Returns unused memory to the system before large fields are copied into the shared memory.
+// Otherwise this process would hold what reading needed, the fields and their copy at once. This
+// takes a part of a second, so it is done for large fields only.
+void ReturnUnusedMemory(const volume::HydrometeorFields& fields) {
+  constexpr std::size_t kLarge_bytes = std::size_t{1} << 30;
+  if (fields.Bytes() >= kLarge_bytes) malloc_trim(0);
+}
+
 class StormReader final : public FileReader {
  public:
   explicit StormReader(const storm_files::StormFormats& formats) : formats_(formats) {}
@@ -39,6 +49,9 @@ class StormReader final : public FileReader {
  private:
   // Describes the file, or all files as one time, once for all requests.
   absl::Status Describe(const Request& request);
+  // Returns the storm of the file that has the record, which becomes the record of that storm.
+  // Returns null if none has it.
+  const storm_files::StormFile* StormWith(std::uint64_t& record) const;
   // Describes each file separately.
   absl::Status AnswerDescriptions(Replies& replies);
 
@@ -59,9 +72,17 @@ absl::Status StormReader::Describe(const Request& request) {
     return absl::InvalidArgumentError(absl::StrCat(
         request.path, ": is only a part of a time; give all files of the time together"));
   }
-  if (request.record < file_->times.size()) return absl::OkStatus();
-  return absl::DataLossError(absl::StrCat(request.path, ": has no record ", request.record,
-                                          "; the file is shorter than it was: was it replaced?"));
+  return absl::OkStatus();
+}
+
+const storm_files::StormFile* StormReader::StormWith(std::uint64_t& record) const {
+  if (record < file_->times.size()) return &*file_;
+  record -= file_->times.size();
+  for (const storm_files::StormFile& other : file_->others) {
+    if (record < other.times.size()) return &other;
+    record -= other.times.size();
+  }
+  return nullptr;
 }
 
 absl::Status StormReader::Answer(const Request& request, Replies& replies) {
@@ -69,9 +90,17 @@ absl::Status StormReader::Answer(const Request& request, Replies& replies) {
   THUNDERHEAD_RETURN_IF_ERROR(Describe(request));
   if (request.wanted == Wanted::kDescription) {
     replies.Send(Reply::kDescription, *file_);
-  } else if (request.wanted == Wanted::kVerticalGrid) {
+    return absl::OkStatus();
+  }
+  std::uint64_t record = request.record;
+  const storm_files::StormFile* const storm = StormWith(record);
+  if (storm == nullptr) {
+    return absl::DataLossError(absl::StrCat(request.path, ": has no record ", request.record,
+                                            "; the file is shorter than it was: was it replaced?"));
+  }
+  if (request.wanted == Wanted::kVerticalGrid) {
     THUNDERHEAD_ASSIGN_OR_RETURN(storm_files::VerticalGrid grid,
-                                 file_->reader->ReadVerticalGrid(request.record));
+                                 storm->reader->ReadVerticalGrid(record));
     replies.Send(Reply::kGrid, grid);
   } else {
     const auto progress = [](double share) {
@@ -79,7 +108,8 @@ absl::Status StormReader::Answer(const Request& request, Replies& replies) {
       return absl::OkStatus();
     };
     THUNDERHEAD_ASSIGN_OR_RETURN(volume::HydrometeorFields fields,
-                                 file_->reader->Read(request.record, request.grid, progress));
+                                 storm->reader->Read(record, request.grid, progress));
+    ReturnUnusedMemory(fields);
     replies.Send(Reply::kFields, fields);
   }
   return absl::OkStatus();

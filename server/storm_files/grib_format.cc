@@ -44,15 +44,14 @@ class GribFormat final : public StormFormat {
     THUNDERHEAD_RETURN_IF_ERROR(file.Bytes().status());
     THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<const grib::Index> index,
                                  IndexOfGrib(*file.Bytes()));
-    THUNDERHEAD_ASSIGN_OR_RETURN(GribPart part, GribPartOf(*index));
-    if (part.kind == GribPartKind::kWhole) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<GribPart> parts, GribPartsOf(*index));
+    if (parts.front().kind == GribPartKind::kWhole) {
       return Together(file.Path(), {GribFileAt(file.Path())}, {std::move(index)});
     }
-    StormFile described;
-    described.path = file.Path();
-    described.about = "Part of a time in GRIB2";
-    described.times = std::move(part.times);
-    described.part = {std::move(part.of), part.kind == GribPartKind::kInvariant};
+    StormFile described = PartAt(file.Path(), parts.front());
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      described.others.push_back(PartAt(file.Path(), parts[i]));
+    }
     return described;
   }
 
@@ -64,15 +63,30 @@ class GribFormat final : public StormFormat {
       THUNDERHEAD_ASSIGN_OR_RETURN(indexes.emplace_back(), IndexOfGrib(*file.Bytes()));
       inputs.push_back(GribFileAt(file.Path()));
     }
-    return Together(files.front().Path(), std::move(inputs), std::move(indexes));
+    return Together(files.front().Path(), inputs, indexes);
   }
 
  private:
-  static absl::StatusOr<StormFile> Together(const std::string& path, std::vector<GribInput> files,
-                                            GribIndexes indexes) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<const GribStorm> storm,
-                                 MakeGribStorm(path, std::move(files), std::move(indexes)));
-    return DescribeGribStorm(std::move(storm));
+  static StormFile PartAt(const std::string& path, const GribPart& part) {
+    StormFile described;
+    described.path = path;
+    described.about = "Part of a time in GRIB2";
+    described.times = part.times;
+    described.member = part.member;
+    described.part = {part.of, part.kind == GribPartKind::kInvariant};
+    return described;
+  }
+
+  static absl::StatusOr<StormFile> Together(const std::string& path,
+                                            const std::vector<GribInput>& files,
+                                            const GribIndexes& indexes) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::shared_ptr<const GribStorm>> storms,
+                                 MakeGribStorms(path, files, indexes));
+    StormFile described = DescribeGribStorm(storms.front());
+    for (std::size_t i = 1; i < storms.size(); ++i) {
+      described.others.push_back(DescribeGribStorm(storms[i]));
+    }
+    return described;
   }
 };
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -15,6 +16,7 @@
 #include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "storm_files/grib_parts.h"
+#include "storm_files/storm_file.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -33,21 +35,35 @@ constexpr int kGeneralized = 150;
 constexpr std::array kLevelTypes = {kHybrid, kGeneralized, kHybridHeight, kHybridPressure,
                                     kIsobaricSurface};
 
-std::string LevelName(int type, double value) {
+// Returns the name of the storm's levels, "hybrid levels".
+std::string LevelKind(int type) {
   switch (type) {
     case kIsobaricSurface:
-      return absl::StrFormat("%.6g hPa", value / 100.0);
+      return "isobaric levels";
     case kHybrid:
-      return absl::StrFormat("hybrid level %.6g", value);
+      return "hybrid levels";
     case kGeneralized:
-      return absl::StrFormat("generalized level %.6g", value);
+      return "generalized levels";
     case kHybridHeight:
-      return absl::StrFormat("hybrid height level %.6g", value);
+      return "hybrid height levels";
     case kHybridPressure:
-      return absl::StrFormat("hybrid pressure level %.6g", value);
+      return "hybrid pressure levels";
     default:
-      return absl::StrFormat("level %.6g of type %d", value, type);
+      return "levels";
   }
+}
+
+// Returns the name of one level, "hybrid level 5" or "850 hPa".
+std::string LevelName(int type, double value) {
+  if (type == kIsobaricSurface) return absl::StrFormat("%.6g hPa", value / 100.0);
+  std::string kind = LevelKind(type);
+  kind.pop_back();
+  return absl::StrFormat("%s %.6g", kind, value);
+}
+
+bool IsHeight(GribKind kind) {
+  return kind == GribKind::kGeometricHeight || kind == GribKind::kGeopotential ||
+         kind == GribKind::kGeopotentialHeight;
 }
 
 // Returns whether the field is a mean between two pressures.
@@ -76,9 +92,28 @@ struct Found {
   ByLevel levels;
 };
 
+// The run and member of a storm. Runs are in order of time.
+struct Selection {
+  grib::Origin origin;
+  std::optional<int> member;
+
+  bool operator<(const Selection& other) const {
+    const auto key = [](const Selection& of) {
+      return std::tuple(of.origin.reference, of.origin.centre, of.origin.subcentre, of.member);
+    };
+    return key(*this) < key(other);
+  }
+};
+
+// The storms of the files. It is empty if they have no hydrometeors.
+using Selections = std::set<Selection>;
+
 class Finder {
  public:
-  Finder(const std::string& path, const GribIndexes& files) : files_(files) {
+  // `wanted` is null if the files have no hydrometeors.
+  Finder(const std::string& path, const GribIndexes& files, const Selections& all,
+         const Selection* wanted)
+      : files_(files), all_(all), wanted_(wanted) {
     contents_.path = path;
   }
 
@@ -116,7 +151,9 @@ class Finder {
   absl::StatusOr<std::optional<GribPlace>> AtGround(GribKind kind, absl::Time time,
                                                     bool at_any_time) const;
 
+  bool IsOfStorm(const grib::Field& field, const GribMeaning& meaning) const;
   bool IsOnLevel(const grib::Field& field, bool on_half_level) const;
+  std::string Where() const;
   std::string NameOf(const grib::Field& field) const {
     return GribNameOf(field.parameter, field.origin.centre);
   }
@@ -126,12 +163,11 @@ class Finder {
                         grib::NumbersOf(found.levels.begin()->second.field->parameter), ")");
   }
   absl::Status Refused(std::string_view what) const {
-    return absl::InvalidArgumentError(absl::StrCat(contents_.path, ": ", std::string(what)));
+    return absl::InvalidArgumentError(absl::StrCat(Where(), ": ", std::string(what)));
   }
   absl::Status Missing(std::string_view what, absl::Time time) const {
-    return absl::DataLossError(absl::StrCat(contents_.path, ": ", std::string(what),
-                                            " is missing at ", TimeText(time),
-                                            "; get the complete set of fields"));
+    return absl::DataLossError(absl::StrCat(Where(), ": ", std::string(what), " is missing at ",
+                                            TimeText(time), "; get the complete set of fields"));
   }
   void Assume(std::string sentence) {
     std::vector<std::string>& all = contents_.assumptions;
@@ -140,6 +176,8 @@ class Finder {
   GribSeries Series(const Found& found, const std::vector<double>& levels) const;
 
   const GribIndexes& files_;
+  const Selections& all_;
+  const Selection* const wanted_;
   GribContents contents_;
   Candidates candidates_;
   int type_ = 0;                        // the type of the storm's levels
@@ -147,12 +185,34 @@ class Finder {
   const grib::Field* first_ = nullptr;  // the first field of a hydrometeor
 };
 
+// Returns the files' path, with the run and member if there are several.
+std::string Finder::Where() const {
+  if (all_.size() < 2) return contents_.path;
+  const std::string member = GribMemberOf(wanted_->member);
+  return absl::StrCat(contents_.path, " (run ", TimeText(wanted_->origin.reference),
+                      member.empty() ? "" : ", ", member, ")");
+}
+
+// Returns whether the field belongs to the storm that is wanted. If all storms are of one run,
+// fields of other runs are taken here and reported later.
+bool Finder::IsOfStorm(const grib::Field& field, const GribMeaning& meaning) const {
+  if (all_.size() < 2) return true;
+  const bool are_one_run = std::ranges::all_of(
+      all_, [this](const Selection& each) { return each.origin == wanted_->origin; });
+  if (!are_one_run && field.origin != wanted_->origin) return false;
+  if (field.member.has_value()) return field.member == wanted_->member;
+  if (!wanted_->member.has_value() || meaning.kind == GribKind::kGeometricHeight) return true;
+  if (field.first.type == kGround && IsHeight(meaning.kind)) return true;
+  return !all_.contains({wanted_->origin, std::nullopt});
+}
+
 void Finder::Collect() {
   for (std::size_t file = 0; file < files_.size(); ++file) {
     for (const grib::Field& field : files_[file]->fields) {
       if (!field.is_instant) continue;
       const GribMeaning meaning = MeaningOf(field.parameter);
-      if (meaning.kind != GribKind::kNone) candidates_.push_back({{file, &field}, meaning});
+      if (meaning.kind == GribKind::kNone || !IsOfStorm(field, meaning)) continue;
+      candidates_.push_back({{file, &field}, meaning});
     }
   }
 }
@@ -197,7 +257,6 @@ absl::Status Finder::ChooseLevels() {
 }
 
 absl::Status Finder::CheckOneRun() {
-  std::set<int> members;
   for (const Candidate& candidate : candidates_) {
     const grib::Field& field = candidate.Field();
     if (field.first.type != type_) continue;
@@ -210,23 +269,17 @@ absl::Status Finder::CheckOneRun() {
           field.origin.centre, "); put each run into a separate file or folder"));
     }
     if (candidate.meaning.kind != GribKind::kAmount) continue;
-    members.insert(field.member.value_or(-1));
     if (*field.grid != *first_->grid) {
       return Refused("has hydrometeors on several grids; put each grid into a separate file");
     }
   }
-  if (members.size() > 1) {
-    return Refused(
-        absl::StrCat("has ", members.size(),
-                     " members of an ensemble, and each is a storm of its own; put each "
-                     "into a separate file, for example with grib_copy and [perturbationNumber]"));
-  }
   contents_.origin = first_->origin;
   contents_.process = first_->process;
-  contents_.member = GribMemberOf(*first_);
+  contents_.member = GribMemberOf(first_->member);
+  contents_.level_kind = LevelKind(type_);
   contents_.model = ModelOf(*first_);
   auto grid = grib::ReadGrid(*first_->grid);
-  if (!grid.ok()) return base::Annotate(grid.status(), contents_.path);
+  if (!grid.ok()) return base::Annotate(grid.status(), Where());
   contents_.grid = *std::move(grid);
   for (const std::string& assumption : contents_.grid.assumptions) Assume(assumption);
   return contents_.grid.IsUnstructured() ? FindCells() : absl::OkStatus();
@@ -466,7 +519,19 @@ absl::Status Finder::FindSurface(absl::Time time, GribLayers& layers) {
   THUNDERHEAD_RETURN_IF_ERROR(
       find({GribKind::kGeopotentialHeight, GribKind::kGeometricHeight, GribKind::kGeopotential},
            true, layers.surface_height));
-  return find({GribKind::kPressure, GribKind::kLogPressure}, false, layers.surface_pressure);
+  THUNDERHEAD_RETURN_IF_ERROR(
+      find({GribKind::kPressure, GribKind::kLogPressure}, false, layers.surface_pressure));
+  THUNDERHEAD_RETURN_IF_ERROR(find({GribKind::kLandUse}, true, layers.land_use));
+  if (layers.land_use.Empty()) return absl::OkStatus();
+  if (!HasModisClasses(*layers.land_use.levels[0].field)) {
+    layers.land_use = {};
+    return absl::OkStatus();
+  }
+  Assume(absl::StrCat(layers.land_use.name, " has classes of MODIS (IGBP)."));
+  THUNDERHEAD_RETURN_IF_ERROR(find({GribKind::kLandShare}, true, layers.land_share));
+  THUNDERHEAD_RETURN_IF_ERROR(find({GribKind::kSnowCover}, false, layers.snow_cover));
+  THUNDERHEAD_RETURN_IF_ERROR(find({GribKind::kAlbedo}, false, layers.albedo));
+  return find({GribKind::kGreenCover}, true, layers.green_cover);
 }
 
 absl::Status Finder::FindIsobaricHeights(absl::Time time, GribLayers& layers) {
@@ -754,8 +819,25 @@ absl::StatusOr<GribContents> Finder::Find() {
 
 }  // namespace
 
-absl::StatusOr<GribContents> FindGribLayers(const std::string& path, const GribIndexes& files) {
-  return Finder(path, files).Find();
+absl::StatusOr<std::vector<GribContents>> FindGribStorms(const std::string& path,
+                                                         const GribIndexes& files) {
+  Selections all;
+  for (const auto& file : files) {
+    for (const grib::Field& field : file->fields) {
+      const bool is_on_level =
+          std::ranges::find(kLevelTypes, field.first.type) != kLevelTypes.end();
+      if (!field.is_instant || !is_on_level) continue;
+      if (MeaningOf(field.parameter).kind != GribKind::kAmount) continue;
+      all.insert({field.origin, field.member});
+    }
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckStormCount(path, all.size()));
+  std::vector<GribContents> storms;
+  if (all.empty()) return Finder(path, files, all, nullptr).Find().status();
+  for (const Selection& wanted : all) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(storms.emplace_back(), Finder(path, files, all, &wanted).Find());
+  }
+  return storms;
 }
 
 }  // namespace thunderhead::storm_files

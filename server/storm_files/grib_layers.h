@@ -66,14 +66,19 @@ struct GribLayers {
   GribSeries wind_y;
   GribSeries ascent;
   GribSeries energy;
-  GribSeries surface_height;                   // of one level, as are the next two
-  GribSeries surface_pressure;                 // kPressure or kLogPressure
+  GribSeries surface_height;    // of one level, as are the next ones
+  GribSeries surface_pressure;  // kPressure or kLogPressure
+  GribSeries land_use;          // empty if its classes are unknown
+  GribSeries land_share;
+  GribSeries snow_cover;
+  GribSeries albedo;
+  GribSeries green_cover;
   std::vector<float> half_level_coefficients;  // for kHydrostatic: all a, then all b
 
   bool HasWind() const { return !wind_x.Empty() && !wind_y.Empty() && !ascent.Empty(); }
 };
 
-// The contents of the GRIB files of one run.
+// What GRIB files hold of one run and member.
 struct GribContents {
   std::string path;               // of the storm, for errors
   std::vector<GribLayers> times;  // in ascending order
@@ -82,16 +87,20 @@ struct GribContents {
   GribPlace cell_longitude;
   grib::Origin origin;
   int process = 0;
-  std::string member;  // empty if the files have no members
+  std::string member;      // empty if the files have no members
+  std::string level_kind;  // "hybrid levels"
   GribModel model;
   std::vector<std::string> assumptions;  // each one sentence
 };
 
 using GribIndexes = std::vector<std::shared_ptr<const grib::Index>>;
 
+// Finds the storms in the files, one for each run and member that has hydrometeors, at least one. A
+// field without a member belongs to all members, unless there are hydrometeors without a member.
 // Errors name `path`, the field and its level: INVALID_ARGUMENT if the files have no hydrometeors,
-// belong to several runs or members, are on a grid that is not read, or have levels whose heights
-// cannot be known; DATA_LOSS if a level is missing.
-absl::StatusOr<GribContents> FindGribLayers(const std::string& path, const GribIndexes& files);
+// are on a grid that is not read, or have levels whose heights cannot be known; DATA_LOSS if a
+// level is missing.
+absl::StatusOr<std::vector<GribContents>> FindGribStorms(const std::string& path,
+                                                         const GribIndexes& files);
 
 }  // namespace thunderhead::storm_files

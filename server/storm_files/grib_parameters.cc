@@ -77,6 +77,11 @@ constexpr std::array kRows = {
     Row{{0, 19, 11}, Only(GribKind::kTurbulentEnergy), "TKE", "TKE", "tke"},
     Row{{0, 191, 1}, Only(GribKind::kCellLatitude), "GEOLAT", "CLAT", "tlat"},
     Row{{0, 191, 2}, Only(GribKind::kCellLongitude), "GEOLON", "CLON", "tlon"},
+    Row{{2, 0, 0}, Only(GribKind::kLandShare), "LAND", "FR_LAND", "lsm"},
+    Row{{2, 0, 198}, Only(GribKind::kLandUse), "VGTYP", nullptr, nullptr},
+    Row{{0, 1, 42}, Only(GribKind::kSnowCover), "SNOWC", nullptr, nullptr},
+    Row{{0, 19, 1}, Only(GribKind::kAlbedo), "ALBDO", "ALB_RAD", "al"},
+    Row{{2, 0, 4}, Only(GribKind::kGreenCover), "VEG", "PLCOV", nullptr},
 };
 
 const Row* RowOf(const grib::Parameter& parameter) {
@@ -202,6 +207,16 @@ std::string GribKindName(GribKind kind) {
       return named("latitude of the cells");
     case GribKind::kCellLongitude:
       return named("longitude of the cells");
+    case GribKind::kLandShare:
+      return named("share of land");
+    case GribKind::kLandUse:
+      return named("land use");
+    case GribKind::kSnowCover:
+      return named("snow cover");
+    case GribKind::kAlbedo:
+      return named("albedo");
+    case GribKind::kGreenCover:
+      return named("vegetation");
   }
   return "";
 }
@@ -244,6 +259,10 @@ GribModel ModelOf(const grib::Field& field) {
     model.why = "the parameter's definition says so, and the model is not known";
   }
   return model;
+}
+
+bool HasModisClasses(const grib::Field& field) {
+  return field.origin.centre == kNcep || field.origin.centre == kNoaaLaboratory;
 }
 
 }  // namespace thunderhead::storm_files

@@ -32,7 +32,15 @@ enum class GribKind {
   kTurbulentEnergy,     // m2/s2
   kCellLatitude,        // in degrees, of each cell of an unstructured grid
   kCellLongitude,
+  kLandShare,   // 0 to 1; the rest is water
+  kLandUse,     // class of MODIS (IGBP), counted from 1; a number of NCEP's own table
+  kSnowCover,   // in percent
+  kAlbedo,      // in percent
+  kGreenCover,  // in percent
 };
+
+// Returns whether the kind describes the ground's colour, which a storm does not need.
+constexpr bool IsOfLand(GribKind kind) { return kind >= GribKind::kLandShare; }
 
 struct GribMeaning {
   GribKind kind = GribKind::kNone;
@@ -60,5 +68,9 @@ struct GribModel {
 };
 
 GribModel ModelOf(const grib::Field& field);
+
+// Returns whether a field of kLandUse has the classes of MODIS (IGBP), because its centre's table
+// says so.
+bool HasModisClasses(const grib::Field& field);
 
 }  // namespace thunderhead::storm_files

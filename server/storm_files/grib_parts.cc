@@ -1,7 +1,9 @@
 #include "storm_files/grib_parts.h"
 
 #include <cstdint>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
@@ -14,8 +16,7 @@ namespace {
 std::string PartText(const grib::Field& field) {
   const std::string_view grid(reinterpret_cast<const char*>(field.grid->data()),
                               field.grid->size());
-  const std::string member = GribMemberOf(field);
-  return absl::StrCat(GribRunOf(field.origin), member.empty() ? "" : ", ", member, ", grid ",
+  return absl::StrCat(GribRunOf(field.origin), ", grid ",
                       absl::BytesToHexString(absl::string_view(grid.data(), grid.size())));
 }
 
@@ -36,25 +37,27 @@ std::string GribRunOf(const grib::Origin& origin) {
                       ", centre ", origin.centre, "/", origin.subcentre);
 }
 
-std::string GribMemberOf(const grib::Field& field) {
-  return field.member.has_value() ? absl::StrFormat("mem%02d", *field.member) : "";
+std::string GribMemberOf(std::optional<int> member) {
+  return member.has_value() ? absl::StrFormat("mem%02d", *member) : "";
 }
 
-absl::StatusOr<GribPart> GribPartOf(const grib::Index& index) {
-  std::set<absl::Time> times;
+absl::StatusOr<std::vector<GribPart>> GribPartsOf(const grib::Index& index) {
   std::set<double> amount_levels;
   std::set<double> temperature_levels;
-  std::set<std::string> parts;
-  bool is_invariant = true;
+  struct Contents {
+    std::set<absl::Time> times;
+    bool is_invariant = true;
+  };
+  std::map<std::pair<std::string, std::string>, Contents> parts;
   for (const grib::Field& field : index.fields) {
     const GribKind kind = MeaningOf(field.parameter).kind;
-    if (!field.is_instant || kind == GribKind::kNone) continue;
-    parts.insert(PartText(field));
+    if (!field.is_instant || kind == GribKind::kNone || IsOfLand(kind)) continue;
     if (kind == GribKind::kAmount) amount_levels.insert(field.first.value);
     if (kind == GribKind::kTemperature) temperature_levels.insert(field.first.value);
+    Contents& part = parts[{PartText(field), GribMemberOf(field.member)}];
     if (IsInvariant(field, kind)) continue;
-    is_invariant = false;
-    times.insert(field.Valid());
+    part.is_invariant = false;
+    part.times.insert(field.Valid());
   }
   if (parts.empty()) {
     return absl::InvalidArgumentError(
@@ -62,19 +65,18 @@ absl::StatusOr<GribPart> GribPartOf(const grib::Index& index) {
                      ": has no field that a storm needs: hydrometeors, temperature, humidity, "
                      "pressure, heights or wind at one time; give a file with some"));
   }
-  GribPart part;
-  part.times.assign(times.begin(), times.end());
   if (amount_levels.size() > 1 && temperature_levels.size() > 1) {
-    part.kind = GribPartKind::kWhole;
-    return part;
+    return std::vector<GribPart>{{.kind = GribPartKind::kWhole}};
   }
-  part.kind = is_invariant ? GribPartKind::kInvariant : GribPartKind::kFields;
-  part.of = *parts.begin();
-  if (parts.size() == 1) return part;
-  return absl::InvalidArgumentError(
-      absl::StrCat(index.path,
-                   ": is a part of a time, but has fields of several runs, members or "
-                   "grids; put each into a separate file"));
+  std::vector<GribPart> found;
+  found.reserve(parts.size());
+  for (const auto& [key, part] : parts) {
+    found.push_back({.kind = part.is_invariant ? GribPartKind::kInvariant : GribPartKind::kFields,
+                     .of = key.first,
+                     .member = key.second,
+                     .times = {part.times.begin(), part.times.end()}});
+  }
+  return found;
 }
 
 }  // namespace thunderhead::storm_files

@@ -117,6 +117,7 @@ class GribSource final : public LayerSource {
   absl::StatusOr<LayerState> Air() override;
   absl::StatusOr<LayerAmounts> Amounts(std::size_t field) override;
   absl::StatusOr<Values> Terrain_m() override;
+  absl::StatusOr<volume::LandColumns> Land() override;
   absl::StatusOr<LayerEnergy> TurbulentEnergy() override;
   absl::StatusOr<ModelWind> Wind() override;
 
@@ -210,6 +211,26 @@ absl::StatusOr<Values> GribSource::Terrain_m() {
     for (float& height : ground_m) height /= static_cast<float>(kStandardGravity_m_per_s2);
   }
   return ground_m;
+}
+
+absl::StatusOr<volume::LandColumns> GribSource::Land() {
+  volume::LandColumns columns;
+  if (layers_.land_use.Empty()) return columns;
+  columns.scheme = physics::LandUseScheme::kModis;
+  const auto read = [this](const GribSeries& series, float scale, Values& values) -> absl::Status {
+    if (series.Empty()) return absl::OkStatus();
+    THUNDERHEAD_ASSIGN_OR_RETURN(values, decoder_.Read(series.levels[0]));
+    for (float& value : values) value *= scale;
+    return absl::OkStatus();
+  };
+  constexpr float kPercent = 0.01F;
+  THUNDERHEAD_RETURN_IF_ERROR(read(layers_.land_use, 1.0F, columns.land_use));
+  THUNDERHEAD_RETURN_IF_ERROR(read(layers_.land_share, 1.0F, columns.water));
+  for (float& share : columns.water) share = 1.0F - share;
+  THUNDERHEAD_RETURN_IF_ERROR(read(layers_.albedo, kPercent, columns.albedo));
+  THUNDERHEAD_RETURN_IF_ERROR(read(layers_.green_cover, 1.0F, columns.green_percent));
+  THUNDERHEAD_RETURN_IF_ERROR(read(layers_.snow_cover, kPercent, columns.snow_share));
+  return columns;
 }
 
 absl::StatusOr<Values> GribSource::SurfacePressure() {

@@ -84,18 +84,22 @@ absl::StatusOr<std::shared_ptr<const grib::Index>> IndexOfGrib(
   return std::make_shared<const grib::Index>(std::move(index));
 }
 
-absl::StatusOr<std::shared_ptr<const GribStorm>> MakeGribStorm(const std::string& path,
-                                                               std::vector<GribInput> files,
-                                                               GribIndexes indexes) {
-  auto storm = std::make_shared<GribStorm>();
-  THUNDERHEAD_ASSIGN_OR_RETURN(storm->contents, FindGribLayers(path, indexes));
-  THUNDERHEAD_RETURN_IF_ERROR(CheckRecords(path, storm->contents.times.size()));
-  storm->files = std::move(files);
-  storm->indexes = std::move(indexes);
-  absl::StatusOr<EvenColumns> even = PlaceGribColumns(*storm);
-  if (!even.ok()) return base::Annotate(even.status(), path);
-  storm->even = std::make_shared<const EvenColumns>(*std::move(even));
-  return storm;
+absl::StatusOr<std::vector<std::shared_ptr<const GribStorm>>> MakeGribStorms(
+    const std::string& path, const std::vector<GribInput>& files, const GribIndexes& indexes) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<GribContents> found, FindGribStorms(path, indexes));
+  std::vector<std::shared_ptr<const GribStorm>> storms;
+  for (GribContents& contents : found) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckRecords(path, contents.times.size()));
+    auto storm = std::make_shared<GribStorm>();
+    storm->files = files;
+    storm->indexes = indexes;
+    storm->contents = std::move(contents);
+    absl::StatusOr<EvenColumns> even = PlaceGribColumns(*storm);
+    if (!even.ok()) return base::Annotate(even.status(), path);
+    storm->even = std::make_shared<const EvenColumns>(*std::move(even));
+    storms.push_back(std::move(storm));
+  }
+  return storms;
 }
 
 StormFile DescribeGribStorm(std::shared_ptr<const GribStorm> storm) {
@@ -117,7 +121,8 @@ StormFile DescribeGribStorm(std::shared_ptr<const GribStorm> storm) {
     file.fields.push_back(hydrometeor.hydrometeor);
   }
   file.about = AboutText(contents);
-  file.run = absl::StrCat(GribRunOf(contents.origin), ", process ", contents.process);
+  file.run = absl::StrCat(GribRunOf(contents.origin), ", process ", contents.process, ", ",
+                          contents.level_kind);
   file.run_start = contents.origin.reference;
   file.member = contents.member;
   file.latitude_deg = even.middle.latitude_deg;

@@ -20,11 +20,11 @@ GribInput GribFileAt(const std::string& path);
 absl::StatusOr<std::shared_ptr<const grib::Index>> IndexOfGrib(
     std::shared_ptr<const base::ByteSource> bytes);
 
-// Finds the times of the storm in files with these indexes. `path` names the storm in errors. All
-// files must belong to one run and one member. Errors name the file, the field and what to do.
-absl::StatusOr<std::shared_ptr<const GribStorm>> MakeGribStorm(const std::string& path,
-                                                               std::vector<GribInput> files,
-                                                               GribIndexes indexes);
+// Finds the storms in files with these indexes, one for each run and member, and their times. There
+// is at least one. `path` names the files in errors. Errors name the file, the field and what to
+// do.
+absl::StatusOr<std::vector<std::shared_ptr<const GribStorm>>> MakeGribStorms(
+    const std::string& path, const std::vector<GribInput>& files, const GribIndexes& indexes);
 
 // Describes the storm, and sets the reader of its times.
 StormFile DescribeGribStorm(std::shared_ptr<const GribStorm> storm);

@@ -90,6 +90,11 @@ struct StormFile {
   // The paths of all files, `path` among them, if a time is spread over several. Otherwise empty.
   std::vector<std::string> parts;
   std::shared_ptr<const RecordReader> reader;
+  // Other storms in the same file, such as the other members of an ensemble. StormsOf separates
+  // them.
+  std::vector<StormFile> others;
+  // The number of records of the storms before this one in the same file.
+  std::size_t first_record = 0;
   // A number that changes if another file replaces this file, or if the file is written anew. The
   // number stays the same while the file only gets more times.
   std::uint64_t version = 0;
@@ -101,5 +106,15 @@ struct StormFile {
   // When the file was last written (base::FileStamp::modified_ns). 0 means unknown.
   std::int64_t modified_ns = 0;
 };
+
+// Maximum number of storms in one file.
+inline constexpr std::size_t kMaxStorms = 1000;
+
+// Returns INVALID_ARGUMENT, naming the file `path`, if `storms` exceeds kMaxStorms.
+absl::Status CheckStormCount(const std::string& path, std::size_t storms);
+
+// Returns the storms of one file, each without `others`. They get the first one's `parts`,
+// `version`, `id`, `device` and `modified_ns`, which describe the file, and their `first_record`.
+std::vector<StormFile> StormsOf(StormFile file);
 
 }  // namespace thunderhead::storm_files

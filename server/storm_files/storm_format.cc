@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -47,7 +48,43 @@ absl::Status CheckDescribed(StormFile& file) {
   return absl::OkStatus();
 }
 
+// Checks the storms of a file. Parts of a time say nothing that can be checked.
+absl::Status CheckStorms(StormFile& file) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckStormCount(file.path, file.others.size() + 1));
+  if (file.part.of.empty()) THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(file));
+  for (StormFile& other : file.others) {
+    if (other.part.of.empty()) THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(other));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
+
+std::vector<StormFile> StormsOf(StormFile file) {
+  std::vector<StormFile> storms;
+  std::vector<StormFile> others = std::move(file.others);
+  file.others.clear();
+  storms.push_back(std::move(file));
+  for (StormFile& other : others) {
+    const StormFile& first = storms.front();
+    const StormFile& before = storms.back();
+    other.first_record = before.first_record + before.times.size();
+    other.parts = first.parts;
+    other.version = first.version;
+    other.id = first.id;
+    other.device = first.device;
+    other.modified_ns = first.modified_ns;
+    storms.push_back(std::move(other));
+  }
+  return storms;
+}
+
+absl::Status CheckStormCount(const std::string& path, std::size_t storms) {
+  if (storms <= kMaxStorms) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(path, ": has ", storms,
+                                                 " storms (runs or members), and ", kMaxStorms,
+                                                 " are the most; split it"));
+}
 
 absl::Status CheckRecords(const std::string& path, std::size_t records) {
   if (records <= kMaxTimes) return absl::OkStatus();
@@ -128,7 +165,7 @@ absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const 
   const UnknownFile file(path);
   THUNDERHEAD_ASSIGN_OR_RETURN(const StormFormat* const format, FormatOf(file));
   THUNDERHEAD_ASSIGN_OR_RETURN(StormFile described, format->Describe(file));
-  if (described.part.of.empty()) THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(described));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckStorms(described));
   return described;
 }
 
@@ -151,7 +188,7 @@ absl::StatusOr<StormFile> StormFormats::DescribeTogether(
   THUNDERHEAD_ASSIGN_OR_RETURN(StormFile described, format->DescribeTogether(files));
   described.path = paths.front();
   described.parts = paths;
-  THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(described));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckStorms(described));
   return described;
 }
 

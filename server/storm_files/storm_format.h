@@ -91,7 +91,8 @@ class StormFormat {
 
   // Reads and checks the metadata of a file that fits this format, and sets its reader. Errors name
   // the file, the variable and what it lacks. If a time is spread over several files, this sets
-  // StormFile::part, times and about, and nothing else is needed.
+  // StormFile::part, member, times and about, and nothing else is needed. If the file has several
+  // storms, this sets StormFile::others.
   virtual absl::StatusOr<StormFile> Describe(const UnknownFile& file) const = 0;
 
   // Describes the files of one time, which have this format and an equal StormPart::of, and sets

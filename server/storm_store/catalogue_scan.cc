@@ -17,6 +17,8 @@ namespace {
 // Returns whether times were appended to a file since it was described. Otherwise the file was
 // written anew.
 bool GoesOn(const storm_files::StormFile& before, const storm_files::StormFile& after) {
+  // More times of one storm shift the records of the next ones.
+  if (!before.others.empty() || !after.others.empty()) return false;
   return after.times.size() > before.times.size() &&
          std::ranges::equal(before.times, std::span(after.times).first(before.times.size()));
 }

@@ -1,6 +1,7 @@
 #include "storm_store/renewed_storms.h"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -11,6 +12,14 @@ namespace {
 
 absl::Time TimeOf(const CataloguedStorm& storm, std::size_t time) {
   return FileOf(storm, time).times[storm.sources[time].record];
+}
+
+// Returns whether both storms are the same member of the same run.
+bool IsSameMember(const CataloguedStorm& one, const CataloguedStorm& other) {
+  if (one.files.empty() || other.files.empty()) return false;
+  const storm_files::StormFile& a = one.files.front();
+  const storm_files::StormFile& b = other.files.front();
+  return a.run == b.run && a.member == b.member;
 }
 
 // Inserts time `time` of the storm `from`, whose file is gone, into `storm`, marked as deleted.
@@ -34,8 +43,9 @@ void InsertDeleted(const CataloguedStorm& from, std::size_t time, CataloguedStor
 
 std::vector<std::optional<std::size_t>> MatchStorms(
     const std::vector<const CataloguedStorm*>& known, const std::vector<CataloguedStorm>& found) {
-  // Pairs are sorted by the number of common files, then by their order.
-  std::vector<std::tuple<std::size_t, std::size_t, std::size_t>> pairs;
+  // Pairs are sorted by the number of common files, then by an equal run and member, then by their
+  // order. Several runs or members may share one file.
+  std::vector<std::tuple<std::size_t, bool, std::size_t, std::size_t>> pairs;
   for (std::size_t k = 0; k < known.size(); ++k) {
     if (known[k] == nullptr) continue;
     const std::vector<std::string>& names = known[k]->info.files;
@@ -43,14 +53,16 @@ std::vector<std::optional<std::size_t>> MatchStorms(
     for (std::size_t f = 0; f < found.size(); ++f) {
       const auto common = static_cast<std::size_t>(std::ranges::count_if(
           found[f].info.files, [&](const std::string& file) { return files.contains(file); }));
-      if (common > 0) pairs.emplace_back(common, k, f);
+      if (common == 0) continue;
+      pairs.emplace_back(common, IsSameMember(*known[k], found[f]), k, f);
     }
   }
-  std::ranges::stable_sort(
-      pairs, [](const auto& a, const auto& b) { return std::get<0>(a) > std::get<0>(b); });
+  std::ranges::stable_sort(pairs, std::greater(), [](const auto& pair) {
+    return std::pair(std::get<0>(pair), std::get<1>(pair));
+  });
   std::vector<std::optional<std::size_t>> match(known.size());
   std::set<std::size_t> taken;
-  for (const auto& [common, k, f] : pairs) {
+  for (const auto& [common, is_same_member, k, f] : pairs) {
     if (!match[k].has_value() && taken.insert(f).second) match[k] = f;
   }
   return match;

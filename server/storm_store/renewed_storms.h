@@ -13,9 +13,10 @@
 namespace thunderhead::storm_store {
 
 // Returns for each storm of `known` the index in `found` of the storm that continues it, or
-// nothing. This is the found storm that shares the most files with it. Each found storm continues
-// at most one known storm. Ids are not compared, because a run of one file gets another id when it
-// becomes a series. An element of `known` may be null.
+// nothing. This is the found storm that shares the most files with it. If several share equally
+// many, it is the one of the same run and member. Each found storm continues at most one known
+// storm. Ids are not compared, because a run of one file gets another id when it becomes a series.
+// An element of `known` may be null.
 std::vector<std::optional<std::size_t>> MatchStorms(
     const std::vector<const CataloguedStorm*>& known, const std::vector<CataloguedStorm>& found);
 

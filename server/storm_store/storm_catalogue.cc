@@ -191,9 +191,52 @@ std::string WithMember(const std::string& name, const storm_files::StormFile& fi
   return file.member.empty() ? name : absl::StrCat(name, "/", file.member);
 }
 
+// Returns the name of a storm that is in one file. `runs` is the number of runs in that file.
+std::string NameInFile(const std::string& name, const storm_files::StormFile& file,
+                       std::size_t runs) {
+  const std::optional<absl::Time> start = file.run_start;
+  if (runs < 2 || !start.has_value()) return WithMember(name, file);
+  return WithMember(
+      absl::StrCat(name, "/", absl::FormatTime("%E4Y-%m-%dT%H:%M", *start, absl::UTCTimeZone())),
+      file);
+}
+
+// Adds an assumption to files with fewer layers than others of their run on the same columns,
+// because they may have been cut short. Such a file becomes a separate storm.
+void NoteFewerLayers(std::vector<storm_files::StormFile>& files) {
+  const auto key = [](const storm_files::StormFile& file) {
+    return std::tuple(file.domain, file.grid, file.cells.x, file.cells.y, file.run, file.member);
+  };
+  std::map<decltype(key(files[0])), int> most;
+  for (const storm_files::StormFile& file : files) {
+    int& layers = most[key(file)];
+    layers = std::max(layers, file.cells.z);
+  }
+  for (storm_files::StormFile& file : files) {
+    const int layers = most[key(file)];
+    if (file.run.empty() || file.cells.z == layers) continue;
+    file.assumptions.push_back(absl::StrCat("This file has ", file.cells.z, " layers, and others ",
+                                            "of its run have ", layers,
+                                            ": it may have been cut short."));
+  }
+}
+
+// Nested domains of one run are often in one folder, so their names get the domain's number.
+void NameDomains(const std::vector<std::size_t>& series, std::vector<NamedStorm>& storms) {
+  std::set<std::string> names;
+  for (const std::size_t i : series) names.insert(storms[i].name);
+  if (names.size() == series.size()) return;
+  for (const std::size_t i : series) {
+    absl::StrAppend(&storms[i].name, "-d", absl::Dec(storms[i].files[0].domain, absl::kZeroPad2));
+  }
+}
+
 // Groups a folder's files into runs. Files that do not continue one another become separate storms.
 std::vector<NamedStorm> GroupRuns(const fs::path& folder,
                                   std::vector<storm_files::StormFile> files) {
+  NoteFewerLayers(files);
+  std::map<std::string, std::set<std::string>> runs;  // of each file
+  for (const storm_files::StormFile& file : files) runs[file.path].insert(file.run);
   std::vector<NamedStorm> storms;
   std::vector<std::size_t> series;
   for (std::vector<storm_files::StormFile>& run : FilesOfRuns(std::move(files))) {
@@ -206,28 +249,44 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder,
     for (storm_files::StormFile& file : run) {
       // No file of a time that is spread over several files stands for all of them.
       const std::string name = file.parts.empty() ? NameOfFile(file.path) : NameOfFolder(folder);
-      storms.push_back({WithMember(name, file), {}});
+      storms.push_back({NameInFile(name, file, runs[file.path].size()), {}});
       storms.back().files.push_back(std::move(file));
     }
   }
-  // Nested domains of one run are often in one folder, so their names get the domain's number.
-  if (series.size() > 1) {
-    for (const std::size_t i : series) {
-      absl::StrAppend(&storms[i].name, "-d", absl::Dec(storms[i].files[0].domain, absl::kZeroPad2));
-    }
-  }
+  NameDomains(series, storms);
   return storms;
 }
 
-// The files of one run whose times are spread over several files each.
+// The files of one run and member whose times are spread over several files each.
 struct PartsOfRun {
   std::vector<std::string> at_all_times;
   std::map<absl::Time, std::vector<std::string>> at;
 };
 
-void Add(const storm_files::StormFile& part, PartsOfRun& run) {
+// By StormPart::of and StormFile::member.
+using PartsOfRuns = std::map<std::pair<std::string, std::string>, PartsOfRun>;
+
+void Add(const storm_files::StormFile& part, PartsOfRuns& runs) {
+  PartsOfRun& run = runs[{part.part.of, part.member}];
   if (part.part.at_all_times) run.at_all_times.push_back(part.path);
   for (const absl::Time time : part.times) run.at[time].push_back(part.path);
+}
+
+// Gives each member of an ensemble the files of no member that belong to all times, such as the
+// heights of the layers.
+void ShareWithMembers(PartsOfRuns& runs) {
+  for (auto& [key, run] : runs) {
+    const auto shared = runs.find({key.first, ""});
+    if (key.second.empty() || shared == runs.end()) continue;
+    const std::vector<std::string>& paths = shared->second.at_all_times;
+    run.at_all_times.insert(run.at_all_times.end(), paths.begin(), paths.end());
+  }
+  std::erase_if(runs, [&runs](const auto& entry) {
+    const auto& [of, member] = entry.first;
+    const auto next = runs.upper_bound(entry.first);
+    return member.empty() && entry.second.at.empty() && next != runs.end() &&
+           next->first.first == of;
+  });
 }
 
 // Reports a file that is left out. A file of another kind, such as a read-me, is normal. A storm
@@ -241,17 +300,24 @@ void ReportLeftOut(FolderWalk& walk, const absl::Status& why) {
 }
 
 // Describes each time of the run. A time that lacks a file is left out.
-std::vector<storm_files::StormFile> TimesOf(const PartsOfRun& run, FolderWalk& walk) {
+std::vector<storm_files::StormFile> TimesOf(const PartsOfRun& run, const std::string& member,
+                                            FolderWalk& walk) {
   std::vector<storm_files::StormFile> files;
   for (const auto& [time, parts] : run.at) {
     // The time's own files come first, because the first path identifies it in messages.
     std::vector<std::string> paths = parts;
-    paths.insert(paths.end(), run.at_all_times.begin(), run.at_all_times.end());
+    std::ranges::copy_if(run.at_all_times, std::back_inserter(paths),
+                         [&parts = parts](const std::string& path) {
+                           return std::ranges::find(parts, path) == parts.end();
+                         });
     absl::StatusOr<storm_files::StormFile> whole = walk.search.describe_together(paths);
-    if (whole.ok()) {
-      files.push_back(*std::move(whole));
-    } else {
+    if (!whole.ok()) {
       ReportLeftOut(walk, whole.status());
+      continue;
+    }
+    // The files may also have other members.
+    for (storm_files::StormFile& storm : StormsOf(*std::move(whole))) {
+      if (storm.member == member) files.push_back(std::move(storm));
     }
   }
   if (run.at.empty() && !run.at_all_times.empty()) {
@@ -276,18 +342,23 @@ absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
   std::vector<std::string> paths;
   for (const fs::path& file : folder.files) paths.push_back(file.string());
   std::vector<storm_files::StormFile> files;
-  std::map<std::string, PartsOfRun> runs;  // by StormPart::of
+  PartsOfRuns runs;
   for (absl::StatusOr<storm_files::StormFile>& described : walk.search.describe(paths)) {
     if (!described.ok()) {
       ReportLeftOut(walk, described.status());
-    } else if (described->part.of.empty()) {
-      files.push_back(*std::move(described));
-    } else {
-      Add(*described, runs[described->part.of]);
+      continue;
+    }
+    for (storm_files::StormFile& storm : StormsOf(*std::move(described))) {
+      if (storm.part.of.empty()) {
+        files.push_back(std::move(storm));
+      } else {
+        Add(storm, runs);
+      }
     }
   }
-  for (const auto& [of, run] : runs) {
-    std::ranges::move(TimesOf(run, walk), std::back_inserter(files));
+  ShareWithMembers(runs);
+  for (const auto& [key, run] : runs) {
+    std::ranges::move(TimesOf(run, key.second, walk), std::back_inserter(files));
   }
   if (!files.empty()) std::ranges::move(GroupRuns(path, std::move(files)), back_inserter(storms));
   if (depth == kDeepestFolder) return absl::OkStatus();
@@ -315,6 +386,42 @@ LinkRules LinkRulesOf(const std::vector<std::string>& paths, const LinkPolicy& l
   return rules;
 }
 
+// Returns the file of which `path` names a storm, as in "eps.grib2/mem05". Other paths are returned
+// unchanged.
+fs::path FileOfStorm(const fs::path& path) {
+  std::error_code error;
+  fs::path file = path;
+  while (file.has_relative_path() && !fs::exists(file, error)) file = file.parent_path();
+  return fs::is_regular_file(file, error) ? file : path;
+}
+
+// Appends the storms of one file, or the one that the path names.
+absl::Status SearchFile(const std::string& path, const StormSearch& search,
+                        std::vector<NamedStorm>& storms) {
+  const fs::path at = FileOfStorm(path);
+  THUNDERHEAD_ASSIGN_OR_RETURN(storm_files::StormFile file, search.describe({at.string()}).front());
+  if (!file.part.of.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        path, ": is one of several files of a time; give the folder with all of them"));
+  }
+  const std::string wanted = fs::path(path).lexically_relative(at).string();
+  std::vector<storm_files::StormFile> files = StormsOf(std::move(file));
+  std::set<std::string> runs;
+  for (const storm_files::StormFile& each : files) runs.insert(each.run);
+  std::string names;
+  for (storm_files::StormFile& each : files) {
+    const std::string name = NameInFile("", each, runs.size());
+    absl::StrAppend(&names, names.empty() ? "" : ", ", at.string(), name);
+    if (wanted != "." && "/" + wanted != name) continue;
+    storms.push_back({NameOfFile(at) + (files.size() > 1 ? name : ""), {}});
+    storms.back().files.push_back(std::move(each));
+    if (wanted != ".") return absl::OkStatus();
+  }
+  if (wanted == ".") return absl::OkStatus();
+  return absl::NotFoundError(absl::StrCat(path, ": there is no such storm in the file; it has ",
+                                          files.size() > 1 ? names : "only one, without a name"));
+}
+
 absl::Status Search(const std::string& path, FolderWalk walk, std::vector<NamedStorm>& storms) {
   const StormSearch& search = walk.search;
   std::error_code error;
@@ -322,16 +429,8 @@ absl::Status Search(const std::string& path, FolderWalk walk, std::vector<NamedS
     return absl::OkStatus();
   }
   if (!fs::is_directory(path, error)) {
-    absl::StatusOr<storm_files::StormFile> metadata = search.describe({path}).front();
-    if (metadata.ok() && !metadata->part.of.empty()) {
-      metadata = absl::InvalidArgumentError(absl::StrCat(
-          path, ": is one of several files of a time; give the folder with all of them"));
-    }
-    if (!metadata.ok() && search.may_find_nothing) return absl::OkStatus();
-    THUNDERHEAD_RETURN_IF_ERROR(metadata.status());
-    storms.push_back({NameOfFile(path), {}});
-    storms.back().files.push_back(*std::move(metadata));
-    return absl::OkStatus();
+    const absl::Status found = SearchFile(path, search, storms);
+    return search.may_find_nothing ? absl::OkStatus() : found;
   }
   const std::size_t before = storms.size();
   THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, 0, walk, storms));
@@ -373,8 +472,9 @@ void DropRepeated(std::vector<NamedStorm>& storms) {
       std::error_code error;
       const fs::path canonical = fs::canonical(file.path, error);
       std::string key = error ? file.path : canonical.string();
-      // Two times may share their first file, if it holds both.
+      // Two times may share their first file, if it holds both. So may two storms.
       if (!file.parts.empty()) absl::StrAppend(&key, " ", absl::FormatTime(file.times.front()));
+      absl::StrAppend(&key, " ", file.first_record);
       return !seen.insert(key).second;
     });
   }
@@ -519,7 +619,11 @@ absl::Status CannotBeListed(const std::string& folder, const std::error_code& er
 std::vector<std::vector<storm_files::StormFile>> FilesOfRuns(
     std::vector<storm_files::StormFile> files) {
   std::map<decltype(RunKey(files[0])), std::vector<storm_files::StormFile>> by_key;
-  for (storm_files::StormFile& file : files) by_key[RunKey(file)].push_back(std::move(file));
+  for (storm_files::StormFile& file : files) {
+    for (storm_files::StormFile& storm : StormsOf(std::move(file))) {
+      by_key[RunKey(storm)].push_back(std::move(storm));
+    }
+  }
   std::vector<std::vector<storm_files::StormFile>> runs;
   runs.reserve(by_key.size());
   for (auto& [key, run] : by_key) runs.push_back(std::move(run));
@@ -699,7 +803,12 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
   std::vector<CataloguedStorm> storms;
   std::set<std::string> ids;
   for (NamedStorm& storm : named) {
+    // What follows the file's own name is that of the storm in the file.
+    const std::string in_file =
+        storm.name.substr(std::min(storm.name.find('/'), storm.name.size()));
     storms.push_back(AssembleStorm(storm.name, std::move(storm.files)));
+    StormInfo& info = storms.back().info;
+    if (info.files.size() == 1) info.path = info.files.front() + in_file;
     std::string& id = storms.back().info.id;
     const std::string stem = id;
     for (int copy = 2; !ids.insert(id).second; ++copy) id = absl::StrCat(stem, "-", copy);

@@ -101,8 +101,8 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
 // If `logged` is not null, the notes in it are skipped, and those that are logged are added to it.
 void LogNotes(const std::vector<CataloguedStorm>& storms, std::set<std::string>* logged = nullptr);
 
-// Groups the files by model run. Files of one run have the same domain, grid, member and start of
-// the run.
+// Groups the files by model run. A file with several storms counts as several files. Files of one
+// run have the same domain, grid, member and start of the run.
 std::vector<std::vector<storm_files::StormFile>> FilesOfRuns(
     std::vector<storm_files::StormFile> files);
 

@@ -49,6 +49,7 @@ struct StormInfo {
   std::string id;     // unique in a store; from the file's or folder's name
   std::string title;  // title for users, from the file's global attributes
   std::vector<std::string> files;
+  std::string path;              // the path that names this storm alone, if it is in one file
   std::vector<StormTime> times;  // in order of valid time
   glm::ivec3 file_cells{0};      // west-east, south-north, bottom-top, as in the file
   double dx_m = 0.0;  // distances between columns at the first time; those of other times of a

@@ -137,14 +137,14 @@ void Read(const std::shared_ptr<const base::ByteSource>& bytes) {
   for (const grib::Field& field : (*index)->fields) points = std::max(points, field.points);
   if (points > kMostDescribedPoints) return;
   const bool is_small = points <= kMostPoints;
-  static_cast<void>(storm_files::GribPartOf(**index));
-  const auto storm =
-      storm_files::MakeGribStorm("fuzzed", {{"fuzzed", [&] { return plain; }}}, {*index});
-  if (!storm.ok()) {
+  static_cast<void>(storm_files::GribPartsOf(**index));
+  const auto storms =
+      storm_files::MakeGribStorms("fuzzed", {{"fuzzed", [&] { return plain; }}}, {*index});
+  if (!storms.ok()) {
     if (is_small) Decode(**plain, **index);
     return;
   }
-  const storm_files::StormFile file = storm_files::DescribeGribStorm(*storm);
+  const storm_files::StormFile file = storm_files::DescribeGribStorm(storms->front());
   if (file.times.empty() || file.fields.empty() || file.cells.x <= 0) std::abort();
   if (!is_small) return;
   const auto fields = file.reader->Read(0, std::nullopt, {});

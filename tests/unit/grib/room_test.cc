@@ -392,6 +392,24 @@ TEST(GribGroups, MustAddUp) {
   EXPECT_THAT(std::string(CheckGroups({.order = 3}).message()), HasSubstr("of order 3"));
 }
 
+// ecCodes reads the first values also if there are no groups. Without this check it would read them
+// beyond the end of the data.
+TEST(GribGroups, FirstValuesMustBeThere) {
+  const auto message = [](int order, int octets, const std::string& data) {
+    const std::string section5 =
+        Number(8, 4) + Number(3, 2) + std::string(36, '\0') + Number(order, 1) + Number(octets, 1);
+    const auto packing = AsBytes(testing::Section(5, section5));
+    const auto packed = AsBytes(testing::Section(7, data));
+    return std::string(CheckPacked({8, packing, {}, packed}).message());
+  };
+  EXPECT_EQ(message(2, 0, ""), "");
+  EXPECT_EQ(message(0, 0, ""), "");
+  EXPECT_EQ(message(2, 4, std::string(12, '\1')), "");
+  EXPECT_THAT(message(2, 4, std::string(11, '\1')), HasSubstr("end before their groups"));
+  EXPECT_THAT(message(2, 4, ""), HasSubstr("end before their groups"));
+  EXPECT_THAT(message(3, 0, ""), HasSubstr("differences of order 3"));
+}
+
 TEST(GribGrid, PlacesTheMiddleOfLatitudesAndLongitudes) {
   LatLon layout;
   layout.columns = 5;

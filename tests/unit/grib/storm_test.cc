@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "base/byte_source.h"
@@ -16,6 +18,7 @@
 #include "storm_files/grib_parts.h"
 #include "storm_files/grib_storm.h"
 #include "storm_files/storm_format.h"
+#include "storm_store/storm_store.h"
 #include "tests/support/earth_formulas.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/grib/messages.h"
@@ -247,14 +250,119 @@ TEST_F(GribStormTest, ReadsSeveralTimes) {
   EXPECT_TRUE(file->reader->Read(2, std::nullopt, {}).ok());
 }
 
-TEST_F(GribStormTest, NamesMixedRunsAndMembers) {
-  EXPECT_THAT(ErrorOf(DescribeAlone(Write("a", FileOf({}) + FileOf({.hour = 18})))),
-              HasSubstr("has fields of several runs (2024-05-20 21:00 UTC of centre 7, and "
-                        "2024-05-20 18:00 UTC of centre 7)"));
-  EXPECT_THAT(ErrorOf(DescribeAlone(Write("b", FileOf({.member = 1}) + FileOf({.member = 2})))),
-              HasSubstr("has 2 members of an ensemble"));
+// Cloud water is `amount` times 2^-14 kg per kg at all points.
+Layout WithCloud(float amount, Layout layout = {}) {
+  layout.edit = [amount](Message& message) {
+    if (message.category == 1 && message.number == 22) message.values = {amount * message.step};
+    return true;
+  };
+  return layout;
+}
+
+// Returns the names of the storms, each with its path of cloud water at the first time relative to
+// `amount` of WithCloud.
+std::vector<std::pair<std::string, double>> CloudIn(const std::string& path,
+                                                    const StormFormats& formats) {
+  std::vector<std::pair<std::string, double>> storms;
+  const auto store = storm_store::StormStore::Open({path}, {.read_ahead = 0, .formats = formats});
+  if (!store.ok()) return {{std::string(store.status().message()), 0.0}};
+  constexpr double kOfOne = (90'000.0 * 1100 + 210'000.0 * 1000) / (287.0 * 280.0);
+  for (const storm_store::StormInfoPtr& storm : (*store)->Storms()) {
+    const auto fields = (*store)->Get(storm->id, 0, {});
+    storms.emplace_back(storm->id, fields.ok() ? PathAt(**fields, 0, 0) * 16384 / kOfOne : -1.0);
+  }
+  return storms;
+}
+
+auto Storm(const std::string& id, double amount) {
+  return ::testing::Pair(id, ::testing::DoubleNear(amount, 0.01 * amount));
+}
+
+TEST_F(GribStormTest, EachMemberInAFileIsAStorm) {
+  const std::string path =
+      Write("eps", FileOf(WithCloud(3, {.member = 2})) + FileOf(WithCloud(5, {.member = 1})) +
+                       FileOf(WithCloud(7, {.member = 1, .forecast = 2})));
+  EXPECT_THAT(CloudIn(path, StormFormats::BuiltIn()),
+              ElementsAre(Storm("eps-mem01", 5), Storm("eps-mem02", 3)));
+  EXPECT_THAT(CloudIn(folder_.Path().string(), StormFormats::BuiltIn()),
+              ElementsAre(Storm("eps-mem01", 5), Storm("eps-mem02", 3)));
+  EXPECT_THAT(CloudIn(path + "/mem02", StormFormats::BuiltIn()),
+              ElementsAre(Storm("eps-mem02", 3)));
+  EXPECT_THAT(CloudIn(path + "/mem03", StormFormats::BuiltIn()),
+              ElementsAre(::testing::Pair(
+                  HasSubstr("eps/mem03: there is no such storm in the file; it has "), 0.0)));
+}
+
+TEST_F(GribStormTest, EachRunInAFileIsAStorm) {
+  Write("runs",
+        FileOf(WithCloud(3, {.hour = 21})) + FileOf(WithCloud(5, {.hour = 18, .forecast = 4})));
+  EXPECT_THAT(CloudIn(folder_.Path().string(), StormFormats::BuiltIn()),
+              ElementsAre(Storm("runs-2024-05-20T18-00", 5), Storm("runs-2024-05-20T21-00", 3)));
+}
+
+// Files of several times that hold all members continue each member.
+TEST_F(GribStormTest, MembersGoOnInTheNextFile) {
+  for (const int forecast : {1, 2, 3}) {
+    Write(absl::StrCat("f", forecast),
+          FileOf(WithCloud(3, {.member = 1, .forecast = forecast})) +
+              FileOf(WithCloud(5, {.member = 2, .forecast = forecast})));
+  }
+  const auto storms = CloudIn(folder_.Path().string(), StormFormats::BuiltIn());
+  const std::string name = folder_.Path().filename().string();
+  EXPECT_THAT(storms, ElementsAre(Storm(name + "-mem01", 3), Storm(name + "-mem02", 5)));
+}
+
+// A field without a member is shared, unless a storm without a member is in the file.
+TEST_F(GribStormTest, MembersShareWhatHasNoMember) {
+  const auto only = [](bool members, Layout layout) {
+    const auto edit = layout.edit;
+    layout.edit = [=](Message& message) {
+      return edit(message) && (message.category == 1 && message.number > 0) == members;
+    };
+    return FileOf(layout);
+  };
+  const std::string shared = only(false, {});
+  Write("shared",
+        only(true, WithCloud(3, {.member = 1})) + shared + only(true, WithCloud(5, {.member = 2})));
+  EXPECT_THAT(CloudIn(folder_.Path().string(), StormFormats::BuiltIn()),
+              ElementsAre(Storm("shared-mem01", 3), Storm("shared-mem02", 5)));
+  Write("shared", FileOf(WithCloud(7)) + FileOf(WithCloud(5, {.member = 2})));
+  EXPECT_THAT(CloudIn(folder_.Path().string(), StormFormats::BuiltIn()),
+              ElementsAre(Storm("shared", 7), Storm("shared-mem02", 5)));
+}
+
+TEST_F(GribStormTest, NamesTheMemberThatIsIncomplete) {
+  Layout cut = {.member = 2};
+  cut.edit = [](Message& message) { return !Is(message, 1, 24, 3); };
+  EXPECT_THAT(ErrorOf(DescribeAlone(Write("b", FileOf({.member = 1}) + FileOf(cut)))),
+              HasSubstr("b (run 2024-05-20 21:00 UTC, mem02): RWMR (0/1/24) of hybrid level 3 is "
+                        "missing"));
   EXPECT_THAT(ErrorOf(DescribeAlone(Write("c", FileOf({}) + FileOf({})))),
               HasSubstr("is there twice at hybrid level 1"));
+  // Temperature of another run is no temperature of this one.
+  const std::string other =
+      FileOf({.hour = 18, .edit = [](Message& message) { return message.category == 0; }});
+  EXPECT_THAT(ErrorOf(DescribeAlone(Write("a", FileOf({}) + other))),
+              HasSubstr("has fields of several runs (2024-05-20 21:00 UTC of centre 7, and "
+                        "2024-05-20 18:00 UTC of centre 7)"));
+}
+
+// Files of other times may tell that a file was cut between two levels.
+TEST_F(GribStormTest, StatesThatOtherTimesHaveMoreLevels) {
+  Write("f1", FileOf({}));
+  Write("f2", FileOf({.forecast = 2}));
+  Write("f3", FileOf({.levels = 3, .forecast = 3}));
+  const auto store = storm_store::StormStore::Open({folder_.Path().string()}, {.read_ahead = 0});
+  ASSERT_TRUE(store.ok()) << store.status();
+  const std::string note =
+      "This file has 3 layers, and others of its run have 4: it may have been "
+      "cut short.";
+  EXPECT_THAT((*store)->Find("f3")->assumptions, Contains(note));
+  for (const storm_store::StormInfoPtr& storm : (*store)->Storms()) {
+    if (storm->id == "f3") continue;
+    EXPECT_THAT(storm->assumptions, ::testing::Not(Contains(note)));
+  }
+  EXPECT_EQ((*store)->Find("f3")->run_start, "2024-05-20T21:00:00Z");
 }
 
 TEST_F(GribStormTest, NamesMissingLevels) {
@@ -333,6 +441,44 @@ TEST_F(GribStormTest, StatesWhyWindAndNumbersAreLeftOut) {
                                "SPNCR (0/1/100) is not used, because hybrid level 2 is missing at "
                                "2024-05-20 22:00 UTC."}));
   EXPECT_THAT(file->assumptions, ::testing::Not(Contains(HasSubstr("VGRD"))));
+}
+
+// The ground has the colours of NCEP's vegetation types, as that of WRF files has.
+TEST_F(GribStormTest, ReadsTheLand) {
+  constexpr float kGrass = 10.0F;
+  constexpr float kCity = 13.0F;
+  const auto ground = [](int discipline, int category, int number, std::vector<float> values,
+                         int centre) {
+    return BytesOf({.discipline = discipline,
+                    .category = category,
+                    .number = number,
+                    .centre = centre,
+                    .level = {1, 0},
+                    .grid = GridOf({}),
+                    .points = 4,
+                    .values = std::move(values)});
+  };
+  const auto land_of = [&](int centre) {
+    const auto file =
+        DescribeAlone(Write("land", FileOf({.centre = centre}) +
+                                        ground(2, 0, 198, {kGrass, kCity, kGrass, kGrass}, centre) +
+                                        ground(2, 0, 0, {1.0F, 1.0F, 0.0F, 1.0F}, centre) +
+                                        ground(0, 1, 42, {0.0F, 0.0F, 0.0F, 100.0F}, centre)));
+    return file->reader->Read(0, std::nullopt, {})->land;
+  };
+  const volume::LandSurface land = land_of(7);
+  const volume::LandSurface expected =
+      volume::MakeLandSurface({.scheme = physics::LandUseScheme::kModis,
+                               .land_use = {kGrass, kCity, kGrass, kGrass},
+                               .water = {0.0F, 0.0F, 1.0F, 0.0F},
+                               .snow_share = {0.0F, 0.0F, 0.0F, 1.0F}},
+                              {2, 2});
+  EXPECT_EQ(land.texels, expected.texels);
+  EXPECT_EQ(land.mean_albedo, expected.mean_albedo);
+  EXPECT_EQ(land.texels[2].a, 255);
+  EXPECT_GT(land.texels[3].r, land.texels[0].r);
+  // Numbers of another centre's table mean something else.
+  EXPECT_TRUE(land_of(98).Empty());
 }
 
 TEST_F(GribStormTest, NamesHeightsThatCannotBeKnown) {
@@ -632,11 +778,31 @@ TEST_F(GribStormTest, NamesAListingOfMore) {
   EXPECT_EQ(error(last), "");
 }
 
+// Returns the message with a member: template 4.1 in place of 4.0, with three more octets.
+std::string AsMember(const std::string& message, int member) {
+  constexpr std::size_t kTemplate_octets = 34;
+  std::size_t at = 16;
+  while (message[at + 4] != 4) {
+    at += (static_cast<std::size_t>(static_cast<unsigned char>(message[at + 2])) << 8U) +
+          static_cast<unsigned char>(message[at + 3]);
+  }
+  const std::size_t size =
+      static_cast<unsigned char>(message[at + 3]) +
+      (static_cast<std::size_t>(static_cast<unsigned char>(message[at + 2])) << 8U);
+  std::string section = message.substr(at, size);
+  section.insert(kTemplate_octets, std::string("\x03") + static_cast<char>(member) + "\x02");
+  section.replace(0, 4, grib::testing::Number(static_cast<std::int64_t>(section.size()), 4));
+  section[8] = 1;
+  std::string whole = message.substr(0, at) + section + message.substr(at + size);
+  whole.replace(8, 8, grib::testing::Number(static_cast<std::int64_t>(whole.size()), 8));
+  return whole;
+}
+
 TEST_F(GribStormTest, NamesParts) {
-  const auto part_of = [](const Message& message) {
-    const auto index = grib::ReadIndex(*grib::testing::BytesIn(BytesOf(message)));
-    return *GribPartOf(*index);
+  const auto parts_of = [](const std::string& bytes) {
+    return *GribPartsOf(*grib::ReadIndex(*grib::testing::BytesIn(bytes)));
   };
+  const auto part_of = [&](const Message& message) { return parts_of(BytesOf(message)).at(0); };
   Message heights;
   heights.category = 3;
   heights.number = 6;
@@ -660,7 +826,37 @@ TEST_F(GribStormTest, NamesParts) {
   EXPECT_NE(part_of(later).of, part_of(cloud).of);
   Message member = cloud;
   member.member = 3;
-  EXPECT_NE(part_of(member).of, part_of(cloud).of);
+  EXPECT_EQ(part_of(member).of, part_of(cloud).of);
+  EXPECT_EQ(part_of(member).member, "mem03");
+  const std::vector<GribPart> both = parts_of(BytesOf(member) + BytesOf(heights));
+  ASSERT_EQ(both.size(), 2U);
+  EXPECT_EQ(both[0].kind, GribPartKind::kInvariant);
+  EXPECT_EQ(both[1].kind, GribPartKind::kFields);
+}
+
+// ICON's ensembles: a file for each field and level has all members, and the heights have none.
+TEST_F(GribStormTest, MembersArePartsOfATime) {
+  const std::vector<float> id = {5.0F, 1.0F, 0.1F, 0.2F, 0.3F, 0.4F};
+  const std::string bytes = Generalized(id, id);
+  const auto index = grib::ReadIndex(*grib::testing::BytesIn(bytes));
+  std::map<std::string, std::string> files;
+  for (std::size_t i = 0; i < index->fields.size(); ++i) {
+    const grib::Field& field = index->fields[i];
+    const std::uint64_t end =
+        i + 1 < index->fields.size() ? index->fields[i + 1].message_offset : bytes.size();
+    const std::string message = bytes.substr(field.message_offset, end - field.message_offset);
+    const std::string name =
+        absl::StrCat(field.parameter.category, "_", field.parameter.number, "_", field.first.value);
+    files[name] += message;
+    const bool is_height = field.parameter == grib::Parameter{0, 3, 6};
+    if (is_height) continue;
+    files[name] = AsMember(message, 1) + AsMember(message, 2);
+  }
+  for (const auto& [name, content] : files) Write(name, content);
+  const std::string run = folder_.Path().filename().string();
+  const auto storms = CloudIn(folder_.Path().string(), StormFormats::BuiltIn());
+  EXPECT_THAT(storms, ElementsAre(::testing::Pair(run + "-mem01", ::testing::Gt(0.0)),
+                                  ::testing::Pair(run + "-mem02", ::testing::Gt(0.0))));
 }
 
 TEST(GribAir, LevelsBelowTheGroundAreEmpty) {

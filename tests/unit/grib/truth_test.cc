@@ -73,9 +73,9 @@ std::shared_ptr<const GribStorm> StormOf(const Time& time) {
     files.push_back(GribFileAt(path));
     indexes.push_back(*IndexOfGrib(*base::OpenBytes(path)));
   }
-  const auto storm = MakeGribStorm(time.paths[0], files, indexes);
-  EXPECT_TRUE(storm.ok()) << storm.status();
-  return storm.ok() ? *storm : nullptr;
+  const auto storms = MakeGribStorms(time.paths[0], files, indexes);
+  EXPECT_TRUE(storms.ok()) << storms.status();
+  return storms.ok() ? storms->front() : nullptr;
 }
 
 absl::Time ParsedTime(const std::string& text) {

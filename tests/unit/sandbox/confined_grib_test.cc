@@ -62,6 +62,38 @@ TEST_P(ConfinedGrib, IsReadAsInTheProgram) {
   ExpectSame(*own, *confined);
 }
 
+// A file may hold several runs or members. The reader counts their records one after the other.
+TEST(ConfinedGribStorms, ShareAFile) {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.File("both");
+  {
+    std::ofstream both(path, std::ios::binary);
+    for (const char* const name :
+         {"hrrr-native/hrrr.t21z.wrfnatf01.grib2", "gfs-0p25-like/gfs.t18z.pgrb2.0p25.f003",
+          "hrrr-native/hrrr.t21z.wrfnatf02.grib2"}) {
+      both << std::ifstream(kShared / name, std::ios::binary).rdbuf();
+    }
+  }
+  const auto files = Files();
+  const auto own = storm_files::StormFormats::BuiltIn().Describe(path);
+  const auto confined = files->Describe(path);
+  ASSERT_TRUE(own.ok()) << own.status();
+  ASSERT_TRUE(confined.ok()) << confined.status();
+  ASSERT_EQ(own->others.size(), 1U);
+  ASSERT_EQ(confined->others.size(), 1U);
+  ExpectSame(*own, *confined);
+  ExpectSame(own->others[0], confined->others[0]);
+  const std::vector<storm_files::StormFile> storms = StormsOf(*confined);
+  ASSERT_EQ(storms.size(), 2U);
+  EXPECT_EQ(storms[0].times.size(), 1U);
+  EXPECT_EQ(storms[1].times.size(), 2U);
+  EXPECT_EQ(storms[1].first_record, 1U);
+  ExpectSame(own->others[0], storms[1]);
+  EXPECT_TRUE(storms[1].reader->Read(1, std::nullopt, {}).ok());
+  EXPECT_EQ(storms[1].reader->Read(2, std::nullopt, {}).status().code(),
+            absl::StatusCode::kDataLoss);
+}
+
 TEST(ConfinedGribParts, AreReadTogether) {
   std::vector<std::string> paths;
   for (const auto& entry : std::filesystem::directory_iterator(kShared / "icon-d2-like")) {

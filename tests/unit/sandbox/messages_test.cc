@@ -146,12 +146,17 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   expected.assumptions = {"one", "two"};
   expected.part = {.of = "part", .at_all_times = true};
   expected.parts = {"/storms/a.nc", "/storms/b.nc"};
+  expected.others.resize(2);
+  expected.others[0].member = "mem06";
+  expected.others[1].times = {absl::FromUnixSeconds(7)};
+  expected.first_record = 3;
   expected.version = expected.id = expected.device = 10;
   expected.modified_ns = 15;
   const storm_files::StormFile received = Sent(expected);
   const auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, run_start,
                latitude_deg, longitude_deg, middles, projection, projections, member, assumptions,
-               part, parts, reader, version, id, device, modified_ns] = received;
+               part, parts, reader, others, first_record, version, id, device, modified_ns] =
+      received;
   EXPECT_EQ(cells, expected.cells);
   EXPECT_EQ(dx_m, expected.dx_m);
   EXPECT_EQ(dy_m, expected.dy_m);
@@ -171,10 +176,14 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   EXPECT_EQ(assumptions, expected.assumptions);
   EXPECT_EQ(part.of, expected.part.of);
   EXPECT_EQ(part.at_all_times, expected.part.at_all_times);
+  ASSERT_EQ(others.size(), 2U);
+  EXPECT_EQ(others[0].member, "mem06");
+  EXPECT_EQ(others[1].times, expected.others[1].times);
   // The server sets the other members itself.
   EXPECT_EQ(path, "");
   EXPECT_TRUE(parts.empty());
   EXPECT_EQ(reader, nullptr);
+  EXPECT_EQ(first_record, 0U);
   for (const std::uint64_t number : {version, id, device}) EXPECT_EQ(number, 0U);
   EXPECT_EQ(modified_ns, 0);
 }
