@@ -160,13 +160,9 @@ void FakeService::Answer(Call& call, const v1::InteractRequest& request) {
   }
   if (request.has_update_scene() && answers_scenes) {
     v1::InteractResponse response;
-    if (answer_scene) {
-      response = answer_scene(request);
-    } else {
-      response.mutable_scene_taken()->set_request_id(request.request_id());
-      response.mutable_scene_taken()->set_scene_revision(
-          request.update_scene().expected_revision() + 1);
-    }
+    response.mutable_scene_taken()->set_request_id(request.request_id());
+    response.mutable_scene_taken()->set_scene_revision(request.update_scene().expected_revision() +
+                                                       1);
     call.Write(response);
   }
   if (!request.has_join()) return;

@@ -52,10 +52,7 @@ class FakeService final : public v1::ThunderheadService::Service {
   // Ends the newest call.
   void EndCall(const grpc::Status& status);
 
-  // Makes the response to an update of the scene. The default accepts the update. The callback
-  // receives the request with its expected revision.
-  std::function<v1::InteractResponse(const v1::InteractRequest&)> answer_scene;
-  bool answers_scenes = true;
+  bool answers_scenes = true;  // accepts each update of the scene at once
   // Makes the response to the first scene of a session. The default accepts it.
   std::function<grpc::Status(const v1::Scene&)> answer_opening;
   // The response's `durable` for the opened sessions; no value leaves the field unset.

@@ -4,7 +4,8 @@
 #pragma once
 
 #include <chrono>
-#include <random>
+#include <functional>
+#include <utility>
 
 namespace thunderhead::client {
 
@@ -13,7 +14,10 @@ class BackOff {
   static constexpr std::chrono::milliseconds kFirstBound{1000};
   static constexpr std::chrono::milliseconds kLongestBound{8000};
 
-  explicit BackOff(unsigned seed = std::random_device{}()) : random_(seed) {}
+  // Draws the random numbers from a seed that differs between clients.
+  BackOff();
+  // `random` returns a number from 0 to 1.
+  explicit BackOff(std::function<double()> random) : random_(std::move(random)) {}
 
   // Returns the delay before the next attempt. The delay is at least `least`, the minimum delay
   // that the server asked for.
@@ -23,7 +27,7 @@ class BackOff {
   int attempts() const { return attempts_; }
 
  private:
-  std::mt19937 random_;
+  std::function<double()> random_;
   int attempts_ = 0;
 };
 

@@ -4,7 +4,7 @@ namespace thunderhead::client {
 
 std::optional<int> Playback::Toggle(int index, int count) {
   playing_ = !playing_ && count > 1;
-  last_step_ = {};
+  last_step_.reset();
   if (playing_ && !loops && index >= count - 1) return 0;
   return {};
 }
@@ -15,7 +15,8 @@ int Playback::Step(int index, int by, int count) {
 
 std::optional<int> Playback::Advance(int index, int count, bool shown, TimePoint now) {
   const std::chrono::duration<float> interval(1.0F / times_per_second);
-  if (!playing_ || !shown || now - last_step_ < interval) return {};
+  const bool due = !last_step_ || now - *last_step_ >= interval;
+  if (!playing_ || !shown || !due) return {};
   if (count < 2 || (!loops && index >= count - 1)) {
     playing_ = false;
     return {};

@@ -30,7 +30,7 @@ class Playback {
 
  private:
   bool playing_ = false;
-  TimePoint last_step_{};
+  std::optional<TimePoint> last_step_;
 };
 
 }  // namespace thunderhead::client

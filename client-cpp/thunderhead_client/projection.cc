@@ -27,9 +27,12 @@ struct Projection {
         forward(Of(view.forward())),
         right(Of(view.right())),
         up(Of(view.up())),
+        has_eye(view.has_eye()),
         parallel(view.parallel()) {}
 
-  bool IsWhole() const { return Dot(right, right) > 0.0 && Dot(up, up) > 0.0; }
+  bool IsWhole() const {
+    return has_eye && Dot(forward, forward) > 0.0 && Dot(right, right) > 0.0 && Dot(up, up) > 0.0;
+  }
   Vector3 FromEye(const v1::Position& position) const {
     const Vector3 point_m = Of(position);
     return {point_m[0] - eye_m[0], point_m[1] - eye_m[1], point_m[2] - eye_m[2]};
@@ -45,6 +48,7 @@ struct Projection {
   }
 
   Vector3 eye_m, forward, right, up;
+  bool has_eye;
   bool parallel;
 };
 

@@ -1,6 +1,6 @@
 #include "thunderhead_client/scene_sync.h"
 
-#include <utility>
+#include <algorithm>
 
 namespace thunderhead::client {
 namespace {
@@ -21,6 +21,7 @@ void SceneSync::Edited(Edit edit) {
   edits_.push_back({++last_edit_, std::move(edit)});
   unsent_ = true;
   if (edits_.size() > kMaxEdits) Merge();
+  GiveUp();
 }
 
 void SceneSync::Merge() {
@@ -31,7 +32,7 @@ void SceneSync::Merge() {
 void SceneSync::Told(const v1::Scene& scene, std::uint64_t revision) {
   if (told_ && revision < told_->revision) return;
   told_ = Version{scene, revision};
-  if (!revision_ || revision > *revision_) rests_until_.reset();
+  if (!revision_ || revision > *revision_) stale_until_.reset();
   AdoptTold();
 }
 
@@ -52,25 +53,31 @@ void SceneSync::Rejoined() {
   told_.reset();
   sent_.clear();
   drains_ = false;
-  rests_until_.reset();
+  discards_ = false;
+  stale_until_.reset();
+  busy_until_.reset();
   unsent_ = !edits_.empty();
 }
 
-bool SceneSync::Discard() {
-  if (edits_.empty()) return false;
+void SceneSync::Discard() {
+  discards_ = true;
+  GiveUp();
+}
+
+void SceneSync::GiveUp() {
+  if (!discards_ || !sent_.empty() || edits_.empty()) return;
   edits_.clear();
-  sent_.clear();
-  drains_ = false;
   unsent_ = false;
   if (told_) Rebase(*told_);
-  return true;
+  discarded_ = true;
 }
 
 std::optional<SceneSync::Outgoing> SceneSync::Next(TimePoint now) {
   if (edits_.empty() || !revision_) return {};
-  if (rests_until_ && now < *rests_until_) return {};
+  if ((stale_until_ && now < *stale_until_) || (busy_until_ && now < *busy_until_)) return {};
   if (!sent_.empty() && (drains_ || !unsent_ || sent_.size() >= kMaxInFlight)) return {};
-  rests_until_.reset();
+  stale_until_.reset();
+  busy_until_.reset();
   Outgoing outgoing{++last_ticket_, scene_, sent_.empty() ? *revision_ : awaited_};
   awaited_ = outgoing.expected_revision + 1;
   sent_[outgoing.ticket] = {last_edit_, outgoing.expected_revision, scene_};
@@ -79,7 +86,9 @@ std::optional<SceneSync::Outgoing> SceneSync::Next(TimePoint now) {
 }
 
 std::optional<SceneSync::TimePoint> SceneSync::WakeAt() const {
-  return edits_.empty() ? std::nullopt : rests_until_;
+  if (edits_.empty()) return {};
+  if (stale_until_ && busy_until_) return std::max(*stale_until_, *busy_until_);
+  return stale_until_ ? stale_until_ : busy_until_;
 }
 
 void SceneSync::Taken(std::uint64_t ticket, std::uint64_t revision) {
@@ -110,12 +119,12 @@ void SceneSync::Refused(std::uint64_t ticket, Refusal refusal, TimePoint now) {
       Drop(last_edit);
       if (told_) Rebase(*told_);
     } else if (refusal == Refusal::kBusy) {
-      rests_until_ = now + kBusyRest;
+      busy_until_ = now + kBusyRest;
     } else if (!told_ || !revision_ || told_->revision <= *revision_) {
       // The server normally sends the newer scene soon, and the edits are then applied to that
       // scene. If the newer scene does not arrive, the client sends its own scene again after
       // kStaleRest.
-      rests_until_ = now + kStaleRest;
+      stale_until_ = now + kStaleRest;
     }
   }
   Answered();
@@ -125,6 +134,7 @@ void SceneSync::Answered() {
   if (!sent_.empty()) return;
   drains_ = false;
   unsent_ = !edits_.empty();
+  GiveUp();
   AdoptTold();
 }
 

@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "thunderhead/v1/scene.pb.h"
@@ -43,14 +44,19 @@ class SceneSync {
   bool Settled() const { return edits_.empty(); }
 
   void Edited(Edit edit);
-  // Reports the session's scene and its revision, as the server sent them.
+  // Reports the session's scene and its revision, as the server sent them. A scene that is older
+  // than the newest known one is ignored.
   void Told(const v1::Scene& scene, std::uint64_t revision);
   // Reports that the client has joined a session. The next scene from the server is adopted,
   // whatever its revision.
   void Rejoined();
-  // Discards the edits that the server has not accepted, because another viewer steers. Returns
-  // true if there were any.
-  bool Discard();
+  // Discards edits while another viewer steers, until Keep(). Scenes in flight wait for their
+  // response, because they may have arrived before the other viewer took control.
+  void Discard();
+  // Stops discarding edits, because this client steers.
+  void Keep() { discards_ = false; }
+  // Returns true once after edits were discarded.
+  bool TakeDiscarded() { return std::exchange(discarded_, false); }
 
   // Returns the next scene to send, if one is due now.
   std::optional<Outgoing> Next(TimePoint now);
@@ -80,6 +86,7 @@ class SceneSync {
   void AdoptTold();
   void Drop(std::uint64_t last_edit);
   void Answered();
+  void GiveUp();
   void Merge();
 
   v1::Scene scene_;
@@ -92,9 +99,14 @@ class SceneSync {
   std::uint64_t last_ticket_ = 0;
   // Revision that the last sent scene will get if the server accepts it.
   std::uint64_t awaited_ = 0;
-  bool drains_ = false;  // a scene was refused or got an unexpected revision, so nothing is sent
-                         // until all responses are in
-  std::optional<TimePoint> rests_until_;
+  bool drains_ = false;     // a scene was refused or got an unexpected revision, so nothing is sent
+                            // until all responses are in
+  bool discards_ = false;   // another viewer steers
+  bool discarded_ = false;  // edits were discarded since TakeDiscarded()
+  // After a refusal as stale, nothing is sent before the server's newer scene is known or this time
+  // has come.
+  std::optional<TimePoint> stale_until_;
+  std::optional<TimePoint> busy_until_;  // the server has too much to do
 };
 
 }  // namespace thunderhead::client

@@ -78,6 +78,9 @@ void Session::Take(Call& call, v1::InteractResponse& response) {
       default:
         break;
     }
+    // The responses to scenes that were sent before another viewer took control arrive later, so
+    // edits may be discarded after any message.
+    if (sync_.TakeDiscarded()) Say("Your last change was not made: another person is in control");
     Touch();
   }
   if (began) listener_.StreamBegan();
@@ -123,6 +126,7 @@ void Session::TakePresence(const v1::Presence& presence) {
   state_.presence = presence;
   if (state_.Steers()) {
     resumption_.End();
+    sync_.Keep();
     if (state_.looks_around) {
       state_.looks_around = false;
       outbox_.DropCamera();
@@ -138,8 +142,8 @@ void Session::TakePresence(const v1::Presence& presence) {
       v1::InteractRequest request;
       request.mutable_take_control();
       outbox_.Send(std::move(request));
-    } else if (resumption == ControlResumption::Outcome::kLost && sync_.Discard()) {
-      Say("Your last change was not made: another person is in control");
+    } else if (resumption == ControlResumption::Outcome::kLost) {
+      sync_.Discard();
     }
     if (state_.looks_around && !state_.MayLookAround()) state_.looks_around = false;
   }

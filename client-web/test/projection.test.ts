@@ -1,16 +1,9 @@
-// Tests of rays and places in a picture, strokes, and the picture's rectangle.
+// Tests of the view that the fake server gives a camera, strokes, and the picture's rectangle.
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { cameraOfPose } from "../src/core/camera";
 import { pictureBox, picturePointAt, placeInBox } from "../src/core/picture_box";
-import {
-  type Projection,
-  pointOnRay,
-  project,
-  projectionOf,
-  projectLine,
-  rayAt,
-} from "../src/core/projection";
+import { type Projection, project, projectionOf } from "../src/core/projection";
 import { simplifiedStroke, strokeLengthPx } from "../src/core/stroke";
 import { ViewSchema } from "../src/gen/thunderhead/v1/frame_pb";
 import { viewOfCamera } from "./fake_view";
@@ -23,7 +16,6 @@ const ORBIT = cameraOfPose({
   distanceM: 60_000,
   fieldOfViewDeg: 35,
 });
-const MAP = cameraOfPose({ kind: "topDown", centerM: [1000, 2000], widthM: 50_000 });
 
 function projectionFor(camera: typeof ORBIT): Projection {
   const projection = projectionOf(create(ViewSchema, viewOfCamera(camera, 16 / 9)));
@@ -32,24 +24,6 @@ function projectionFor(camera: typeof ORBIT): Projection {
 }
 
 describe("a projection", () => {
-  it.each([
-    ["perspective", ORBIT],
-    ["parallel", MAP],
-  ])("puts points of a ray where the ray comes from (%s)", (_, camera) => {
-    const projection = projectionFor(camera);
-    for (const [x, y] of [
-      [0, 0],
-      [-0.9, 0.4],
-      [0.7, -1],
-    ] as const) {
-      for (const times of [500, 40_000]) {
-        const seen = project(projection, pointOnRay(rayAt(projection, { x, y }), times));
-        expect(seen?.x).toBeCloseTo(x, 5);
-        expect(seen?.y).toBeCloseTo(y, 5);
-      }
-    }
-  });
-
   it("has the orbit's target in the middle, and what is up and right of it up and right", () => {
     const projection = projectionFor(ORBIT);
     const target = project(projection, [4000, -2000, 7000]);
@@ -58,43 +32,6 @@ describe("a projection", () => {
     expect(project(projection, [4000, -2000, 12_000])?.y).toBeGreaterThan(0.1);
     // Seen from the south-south-west, east is at the right.
     expect(project(projection, [9000, -2000, 7000])?.x).toBeGreaterThan(0.1);
-  });
-
-  it("scales by half the width of a map", () => {
-    const projection = projectionFor(MAP);
-    expect(project(projection, [26_000, 2000, 3000])?.x).toBeCloseTo(1, 6);
-    expect(project(projection, [1000, 2000 + (25_000 * 9) / 16, 0])?.y).toBeCloseTo(1, 6);
-  });
-
-  it("has no place for a point behind the eye, in perspective", () => {
-    const projection = projectionFor(ORBIT);
-    const behind = pointOnRay(rayAt(projection, { x: 0.2, y: 0.1 }), -100);
-    expect(project(projection, behind)).toBeUndefined();
-    const map = projectionFor(MAP);
-    expect(project(map, pointOnRay(rayAt(map, { x: 0.2, y: 0.1 }), -100))?.x).toBeCloseTo(0.2, 6);
-  });
-
-  it("cuts a line where it passes the eye", () => {
-    const projection = projectionFor(ORBIT);
-    const ray = rayAt(projection, { x: 0.5, y: 0 });
-    const other = rayAt(projection, { x: -0.5, y: 0 });
-    const line = [
-      pointOnRay(ray, 1000),
-      pointOnRay(ray, -1000),
-      pointOnRay(other, -1000),
-      pointOnRay(other, 1000),
-      pointOnRay(other, 2000),
-    ];
-    const parts = projectLine(projection, line);
-    expect(parts.map((part) => part.length)).toEqual([2, 3]);
-    expect(parts[0]?.[0]?.x).toBeCloseTo(0.5, 5);
-    expect(parts[1]?.at(-1)?.x).toBeCloseTo(-0.5, 5);
-    expect(projectLine(projection, [pointOnRay(ray, -5), pointOnRay(ray, -9)])).toEqual([]);
-  });
-
-  it("is unknown for a frame without a view", () => {
-    expect(projectionOf(undefined)).toBeUndefined();
-    expect(projectionOf(create(ViewSchema, { parallel: true }))).toBeUndefined();
   });
 });
 

@@ -1,4 +1,5 @@
-// Tests of the session's state for the person at the page, and of the keys that the page keeps.
+// Tests of what only the page shows of a session's state, and of the keys that the page keeps. The
+// shared cases (tests/clients/cases/session_state.json) test who may do what.
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 import { OwnKeys, trimmedName } from "../src/core/own_keys";
@@ -60,11 +61,8 @@ describe("a session's state", () => {
     expect(session.editBlock.value).toBe("Viewer 2 steers.");
   });
 
-  it("gives people without a name one", () => {
-    const session = joined(2n, Role.VIEWER);
-    expect(session.nameOf(person(7n))).toBe("Viewer 7");
-    expect(session.nameOf(person(1n, { role: Role.PRESENTER }))).toBe("Presenter");
-    expect(session.nameOfId(99n)).toBe("");
+  it("has no name for a person who has left", () => {
+    expect(joined(2n, Role.VIEWER).nameOfId(99n)).toBe("");
   });
 
   it("knows who asks, and who answers", () => {
@@ -80,43 +78,10 @@ describe("a session's state", () => {
     expect(teacher.iAsk.value).toBe(false);
   });
 
-  it("locks following and drawing for viewers alone", () => {
-    const rules = { followingLocked: true, viewersMayMark: false };
+  it("names the person for whom control is kept", () => {
     const viewer = joined(2n, Role.VIEWER);
-    viewer.takePresence(presence([TEACHER, person(2n)], 1n, rules));
-    expect([viewer.mayLookAround.value, viewer.mayMark.value]).toEqual([false, false]);
-    const teacher = joined(1n, Role.PRESENTER);
-    teacher.takePresence(presence([TEACHER], 2n, rules));
-    expect([teacher.mayLookAround.value, teacher.mayMark.value]).toEqual([true, true]);
-    viewer.takePresence(
-      presence([TEACHER, person(2n)], 1n, { followingLocked: false, viewersMayMark: true }),
-    );
-    expect([viewer.mayLookAround.value, viewer.mayMark.value]).toEqual([true, true]);
-  });
-
-  it("lets a viewer who steers point and draw, as the server does", () => {
-    const viewer = joined(2n, Role.VIEWER);
-    const rules = { viewersMayMark: false };
-    viewer.takePresence(presence([TEACHER, person(2n)], 2n, rules));
-    expect(viewer.mayMark.value).toBe(true);
-    viewer.takePresence(presence([TEACHER, person(2n)], 1n, rules));
-    expect(viewer.mayMark.value).toBe(false);
-  });
-
-  it("knows when who asks gets control at once", () => {
-    const viewer = joined(2n, Role.VIEWER);
-    const steers = (steeringId: bigint, rules: object, more: object = {}) => {
-      const told = presence([TEACHER, person(2n)], steeringId, rules);
-      viewer.takePresence({ ...told, ...more });
-      return viewer.steersWhoAsks.value;
-    };
-    expect(steers(0n, { viewersMaySteer: true })).toBe(true);
-    expect(steers(1n, { viewersMaySteer: true })).toBe(false);
-    expect(steers(0n, { viewersMaySteer: true }, { presenterAway: true })).toBe(false);
-    expect(steers(0n, { viewersMaySteer: true }, { awaited: person(3n) })).toBe(false);
+    viewer.takePresence({ ...presence([TEACHER, person(2n)], 0n), awaited: person(3n) });
     expect(viewer.editBlock.value).toBe("Control waits for Viewer 3 to come back.");
-    expect(steers(0n, { viewersMaySteer: false })).toBe(false);
-    expect(steers(0n, { viewersMaySteer: true, controlLocked: true })).toBe(false);
   });
 
   it("counts the others for whom the server draws a view of their own", () => {
@@ -147,19 +112,6 @@ describe("a session's state", () => {
     // The mark that waits to be sent again is not replaced.
     expect(session.pendingMarks.value).toEqual([pending(undefined, 4), pending(6n)]);
     expect(session.marks.value).toHaveLength(2);
-  });
-
-  it("puts the marks together from their changes", () => {
-    const session = joined(2n, Role.VIEWER);
-    const mark = (markId: bigint, viewerId = 1n) => create(MarkSchema, { markId, viewerId });
-    session.takeMarks(marks({ marks: [mark(1n), mark(2n), mark(3n)] }));
-    const change = { marks: [mark(2n, 5n), mark(4n)], erasedMarkIds: [1n, 9n], onlyChanges: true };
-    session.takeMarks(marks(change));
-    expect(session.marks.value).toEqual([mark(2n, 5n), mark(3n), mark(4n)]);
-    session.takeMarks(marks(change));
-    expect(session.marks.value, "told twice").toEqual([mark(2n, 5n), mark(3n), mark(4n)]);
-    session.takeMarks(marks({ marks: [mark(4n)] }));
-    expect(session.marks.value).toEqual([mark(4n)]);
   });
 
   it("says that it has ended, and forgets who was there", () => {

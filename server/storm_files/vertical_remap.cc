@@ -180,10 +180,10 @@ VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interf
   const HeightRange range = RangeOf(interface_height_m);
   // Heights are in single precision, so differences of centimetres are rounding.
   constexpr double kSame_m = 0.05;
-  // More cells than this fit in no memory. The limit keeps the number within an int.
-  constexpr double kMostCells = 1e8;
+  // More layers than this fit in no memory. The limit keeps the number within an int.
+  constexpr double kMostLayers = 1e8;
   const auto cells_of = [&](double extent_m) {
-    return static_cast<int>(std::min(std::ceil(extent_m / grid.spacing_m), kMostCells));
+    return static_cast<int>(std::min(std::ceil(extent_m / grid.spacing_m), kMostLayers));
   };
   VerticalGrid extended = grid;
   if (range.low_m < grid.low_m - kSame_m) {

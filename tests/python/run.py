@@ -38,6 +38,7 @@ def main() -> int:
             # users would.
             [*mypy, "-p", "thunderhead"],
             [*mypy, *map(str, sorted((ROOT / "client-python/examples").glob("*.py")))],
+            [sys.executable, str(ROOT / "client-python/tests/test_cases.py")],
             [sys.executable, str(ROOT / "client-python/tests/test_client.py"), *sys.argv[1:]],
         ]
         return max(subprocess.run(step, env=environment, cwd=folder).returncode for step in steps)

@@ -82,7 +82,7 @@ export class Playback {
     const intervalMs = 1000 / this.timesPerSecond.value;
     const due = this.#lastStepMs === undefined || nowMs - this.#lastStepMs >= intervalMs;
     if (shown && due) {
-      if (!this.loops.value && this.#atEnd()) {
+      if (this.#steps.timeCount() < 2 || (!this.loops.value && this.#atEnd())) {
         this.pause();
         return;
       }

@@ -1,7 +1,7 @@
 // Projects world points into a picture, and returns the rays through its points. The projection
 // uses Frame.view, the camera of the shown frame. Picture coordinates: x is -1 at the left edge and
 // 1 at the right edge; y is -1 at the bottom and 1 at the top.
-import type { View } from "../gen/thunderhead/v1/frame_pb";
+import type { Vector, View } from "../gen/thunderhead/v1/frame_pb";
 
 export type Vec3 = readonly [number, number, number];
 
@@ -26,9 +26,10 @@ export interface WorldRay {
 // Minimum depth in front of a perspective camera. Nearer points have no position in the picture.
 const NEAR_M = 1;
 
+// Returns the projection of a view; undefined if the view is incomplete.
 export function projectionOf(view: View | undefined): Projection | undefined {
   const { eye, forward, right, up, parallel } = view ?? {};
-  if (eye === undefined || forward === undefined || right === undefined || up === undefined)
+  if (eye === undefined || !hasLength(forward) || !hasLength(right) || !hasLength(up))
     return undefined;
   return {
     eyeM: [eye.xM, eye.yM, eye.zM],
@@ -37,6 +38,10 @@ export function projectionOf(view: View | undefined): Projection | undefined {
     up: [up.x, up.y, up.z],
     parallel: parallel ?? false,
   };
+}
+
+function hasLength(vector: Vector | undefined): vector is Vector {
+  return vector !== undefined && (vector.x !== 0 || vector.y !== 0 || vector.z !== 0);
 }
 
 export function rayAt(projection: Projection, { x, y }: PicturePoint): WorldRay {
@@ -59,6 +64,7 @@ export function project(projection: Projection, pointM: Vec3): PicturePoint | un
 
 // Returns the parts of a line that are in front of the camera.
 export function projectLine(projection: Projection, pointsM: readonly Vec3[]): PicturePoint[][] {
+  if (pointsM.length === 0) return [];
   if (projection.parallel) return [pointsM.map((point) => place(projection, point, 1))];
   const parts: PicturePoint[][] = [];
   let part: PicturePoint[] = [];

@@ -39,6 +39,9 @@ export interface SyncSteps {
 // Several scenes may be in flight, so that a drag over a slow link need not wait for each response.
 // At a round trip of 150 ms the page sends 26 scenes a second.
 const MAX_IN_FLIGHT = 4;
+// If there are more edits than this, they are merged into one edit. They would otherwise accumulate
+// while the server does not answer.
+const MAX_EDITS = 256;
 const BUSY_REST_MS = 500;
 const STALE_REST_MS = 1000;
 
@@ -59,13 +62,14 @@ export class SceneSync {
   #completed = -1n;
   #told: { readonly scene: Scene; readonly revision: bigint } | undefined;
   #mayEdit = false;
-  // True after a refusal as stale. Nothing is sent before the server's newer scene is known.
-  #stale = false;
   #openingEdits = 0;
   // Set while another viewer steers. The function is called when edits are discarded.
   #onLost: (() => void) | undefined;
   #withdrawPaint: (() => void) | undefined;
-  #withdrawRest: (() => void) | undefined;
+  // Set after a refusal as stale. Nothing is sent before the server's newer scene is known.
+  #withdrawStale: (() => void) | undefined;
+  // Set after a refusal because the server is busy. Nothing is sent meanwhile.
+  #withdrawBusy: (() => void) | undefined;
 
   constructor(steps: SyncSteps) {
     this.#steps = steps;
@@ -91,12 +95,19 @@ export class SceneSync {
   // Records an edit of the page's scene.
   edited(edit: Edit): void {
     this.#edits.push(edit);
+    if (this.#edits.length > MAX_EDITS) this.#merge();
     this.#unsent = true;
     // Another viewer may already steer while the controls are not disabled yet. The edit is then
     // discarded.
     this.#giveUp();
     this.#schedule();
     this.#tellAgreed();
+  }
+
+  #merge(): void {
+    const whole = this.#steps.scene();
+    this.#edits = [() => whole];
+    this.#openingEdits = 0;
   }
 
   // Records that the page's scene is about to open a session.
@@ -118,7 +129,9 @@ export class SceneSync {
     this.#revision = -1n;
     this.#completed = -1n;
     this.#told = undefined;
+    this.#onLost = undefined;
     this.#endStale();
+    this.#endBusy();
     this.#tellAgreed();
   }
 
@@ -153,11 +166,13 @@ export class SceneSync {
     this.#onLost();
   }
 
-  // Reports the session's scene and its revision, as the server sent them.
+  // Reports the session's scene and its revision, as the server sent them. A scene that is older
+  // than the newest known one is ignored.
   told(scene: Scene, revision: bigint): void {
+    if (this.#told !== undefined && revision < this.#told.revision) return;
     this.#told = { scene, revision };
     if (revision > this.#completed) this.#completed = revision;
-    this.#endStale();
+    if (revision > this.#revision) this.#endStale();
     this.#adoptTold();
     this.#schedule();
     this.#tellAgreed();
@@ -165,7 +180,8 @@ export class SceneSync {
 
   dispose(): void {
     this.hold();
-    this.#withdrawRest?.();
+    this.#endStale();
+    this.#endBusy();
   }
 
   #adoptTold(): void {
@@ -180,10 +196,13 @@ export class SceneSync {
   }
 
   #endStale(): void {
-    if (!this.#stale) return;
-    this.#stale = false;
-    this.#withdrawRest?.();
-    this.#withdrawRest = undefined;
+    this.#withdrawStale?.();
+    this.#withdrawStale = undefined;
+  }
+
+  #endBusy(): void {
+    this.#withdrawBusy?.();
+    this.#withdrawBusy = undefined;
   }
 
   #rebase(scene: Scene, revision: bigint): void {
@@ -194,15 +213,17 @@ export class SceneSync {
   }
 
   #maySend(): boolean {
-    if (!this.#mayEdit || this.#stale || this.#edits.length === 0) return false;
+    const rests = this.#withdrawStale !== undefined || this.#withdrawBusy !== undefined;
+    if (!this.#mayEdit || rests || this.#edits.length === 0) return false;
+    // Every scene states the revision that it is based on. Without it, the last scene would replace
+    // what other viewers have changed.
+    if (this.#revision < 0n) return false;
     if (this.#inFlight === 0) return true;
-    // The expected revision of a further scene is known only if the session's revision is known.
-    const knows = this.#revision >= 0n && !this.#drains;
-    return knows && this.#unsent && this.#inFlight < MAX_IN_FLIGHT;
+    return !this.#drains && this.#unsent && this.#inFlight < MAX_IN_FLIGHT;
   }
 
   #schedule(): void {
-    if (!this.#maySend() || this.#withdrawRest !== undefined) return;
+    if (!this.#maySend()) return;
     this.#withdrawPaint ??= this.#steps.onNextPaint(() => {
       this.#withdrawPaint = undefined;
       void this.#send();
@@ -257,19 +278,18 @@ export class SceneSync {
       case "stale":
         // The newer scene is already known. It is adopted once all scenes are answered.
         if (this.#told !== undefined && this.#told.revision > this.#revision) break;
-        this.#stale = true;
         // The newer scene may never arrive, for example if the server cannot draw it. The wait is
         // therefore limited.
-        this.#withdrawRest ??= this.#steps.later(STALE_REST_MS, () => {
-          this.#withdrawRest = undefined;
-          this.#stale = false;
+        this.#withdrawStale ??= this.#steps.later(STALE_REST_MS, () => {
+          this.#withdrawStale = undefined;
           this.#schedule();
         });
         break;
       case "busy":
         this.#steps.refused(verdict.message);
-        this.#withdrawRest = this.#steps.later(BUSY_REST_MS, () => {
-          this.#withdrawRest = undefined;
+        this.#endBusy();
+        this.#withdrawBusy = this.#steps.later(BUSY_REST_MS, () => {
+          this.#withdrawBusy = undefined;
           this.#schedule();
         });
         break;
