@@ -668,7 +668,10 @@ TEST_F(GribStormTest, ReadsIconsTriangles) {
                         "are missing; add the files"));
   const auto index = grib::ReadIndex(*grib::testing::BytesIn(places));
   ASSERT_TRUE(index.ok()) << index.status();
-  EXPECT_EQ(GribPartOf(*index)->kind, GribPartKind::kInvariant);
+  const auto parts = GribPartsOf(*index);
+  ASSERT_TRUE(parts.ok()) << parts.status();
+  ASSERT_EQ(parts->size(), 1U);
+  EXPECT_EQ(parts->front().kind, GribPartKind::kInvariant);
 }
 
 TEST_F(GribStormTest, StatesThatHeightsReachHigherThanFields) {
