@@ -22,26 +22,6 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// Returns "+1 h" or "+70 min".
-std::string StepText(absl::Duration step) {
-  const auto minutes = static_cast<int>(absl::ToInt64Minutes(step));
-  if (minutes % 60 == 0) return absl::StrFormat("%+d h", minutes / 60);
-  return absl::StrFormat("%+d min", minutes);
-}
-
-// Returns "NCEP HRRR, run 2024-05-20 21:00 UTC, +1 h, mem03".
-std::string AboutText(const GribContents& contents) {
-  std::string about = absl::StrCat(
-      contents.model.name, ", run ",
-      absl::FormatTime("%Y-%m-%d %H:%M UTC", contents.origin.reference, absl::UTCTimeZone()));
-  const absl::Duration first = contents.times.front().time - contents.origin.reference;
-  const absl::Duration last = contents.times.back().time - contents.origin.reference;
-  absl::StrAppend(&about, ", ", StepText(first));
-  if (last != first) absl::StrAppend(&about, " to ", StepText(last));
-  if (!contents.member.empty()) absl::StrAppend(&about, ", ", contents.member);
-  return about;
-}
-
 // Places the cells of an unstructured grid by their latitudes and longitudes.
 absl::StatusOr<EvenColumns> PlaceGribCells(const GribStorm& storm) {
   const GribContents& contents = storm.contents;
@@ -120,7 +100,7 @@ StormFile DescribeGribStorm(std::shared_ptr<const GribStorm> storm) {
   for (const GribHydrometeor& hydrometeor : contents.times.front().hydrometeors) {
     file.fields.push_back(hydrometeor.hydrometeor);
   }
-  file.about = AboutText(contents);
+  file.about = contents.model.name;
   file.run = absl::StrCat(GribRunOf(contents.origin), ", process ", contents.process, ", ",
                           contents.level_kind);
   file.run_start = contents.origin.reference;

@@ -63,8 +63,8 @@ TEST(GenuineGrib, ReadsAnOldGfs) {
               ::testing::IsSupersetOf({HasSubstr("CLMR holds liquid and ice"),
                                        HasSubstr("relative humidity over water"),
                                        HasSubstr("kg per kg of the whole air")}));
-  EXPECT_THAT(file->about, HasSubstr("NCEP GFS, run "));
-  EXPECT_THAT(file->about, HasSubstr("+120 h"));
+  EXPECT_EQ(file->about, "NCEP GFS");
+  EXPECT_EQ(file->times.front() - *file->run_start, absl::Hours(120));
   const auto fields = file->reader->Read(0, std::nullopt, {});
   ASSERT_TRUE(fields.ok()) << fields.status();
   // The maximum of both phases together is 1.118e-3 at 350 hPa, where ice dominates.
@@ -191,7 +191,7 @@ TEST_F(GribStormTest, ReadsAWholeFile) {
   const auto file = Describe({});
   ASSERT_TRUE(file.ok()) << file.status();
   EXPECT_EQ(file->cells, glm::ivec3(2, 2, 4));
-  EXPECT_EQ(file->about, "NCEP HRRR, run 2024-05-20 21:00 UTC, +1 h");
+  EXPECT_EQ(file->about, "NCEP HRRR");
   EXPECT_EQ(file->run_start, absl::FromUnixSeconds(1716238800));  // 2024-05-20 21:00 UTC
   EXPECT_THAT(file->fields, ElementsAre(Hydrometeor::kCloud, Hydrometeor::kRain));
   EXPECT_THAT(file->assumptions, Contains(HasSubstr("kg per kg of dry air")));
@@ -236,7 +236,6 @@ TEST_F(GribStormTest, RunsAndMembersDiffer) {
   EXPECT_NE(first->run, later->run);
   EXPECT_NE(first->run, centre->run);
   EXPECT_EQ(member->member, "mem05");
-  EXPECT_THAT(member->about, HasSubstr(", mem05"));
   EXPECT_EQ(first->run, Describe({.forecast = 3})->run);
 }
 
@@ -246,7 +245,6 @@ TEST_F(GribStormTest, ReadsSeveralTimes) {
   ASSERT_TRUE(file.ok()) << file.status();
   ASSERT_EQ(file->times.size(), 3U);
   EXPECT_EQ(file->times[0] + absl::Hours(1), file->times[1]);
-  EXPECT_THAT(file->about, HasSubstr("+1 h to +3 h"));
   EXPECT_TRUE(file->reader->Read(2, std::nullopt, {}).ok());
 }
 
