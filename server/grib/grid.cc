@@ -203,6 +203,61 @@ absl::StatusOr<Grid> ReadLatitudeLongitude(const Octets& section, bool is_rotate
   return grid;
 }
 
+double Degrees(const Octets& section, std::size_t octet) {
+  return kMicrodegrees * static_cast<double>(section.Signed(octet, 4));
+}
+
+// Returns the longitude and latitude of a place, in degrees, on a grid whose equator and middle
+// meridian cross at `origin_deg` (Snyder, "Map projections", equations 5-7 and 5-8b).
+glm::dvec2 Rotated_deg(const glm::dvec2& place_deg, const glm::dvec2& origin_deg) {
+  const double east = glm::radians(place_deg.x - origin_deg.x);
+  const double north = glm::radians(place_deg.y);
+  const double origin = glm::radians(origin_deg.y);
+  const double across = std::cos(north) * std::sin(east);
+  const double along =
+      std::cos(origin) * std::cos(north) * std::cos(east) + std::sin(origin) * std::sin(north);
+  const double up =
+      std::cos(origin) * std::sin(north) - std::sin(origin) * std::cos(north) * std::cos(east);
+  return glm::degrees(glm::dvec2(std::atan2(across, along), std::asin(glm::clamp(up, -1.0, 1.0))));
+}
+
+// Reads NCEP's template 3.32769, which RAP and RRFS use: a rotated grid of latitudes and longitudes
+// that is described by its middle (octets 56 to 63). The places of the first and last point
+// (octets 47 to 54, 73 to 80) are those on the Earth.
+absl::StatusOr<Grid> ReadRotatedByMiddle(const Octets& section) {
+  constexpr std::size_t kOctets = 80;
+  if (section.Count() < kOctets) return BadGrid("has too few numbers");
+  Grid grid;
+  THUNDERHEAD_RETURN_IF_ERROR(ReadSize(section, grid));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadScanning(section.Unsigned(72, 1), grid));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Earth earth, EarthOf(section));
+  if (!earth.IsSphere()) return UnreadGrid("is rotated on an ellipsoid");
+  if (section.Unsigned(39, 4) != 0 && !section.IsMissing(39, 4)) {
+    return UnreadGrid("has another unit of angles than a microdegree");
+  }
+  const auto place_deg = [&](std::size_t latitude, std::size_t longitude) {
+    return glm::dvec2(Degrees(section, longitude), Degrees(section, latitude));
+  };
+  const glm::dvec2 middle_deg = place_deg(56, 60);
+  if (middle_deg.y < 0.0 || middle_deg.y > 90.0) {
+    return UnreadGrid("is rotated around a middle that is not in the northern hemisphere");
+  }
+  const glm::dvec2 first_deg = Rotated_deg(place_deg(47, 51), middle_deg);
+  const glm::dvec2 last_deg = Rotated_deg(place_deg(73, 77), middle_deg);
+  const glm::dvec2 range_deg = (last_deg - first_deg) * glm::dvec2(grid.from_east ? -1.0 : 1.0,
+                                                                   grid.from_south ? 1.0 : -1.0);
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      grid.step.x, StepOf(section, 64, kMicrodegrees, range_deg.x, grid.columns, "longitudes"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      grid.step.y, StepOf(section, 68, kMicrodegrees, range_deg.y, grid.rows, "latitudes"));
+  grid.wind_along_grid = (section.Unsigned(55, 1) & kAlongGrid) != 0;
+  SetCorner(first_deg, grid);
+  grid.projection =
+      absl::StrFormat("+proj=ob_tran +o_proj=longlat +o_lat_p=%.10g +o_lon_p=0 +lon_0=%.10g %s",
+                      90.0 - middle_deg.y, std::remainder(middle_deg.x, 360.0), earth.Text());
+  return grid;
+}
+
 // The places of a projection's numbers in section 3.
 struct ProjectedLayout {
   std::size_t least_octets;
@@ -232,10 +287,6 @@ absl::StatusOr<Grid> ReadProjected(const Octets& section, const ProjectedLayout&
   if (!first.has_value()) return BadGrid("has no place in its map projection");
   SetCorner(*first, grid);
   return grid;
-}
-
-double Degrees(const Octets& section, std::size_t octet) {
-  return kMicrodegrees * static_cast<double>(section.Signed(octet, 4));
 }
 
 absl::StatusOr<Grid> ReadMercator(const Octets& section) {
@@ -308,8 +359,7 @@ std::string NameOfTemplate(std::uint64_t number) {
     case 150:
       return "is HEALPix";
     case 32768:
-    case 32769:
-      return "is NCEP's rotated Arakawa grid (32768, 32769), whose rows may be offset";
+      return "is NCEP's rotated Arakawa E grid, whose rows are offset";
     default:
       return "is of a kind that is not known";
   }
@@ -355,6 +405,8 @@ absl::StatusOr<Grid> ReadGrid(std::span<const std::byte> section3) {
       return ReadLambert(section);
     case 101:
       return ReadTriangles(section);
+    case 32769:
+      return ReadRotatedByMiddle(section);
     default:
       return UnreadGrid(
           absl::StrCat(NameOfTemplate(number), " (template 3.", number, "), which is not read"));

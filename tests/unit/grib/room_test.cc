@@ -502,7 +502,7 @@ TEST(GribGrid, NamesGridsThatAreNotRead) {
   };
   EXPECT_THAT(error(40), HasSubstr("is Gaussian (template 3.40)"));
   EXPECT_THAT(error(100), HasSubstr("triangles of an icosahedron"));
-  EXPECT_THAT(error(32769), HasSubstr("32769"));
+  EXPECT_THAT(error(32768), HasSubstr("rows are offset (template 3.32768)"));
   EXPECT_THAT(error(4711), HasSubstr("of a kind that is not known (template 3.4711)"));
 }
 
@@ -546,6 +546,36 @@ TEST(GribGrid, TurnsRotatedGrids) {
   ASSERT_EQ(angles.size(), 9U);
   EXPECT_NEAR(angles[4], 0.0F, 1e-3F);    // in the middle, x points east
   EXPECT_GT(std::abs(angles[3]), 0.01F);  // at the western side, it does not
+}
+
+// The numbers are those of RAP's files on hybrid levels.
+TEST(GribGrid, ReadsRotatedGridsByTheirMiddle) {
+  const auto section = [](int last_latitude, int scanning) {
+    return AsBytes(testing::Section(
+        3, Number(0, 1) + Number(953 * 834, 4) + Number(0, 2) + Number(32769, 2) + Number(6, 1) +
+               Number(0, 15) + Number(953, 4) + Number(834, 4) + Number(0, 4) + Number(-1, 4) +
+               Number(-10'590'603, 4) + Number(220'914'415, 4) + Number(0x38, 1) +
+               Number(54'000'000, 4) + Number(254'000'000, 4) + Number(121'813, 4) +
+               Number(121'813, 4) + Number(scanning, 1) + Number(last_latitude, 4) +
+               Number(22'661'247, 4)));
+  };
+  const auto grid = ReadGrid(section(46'591'976, 0x40));
+  ASSERT_TRUE(grid.ok()) << grid.status();
+  EXPECT_TRUE(grid->wind_along_grid);
+  EXPECT_NEAR(grid->step.x, 0.1218, 1e-4);
+  EXPECT_NEAR(grid->south_west.x, -0.5 * 952 * 0.1218, 0.03);
+  EXPECT_NEAR(grid->south_west.y, -0.5 * 833 * 0.1218, 0.03);
+  const storm_files::ColumnPlaces places = PlacesOf(*grid);
+  const auto even = MakeEven(places);
+  ASSERT_TRUE(even.ok()) << even.status();
+  EXPECT_NEAR(even->middle.latitude_deg, 54.0, 0.03);
+  EXPECT_NEAR(even->middle.longitude_deg, -106.0, 0.06);
+  // The distance of two columns in the middle is that of two rows everywhere.
+  EXPECT_NEAR(even->longest_m.x, 6'371'229.0 * 0.1218 * std::numbers::pi / 180.0, 15.0);
+  EXPECT_THAT(std::string(ReadGrid(section(-46'591'976, 0x40)).status().message()),
+              HasSubstr("degrees apart, but its corners say"));
+  EXPECT_THAT(std::string(ReadGrid(section(46'591'976, 0)).status().message()),
+              HasSubstr("but its corners say -0.12"));
 }
 
 }  // namespace
