@@ -21,6 +21,7 @@
 #include "service/messages/limits_check.h"
 #include "service/messages/scene_messages.h"
 #include "service/messages/technique_messages.h"
+#include "storm_files/grib_parameters.h"
 #include "storm_files/storm_format.h"
 #include "tests/service/scene_fields.h"
 #include "tests/support/synthetic_cf.h"
@@ -94,6 +95,9 @@ TEST(HydrometeorToy, IsReadFromEveryFormat) {
     EXPECT_EQ(fields.fields[0].hydrometeor, Hydrometeor::kDust);
     EXPECT_THAT(fields.fields[0].concentration_kg_per_m3, Contains(Gt(5e-4F)));
   }
+  const storm_files::GribMeaning in_grib = storm_files::MeaningOf({0, 20, 2});
+  EXPECT_EQ(in_grib.kind, storm_files::GribKind::kAmount);
+  EXPECT_EQ(in_grib.hydrometeor, Hydrometeor::kDust);
 }
 
 TEST(HydrometeorToy, IsDescribedToClients) {

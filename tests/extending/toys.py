@@ -82,6 +82,8 @@ TOYS = {
         after("wrf_metadata.cc", '"QGRAUP", "QHAIL"', ', "QDUST"'),
         after("cf_names.cc", 'Named{"hail", Hydrometeor::kHail},\n', '    Named{"dust", Hydrometeor::kDust},\n'),
         after("cf_names.cc", 'Named{"qhail", Hydrometeor::kHail},\n', '    Named{"qdust", Hydrometeor::kDust},\n'),
+        after("grib_parameters.cc", 'Density(Hydrometeor::kHail), "HADEN", nullptr, nullptr},\n',
+              '    Row{{0, 20, 2}, Ratio(Hydrometeor::kDust), "MASSMR", nullptr, nullptr},\n'),
     ]),
     "parameter": Toy("A parameter of a scene", [
         after("scene.proto", "  Ground ground = 13;\n",
