@@ -5,6 +5,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 
@@ -296,6 +297,13 @@ absl::StatusOr<CfAxis> ReadHeightAxis(const netcdf::NetcdfFile& file,
   THUNDERHEAD_ASSIGN_OR_RETURN(WrittenAxis written,
                                ReadWritten(file, dimension, axis.units_per_written, 0.0));
   THUNDERHEAD_RETURN_IF_ERROR(TakeFaces(file, std::move(written), CfDirection::kZ, 0.0, axis));
+  if (sign < 0.0 && axis.faces.back() <= 0.0) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "%s: the coordinate %s has positive = 'down', so its layers lie %g to %g m "
+        "below sea level; "
+        "write 'up' if they are heights",
+        file.Path(), described.name, std::abs(axis.faces.back()), std::abs(axis.faces.front())));
+  }
   return axis;
 }
 

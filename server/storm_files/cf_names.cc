@@ -148,8 +148,8 @@ std::optional<CfQuantity> FromName(const CfDescription& variable) {
   const std::string name = absl::AsciiStrToLower(variable.name);
   const std::string long_name = absl::AsciiStrToLower(variable.long_name);
   CfQuantity quantity;
-  // DALES writes specific contents, and says so here.
-  quantity.of_moist_air = Says(long_name, "mass fraction") || Says(long_name, "specific humidity");
+  // DALES and ECMWF write specific contents, and say so here.
+  quantity.of_moist_air = Says(long_name, "mass fraction") || Says(long_name, "specific");
   for (const Named& each : kVariables) {
     if (each.name != name || !Says(long_name, each.long_name)) continue;
     quantity.hydrometeor = each.hydrometeor;
@@ -205,9 +205,9 @@ void ApplyUnits(const std::string& units, CfQuantity* quantity) {
 }
 
 // Returns whether only the variable's name says what it holds. ICON repeats some names in the
-// attribute standard_name.
+// attribute standard_name, and cfgrib writes "unknown" there.
 bool HasPlainName(const CfDescription& variable) {
-  return variable.standard_name.empty() ||
+  return variable.standard_name.empty() || variable.standard_name == "unknown" ||
          absl::EqualsIgnoreCase(variable.standard_name, variable.name);
 }
 

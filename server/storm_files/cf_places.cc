@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -169,9 +170,18 @@ ColumnPlaces PlacesInDegrees(const netcdf::NetcdfFile& file, const std::string& 
   return places;
 }
 
-bool IsEarthDegrees(const netcdf::NetcdfFile& file, const CfAxis& x, const CfAxis& y) {
+// Returns whether the axes are latitudes and longitudes of the Earth. Those of a rotated pole are
+// named so, or the field's grid mapping says so.
+bool IsEarthDegrees(const netcdf::NetcdfFile& file, const std::string& field, const CfAxis& x,
+                    const CfAxis& y) {
+  std::string mapping;
+  const bool is_mapped_otherwise =
+      MappingOf(file, field, mapping).has_value() &&
+      absl::StartsWith(file.TextOrEmpty(mapping, "grid_mapping_name"), "rotated_");
   const auto rotated = [&](const CfAxis& axis) {
-    return absl::StartsWith(file.TextOrEmpty(axis.coordinate, "standard_name"), "grid_");
+    const std::string name = absl::AsciiStrToLower(axis.coordinate);
+    return is_mapped_otherwise || name == "rlon" || name == "rlat" ||
+           absl::StartsWith(file.TextOrEmpty(axis.coordinate, "standard_name"), "grid_");
   };
   return x.unit == CfAxisUnit::kDegrees && y.unit == CfAxisUnit::kDegrees && !rotated(x) &&
          !rotated(y);
@@ -321,7 +331,7 @@ absl::StatusOr<CfPlaces> PlaceColumns(const netcdf::NetcdfFile& file, const std:
                                       const CfDimensions& dimensions, const CfPlacing& at,
                                       CfAxis& x, CfAxis& y) {
   CfPlaces places;
-  if (IsEarthDegrees(file, x, y)) {
+  if (IsEarthDegrees(file, field, x, y)) {
     THUNDERHEAD_RETURN_IF_ERROR(
         MakeColumnsEven(file, PlacesInDegrees(file, field, x, y), at, places));
     return places;

@@ -67,9 +67,12 @@ std::vector<float> InterfacesBetween(const std::vector<float>& middles_m,
       if (!std::isnan(below) && !std::isnan(above)) {
         height_m = 0.5F * (below + above);
       } else if (!std::isnan(above)) {
-        height_m = above - 0.5F * (middle(face + 1, column) - above);
+        // The layer of the lowest level reaches the ground, unless the levels begin far above it.
+        constexpr float kFar = 1.5F;
+        const float step_m = middle(face + 1, column) - above;
+        height_m = above - 0.5F * step_m;
         const float ground = ground_m.empty() ? kMissing : ground_m[column];
-        if (ground < above) height_m = ground;
+        if (ground < above && !(above - ground > kFar * step_m)) height_m = ground;
       } else if (!std::isnan(below)) {
         const float lower_m = interfaces[static_cast<std::size_t>(face - 1) * columns + column];
         height_m = 2.0F * below - lower_m;

@@ -72,15 +72,16 @@ std::optional<ColumnPlaces> InProjection(const ColumnPlaces& listed,
   return found;
 }
 
-// Returns whether the domain is long enough, along both axes, for its places to give its size.
+// Returns whether the domain is long enough, along both axes, for its places to give its size. If a
+// place is missing, it is, so that the missing place becomes an error later.
 bool IsMeasurable(const ColumnPlaces& listed) {
   const auto place = [&](std::size_t i) {
     return volume::EarthPlace{listed.latitude_deg[i], listed.longitude_deg[i]};
   };
   const auto width = static_cast<std::size_t>(listed.columns.x);
   const std::size_t last_row = listed.latitude_deg.size() - width;
-  return GreatCircle_m(place(0), place(width - 1), kEarth_m) >= kLeastLength_m &&
-         GreatCircle_m(place(0), place(last_row), kEarth_m) >= kLeastLength_m;
+  return !(GreatCircle_m(place(0), place(width - 1), kEarth_m) < kLeastLength_m) &&
+         !(GreatCircle_m(place(0), place(last_row), kEarth_m) < kLeastLength_m);
 }
 
 }  // namespace
@@ -104,6 +105,16 @@ absl::StatusOr<std::optional<ColumnPlaces>> ReadWrfColumns(const netcdf::NetcdfF
     return even;
   }
   return listed;
+}
+
+absl::StatusOr<double> ReadMeanMapFactor(const netcdf::NetcdfFile& file,
+                                         const glm::ivec2& columns) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> factors,
+                               ReadColumns(file, "MAPFAC_M", columns, 0));
+  double sum = 0.0;
+  for (const float factor : factors) sum += factor;
+  const double mean = sum / static_cast<double>(std::max<std::size_t>(factors.size(), 1));
+  return mean > 0.0 && std::isfinite(mean) ? mean : 1.0;
 }
 
 }  // namespace thunderhead::storm_files

@@ -29,4 +29,8 @@ absl::StatusOr<std::optional<ColumnPlaces>> ReadWrfColumns(const netcdf::NetcdfF
                                                            const glm::ivec2& columns,
                                                            std::size_t record);
 
+// Returns the mean map factor (MAPFAC_M) of the columns at the first time: a length on the model's
+// map divided by the true length. Returns 1 if the file has none, or one that is not positive.
+absl::StatusOr<double> ReadMeanMapFactor(const netcdf::NetcdfFile& file, const glm::ivec2& columns);
+
 }  // namespace thunderhead::storm_files

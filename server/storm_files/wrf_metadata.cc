@@ -13,6 +13,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
 #include "base/status.h"
@@ -370,16 +371,33 @@ absl::Status ReadProjections(const netcdf::NetcdfFile& file, WrfMetadata& metada
   return absl::OkStatus();
 }
 
+// Makes true distances of DX and DY, which are lengths on the model's map, without the places of
+// columns.
+absl::Status DivideByMapFactor(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
+  // A factor this close to 1 changes no distance noticeably.
+  constexpr double kUnnoticed = 1e-3;
+  if (metadata.place.idealised) return absl::OkStatus();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const double factor,
+                               ReadMeanMapFactor(file, glm::ivec2(metadata.cells)));
+  if (std::abs(factor - 1.0) < kUnnoticed) return absl::OkStatus();
+  metadata.nominal_m /= factor;
+  metadata.dx_m = metadata.nominal_m.x;
+  metadata.dy_m = metadata.nominal_m.y;
+  metadata.assumptions.push_back(absl::StrFormat(
+      "The distances between columns are DX and DY divided by the mean map factor %.4g.", factor));
+  return absl::OkStatus();
+}
+
 // Measures the true distances between columns, and finds columns that are even.
 absl::Status MeasureColumns(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
   metadata.nominal_m = {metadata.dx_m, metadata.dy_m};
   WrfPlace& place = metadata.place;
-  if (!place.middle.has_value() || place.latitude.empty()) return absl::OkStatus();
+  if (!place.middle.has_value() || place.latitude.empty()) return DivideByMapFactor(file, metadata);
   metadata.columns = {place.latitude, place.longitude, place.projection};
   const glm::ivec2 columns(metadata.cells);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<ColumnPlaces> places,
                                ReadWrfColumns(file, metadata.columns, columns, 0));
-  if (!places.has_value()) return absl::OkStatus();
+  if (!places.has_value()) return DivideByMapFactor(file, metadata);
   absl::StatusOr<EvenColumns> even = MakeEven(*places);
   if (!even.ok()) return base::Annotate(even.status(), file.Path());
   metadata.places = *places;

@@ -180,7 +180,7 @@ class MapTest(ProductTest):
     def test_an_idealised_run_has_metres_and_no_place(self) -> None:
         tiny = ("--size", "64x36", "--quality", "fast", "--camera", "top-down")
         said = self.render(SAMPLE, self.folder / "ideal.tif", *tiny, code=64)
-        self.assertIn("no place on Earth", said)
+        self.assertIn("needs the storm's place on Earth", said)
         self.assertFalse((self.folder / "ideal.tif").exists())
         self.render(SAMPLE, self.folder / "ideal.png", *tiny, "--world-file")
         width, _, _, height, _, _ = (float(line) for line in (self.folder / "ideal.pgw").read_text().split())

@@ -320,6 +320,16 @@ TEST_F(CfLayouts, RotatedGridsHaveTheirPlace) {
   EXPECT_NEAR(info_.longitude_deg.value(), 23.94830, 1e-3);
   EXPECT_NEAR((*fields)->grid.spacing_m.y, 1111.95, 0.5);
   EXPECT_NEAR((*fields)->grid.spacing_m.x, 1111.95 * std::cos(5.0 * M_PI / 180.0), 0.5);
+  // The mapping alone says that the axes are rotated, and so do their names alone.
+  for (testing::CfCoordinate* axis : {&file.coordinates[0], &file.coordinates[1]}) {
+    axis->attributes.erase("standard_name");
+  }
+  ASSERT_TRUE(Read(file).ok());
+  EXPECT_NEAR(info_.latitude_deg.value(), 50.98145, 1e-3);
+  SyntheticCf unmapped = file;
+  unmapped.variables[0].attributes.erase("grid_mapping");
+  ASSERT_TRUE(Read(unmapped).ok());
+  EXPECT_FALSE(info_.latitude_deg.has_value());
   file.number_attributes["crs"].erase("grid_north_pole_latitude");
   ExpectError(file, "the grid mapping crs has no attribute grid_north_pole_latitude");
 }

@@ -133,6 +133,9 @@ TEST_F(CfReader, DepthsPointDown) {
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_EQ((*fields)->grid.low_corner_m.z, 0.0);
   ExpectValues(**fields);
+  // Heights that are marked as depths would turn the storm upside down below the sea.
+  file.coordinates[2].values = {25.0, 75.0};
+  ExpectError(file, "its layers lie 0 to 100 m below sea level");
 }
 
 // The names are meaningless. Each axis is identified by a different attribute.

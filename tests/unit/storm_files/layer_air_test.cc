@@ -59,6 +59,9 @@ TEST(InterfacesBetween, LieHalfWayAndBeginAtTheGround) {
     EXPECT_THAT(faces({100.0F, 300.0F, 700.0F}, ground_m),
                 ElementsAre(0.0F, 200.0F, 500.0F, 900.0F));
   }
+  // Levels that begin far above the ground have no layer between it and the lowest level.
+  EXPECT_THAT(faces({3000.0F, 3400.0F, 3800.0F}, {20.0F}),
+              ElementsAre(2800.0F, 3200.0F, 3600.0F, 4000.0F));
   // Levels under the ground may have no heights.
   EXPECT_THAT(faces({missing, 300.0F, 700.0F}, {250.0F}),
               ElementsAre(IsNan(), 250.0F, 500.0F, 900.0F));

@@ -213,6 +213,29 @@ TEST_F(WrfColumns, IdealisedRunsAndShortDomainsKeepDx) {
   }
 }
 
+TEST_F(WrfColumns, TheMapFactorGivesTheDistancesOfShortDomains) {
+  SyntheticWrf wrf = Nest();
+  wrf.columns.clear();
+  wrf.dx_m = wrf.dy_m = 10.0;
+  wrf.columns["MAPFAC_M"] = [](const WrfCell& cell) { return cell.x % 2 == 0 ? 1.9 : 2.1; };
+  const StormFile file = Describe(wrf);
+  EXPECT_NEAR(file.dx_m, 5.0, 1e-5);
+  EXPECT_NEAR(file.dy_m, 5.0, 1e-5);
+  EXPECT_THAT(file.assumptions, ::testing::Contains(HasSubstr("mean map factor 2")));
+}
+
+// DX is a length on the map, so it is not the distance if the places cannot give it.
+TEST_F(WrfColumns, MissingPlacesAreAnError) {
+  SyntheticWrf wrf = Nest();
+  const auto latitude = wrf.columns.at("XLAT");
+  wrf.columns["XLAT"] = [latitude](const WrfCell& cell) {
+    return cell.x == 0 && cell.y == 0 ? std::nan("") : latitude(cell);
+  };
+  const std::string path = folder_.File("wrfout");
+  testing::WriteWrf(wrf, path);
+  EXPECT_FALSE(StormFormats::BuiltIn().Describe(path).ok());
+}
+
 // The columns of a continent stay on its Lambert map, and the errors of distances are stated.
 TEST_F(WrfColumns, ReadsAContinentOnItsMap) {
   SyntheticWrf wrf = Nest();
