@@ -68,7 +68,7 @@ TEST(PricedSettings, TracedLightIsTold) {
 
 TEST(PricedSettings, WhatIsNotUnderstoodIsRefusedAndNamed) {
   EXPECT_THAT(Complaint(kHead + "light_color," + kNames + "blue," + kRow),
-              HasSubstr("column 'light_color' is not known"));
+              HasSubstr("column 'light_color' is unknown"));
   EXPECT_THAT(Complaint(kHead + "renderer,mode\n"), HasSubstr("no column 'transport'"));
   EXPECT_THAT(Complaint(kNames + kRow), HasSubstr("size"));
   EXPECT_THAT(Complaint("# size: large\n" + kNames + kRow), HasSubstr("'large'"));

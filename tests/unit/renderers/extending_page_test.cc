@@ -41,12 +41,13 @@ std::map<std::string, std::set<std::string>> FilesBySection() {
   return sections;
 }
 
-// The count includes existing files that a developer edits, without new files and tests.
+// The count includes existing files that a developer edits, without new files and tests. For a
+// hydrometeor these are two, and one for each of the three formats that name their fields.
 TEST(ExtendingPage, NamesFilesThatExistAndNoMoreThanAllowed) {
   auto files = FilesBySection();
   const std::map<std::string, std::size_t> allowed = {{"A technique (a renderer)", 4},
                                                       {"A storm format", 2},
-                                                      {"A hydrometeor field", 4},
+                                                      {"A hydrometeor field", 5},
                                                       {"A parameter of a scene", 4},
                                                       {"A call (rpc)", 4},
                                                       {"A phase function by a formula", 3},
