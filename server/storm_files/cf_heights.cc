@@ -230,8 +230,15 @@ struct SurfaceValues {
   CfColumnValue surface;
 };
 
-// Returns z = a + the sum of b * surface, with a in m. The lowest face is the ground, and the
-// highest is flat.
+// Returns whether levels begin so far above the ground that there must be others below. Then
+// `above_ground`, the distance of the lowest level, is large against `step`, that to the next.
+bool BeginsFarAbove(double above_ground, double step) {
+  constexpr double kFar = 1.5;
+  return above_ground > kFar * step;
+}
+
+// Returns z = a + the sum of b * surface, with a in m. The lowest face is the ground, unless the
+// levels begin far above it. The highest is flat.
 CfHeights LinearHeights(const Parametric& coordinate, TermValues a,
                         std::vector<SurfaceValues> surfaces) {
   CfHeights heights;
@@ -247,10 +254,15 @@ CfHeights LinearHeights(const Parametric& coordinate, TermValues a,
   const std::size_t last = a.middles.size() - 1;
   const double top =
       last > 0 ? 1.5 * a.middles[last] - 0.5 * a.middles[last - 1] : 2.0 * a.middles[last];
-  heights.a = FacesOf(a, 0.0, top);
+  const bool is_far = last > 0 && BeginsFarAbove(a.middles[0], a.middles[1] - a.middles[0]);
+  const auto lowest = [&](const TermValues& term, double ground) {
+    return is_far ? 1.5 * term.middles[0] - 0.5 * term.middles[1] : ground;
+  };
+  heights.a = FacesOf(a, lowest(a, 0.0), top);
   for (SurfaceValues& each : surfaces) {
     upwards(each.b);
-    heights.surfaces.push_back({FacesOf(each.b, 1.0, 0.0), std::move(each.surface)});
+    heights.surfaces.push_back(
+        {FacesOf(each.b, lowest(each.b, 1.0), 0.0), std::move(each.surface)});
   }
   return heights;
 }
@@ -375,6 +387,15 @@ absl::StatusOr<CfHeights> ReadHybridPressure(const netcdf::NetcdfFile& file,
   heights.reversed = pressure_Pa(0) < pressure_Pa(layers - 1);
   if (heights.reversed) {
     for (auto* values : {&a.middles, &a.faces, &b.middles, &b.faces}) std::ranges::reverse(*values);
+  }
+  const double above_ground_Pa =
+      kSurface_Pa -
+      (a.faces.empty() ? pressure_Pa(0) : a.faces.front() + b.faces.front() * kSurface_Pa);
+  const double step_Pa = layers > 1 ? pressure_Pa(0) - pressure_Pa(1) : kSurface_Pa;
+  if (BeginsFarAbove(above_ground_Pa, step_Pa)) {
+    return NoHeights(file, coordinate.name,
+                     "begins far above the ground, and the heights of its levels follow from all "
+                     "levels below; give a file with all levels");
   }
   // The lowest face is the ground. The highest is as far from the last middle as the one below.
   heights.a = FacesOf(a, 0.0, 0.0);

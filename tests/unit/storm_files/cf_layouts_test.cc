@@ -219,6 +219,17 @@ TEST_F(CfLayouts, HybridHeightsFollowFromTheirFormula) {
   EXPECT_NEAR((*fields)->fields[0].statistics.maximum_water_path_kg_per_m2, 1e-4 * 1000.0, 1e-6);
   EXPECT_NEAR((*fields)->fields[0].statistics.mean_water_path_kg_per_m2,
               1e-4 * (1000.0 - 0.5 * 265.0), 1e-6);
+  // Layers that begin far above the ground do not reach it.
+  SyntheticCf high = file;
+  for (CfContent& variable : high.variables) {
+    if (variable.name != "level_height") continue;
+    variable.value = [](const Index& at) { return at.at("z") == 0 ? 5500.0 : 6500.0; };
+  }
+  const auto high_fields = Read(high);
+  ASSERT_TRUE(high_fields.ok()) << high_fields.status();
+  EXPECT_NEAR((*high_fields)->fields[0].statistics.maximum_water_path_kg_per_m2, 1e-4 * 1000.0,
+              1e-6);
+  EXPECT_GT((*high_fields)->grid.low_corner_m.z, 4900.0);
   file.variables.erase(file.variables.begin() + 1);
   ExpectError(file, "needs the formula term orog (orog)");
 }
@@ -247,6 +258,11 @@ TEST_F(CfLayouts, HybridPressuresGiveHydrostaticHeights) {
   EXPECT_NEAR((*fields)->fields[0].statistics.maximum_water_path_kg_per_m2,
               1e-4 * thick_m * density, 1e-3 * 1e-4 * thick_m * density);
   EXPECT_THAT(info_.assumptions, Contains(HasSubstr("hydrostatic")));
+  for (CfContent& variable : file.variables) {
+    if (variable.name != "b") continue;
+    variable.value = [](const Index& at) { return 0.1 + 0.1 * static_cast<double>(at.at("z")); };
+  }
+  ExpectError(file, "begins far above the ground");
 }
 
 // Returns the cloud on longitudes and latitudes.
