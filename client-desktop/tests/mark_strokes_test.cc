@@ -12,6 +12,7 @@ namespace {
 // Returns a view from above in which one metre is half the picture's width.
 v1::View FromAbove() {
   v1::View view;
+  view.mutable_eye()->set_z_m(1000.0F);
   view.mutable_forward()->set_z(-1.0F);
   view.mutable_right()->set_x(1.0F);
   view.mutable_up()->set_y(1.0F);

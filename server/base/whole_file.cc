@@ -1,6 +1,7 @@
 #include "base/whole_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -60,6 +61,30 @@ absl::Status Drop(const std::string& path) {
   return status;
 }
 
+// Opens an empty file at PartialPath(path), and returns its descriptor, or -1 with errno set. A
+// link that was planted there would lead to another file, so it is removed.
+int OpenPartial(const std::string& path) {
+  const std::string partial = PartialPath(path);
+  constexpr int kWrite = O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC;
+  const int file = open(partial.c_str(), kWrite, 0666);
+  struct stat found {};
+  const bool is_link = file < 0 && errno == ELOOP;
+  const bool is_shared =
+      file >= 0 && fstat(file, &found) == 0 && S_ISREG(found.st_mode) && found.st_nlink != 1;
+  if (!is_link && !is_shared) {
+    if (file >= 0 && S_ISREG(found.st_mode) && ftruncate(file, 0) != 0) {
+      const int why = errno;
+      close(file);
+      errno = why;
+      return -1;
+    }
+    return file;
+  }
+  if (file >= 0) close(file);
+  unlink(partial.c_str());
+  return open(partial.c_str(), kWrite | O_EXCL, 0666);
+}
+
 }  // namespace
 
 absl::StatusOr<std::string> ReadWholeFile(const std::string& path) {
@@ -103,8 +128,14 @@ std::string PartialPath(std::string_view path) {
   return absl::StrCat(absl::string_view(path.data(), path.size()), ".partial");
 }
 
+absl::StatusOr<std::string> StartPartial(const std::string& path) {
+  const Descriptor file(OpenPartial(path));
+  if (file.Number() < 0) return NotWritten(path);
+  return PartialPath(path);
+}
+
 absl::Status WriteWholeFile(const std::string& path, std::string_view bytes) {
-  Descriptor file(open(PartialPath(path).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+  Descriptor file(OpenPartial(path));
   if (file.Number() < 0) return NotWritten(path);
   if (!WriteAll(file.Number(), bytes) || file.Close() != 0) return Drop(path);
   return PublishFile(path);
@@ -114,7 +145,7 @@ absl::Status PublishFile(const std::string& path) {
   const std::string partial = PartialPath(path);
   {
     // fsync flushes what any descriptor of the file has written.
-    Descriptor file(open(partial.c_str(), O_RDONLY | O_CLOEXEC));
+    Descriptor file(open(partial.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
     if (file.Number() < 0 || fsync(file.Number()) != 0) return Drop(path);
   }
   if (std::rename(partial.c_str(), path.c_str()) != 0) return Drop(path);

@@ -17,6 +17,10 @@ absl::StatusOr<std::string> ReadWholeFile(const std::string& path);
 // path is in the same folder, so that the complete file can be renamed.
 std::string PartialPath(std::string_view path);
 
+// Makes an empty file at PartialPath(path) and returns that path. A planted link is replaced, and
+// not followed. Errors are those of WriteProblem.
+absl::StatusOr<std::string> StartPartial(const std::string& path);
+
 // Writes the whole file. Returns FAILED_PRECONDITION if its folder is missing or not writable.
 // Returns UNAVAILABLE if the file cannot be written now, for example because the disk is full.
 absl::Status WriteWholeFile(const std::string& path, std::string_view bytes);

@@ -8,7 +8,6 @@
 
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <system_error>
 #include <utility>
@@ -139,11 +138,8 @@ absl::Status WritePartial(const VdbFile& file, const std::string& partial,
 absl::Status WriteVdb(const VdbFile& file, const std::string& path,
                       const std::function<void(double share)>& progress,
                       const std::stop_token& stop) {
-  const std::string partial = base::PartialPath(path);
   // The folder is checked before the work, because the work may take a minute.
-  if (!std::ofstream(partial, std::ios::binary))
-    return absl::FailedPreconditionError(absl::StrCat(
-        path, " cannot be written; check that its folder exists and may be written to"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string partial, base::StartPartial(path));
   absl::Status status;
   try {
     status = WritePartial(file, partial, progress, stop);

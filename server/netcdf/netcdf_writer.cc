@@ -1,6 +1,7 @@
 #include "netcdf/netcdf_writer.h"
 
 #include <netcdf_mem.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <memory>
@@ -14,8 +15,13 @@ constexpr int kCompression = 4;
 }  // namespace
 
 NetcdfWriter::NetcdfWriter(const std::string& path, Where where) : where_(where) {
-  Keep(where == Where::kInMemory ? nc_create_mem(path.c_str(), NC_NETCDF4, 0, &file_)
-                                 : nc_create(path.c_str(), NC_NETCDF4 | NC_CLOBBER, &file_));
+  if (where == Where::kOnDisk) {
+    // A planted link is replaced, and not followed.
+    unlink(path.c_str());
+    Keep(nc_create(path.c_str(), NC_NETCDF4 | NC_NOCLOBBER, &file_));
+  } else {
+    Keep(nc_create_mem(path.c_str(), NC_NETCDF4, 0, &file_));
+  }
   open_ = Good();
 }
 

@@ -19,12 +19,14 @@
 namespace thunderhead::sandbox {
 namespace {
 
-// Returns the first bytes of the first file.
-std::string_view StartOf(const std::vector<BundledFile>& files) {
-  if (files.empty()) return {};
-  const std::span<const std::byte> bytes = files.front().bytes;
-  return {reinterpret_cast<const char*>(bytes.data()),
-          std::min(bytes.size(), storm_files::UnknownFile::kStart_bytes)};
+// Returns the first bytes of each file.
+std::vector<std::string_view> StartsOf(const std::vector<BundledFile>& files) {
+  std::vector<std::string_view> starts;
+  for (const BundledFile& file : files) {
+    starts.emplace_back(reinterpret_cast<const char*>(file.bytes.data()),
+                        std::min(file.bytes.size(), storm_files::UnknownFile::kStart_bytes));
+  }
+  return starts;
 }
 
 // Returns unused memory to the system before large fields are copied into the shared memory.
@@ -41,8 +43,7 @@ class StormReader final : public FileReader {
 
   absl::Status Prepare(const std::vector<BundledFile>& files) override {
     for (const BundledFile& file : files) paths_.push_back(file.path);
-    // The files of a bundle have one format.
-    return formats_.PrepareBeforeConfinement(StartOf(files));
+    return formats_.PrepareBeforeConfinement(StartsOf(files));
   }
   absl::Status Answer(const Request& request, Replies& replies) override;
 

@@ -125,9 +125,11 @@ absl::Status StormFormats::CheckStart(const std::string& path, int file) const {
   return checked ? absl::OkStatus() : netcdf::NetcdfFile::CheckStart(path, file);
 }
 
-absl::Status StormFormats::PrepareBeforeConfinement(std::string_view start) const {
+absl::Status StormFormats::PrepareBeforeConfinement(
+    const std::vector<std::string_view>& starts) const {
   for (const std::shared_ptr<const StormFormat>& format : formats_) {
-    if (!format->MayBegin(start)) continue;
+    const auto may_begin = [&](std::string_view start) { return format->MayBegin(start); };
+    if (std::ranges::none_of(starts, may_begin)) continue;
     THUNDERHEAD_RETURN_IF_ERROR(format->PrepareBeforeConfinement());
   }
   return absl::OkStatus();

@@ -127,9 +127,9 @@ class StormFormats {
   // UNAVAILABLE while another program writes it and has locked it.
   absl::Status CheckStart(const std::string& path, int file) const;
 
-  // Prepares each format that may read a file that begins with these bytes
+  // Prepares each format that may read one of the files, which begin with `starts`
   // (StormFormat::PrepareBeforeConfinement).
-  absl::Status PrepareBeforeConfinement(std::string_view start) const;
+  absl::Status PrepareBeforeConfinement(const std::vector<std::string_view>& starts) const;
 
   // Describes the file at `path` by the format that fits it best. It is an error if no format fits,
   // or if two fit equally well.

@@ -11,6 +11,7 @@
 #include "absl/strings/match.h"
 #include "sandbox/confined_files.h"
 #include "storm_files/storm_format.h"
+#include "tests/support/synthetic_cf.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/unit/grib/messages.h"
 
@@ -92,6 +93,23 @@ TEST(ConfinedGribStorms, ShareAFile) {
   EXPECT_TRUE(storms[1].reader->Read(1, std::nullopt, {}).ok());
   EXPECT_EQ(storms[1].reader->Read(2, std::nullopt, {}).status().code(),
             absl::StatusCode::kDataLoss);
+}
+
+// A batch of files is described by one reader, which needs the libraries of all of them.
+TEST(ConfinedGribParts, DoNotHideTheFilesOfTheirBatch) {
+  const testing::TemporaryFolder folder;
+  const std::string other = folder.File("cloud.nc");
+  testing::WriteCf(testing::ExtinctionFile(2, 2, 2, 1000.0, 1000.0, 500.0,
+                                           [](auto, auto, auto) { return 1e-3; }),
+                   other);
+  const std::string grib = (kShared / "hrrr-native/hrrr.t21z.wrfnatf01.grib2").string();
+  for (const std::vector<std::string>& paths :
+       {std::vector<std::string>{grib, other}, std::vector<std::string>{other, grib}}) {
+    const auto described = Files()->DescribeEach(paths);
+    ASSERT_EQ(described.size(), 2U);
+    EXPECT_TRUE(described[0].ok()) << described[0].status();
+    EXPECT_TRUE(described[1].ok()) << described[1].status();
+  }
 }
 
 TEST(ConfinedGribParts, AreReadTogether) {
