@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/status.h"
+#include "glm/trigonometric.hpp"
 #include "grib/octets.h"
 #include "volume/map_projection.h"
 
@@ -218,7 +219,7 @@ glm::dvec2 Rotated_deg(const glm::dvec2& place_deg, const glm::dvec2& origin_deg
       std::cos(origin) * std::cos(north) * std::cos(east) + std::sin(origin) * std::sin(north);
   const double up =
       std::cos(origin) * std::sin(north) - std::sin(origin) * std::cos(north) * std::cos(east);
-  return glm::degrees(glm::dvec2(std::atan2(across, along), std::asin(glm::clamp(up, -1.0, 1.0))));
+  return glm::degrees(glm::dvec2(std::atan2(across, along), std::asin(std::clamp(up, -1.0, 1.0))));
 }
 
 // Reads NCEP's template 3.32769, which RAP and RRFS use: a rotated grid of latitudes and longitudes

@@ -22,6 +22,7 @@ namespace {
 // Returns the first bytes of each file.
 std::vector<std::string_view> StartsOf(const std::vector<BundledFile>& files) {
   std::vector<std::string_view> starts;
+  starts.reserve(files.size());
   for (const BundledFile& file : files) {
     starts.emplace_back(reinterpret_cast<const char*>(file.bytes.data()),
                         std::min(file.bytes.size(), storm_files::UnknownFile::kStart_bytes));

@@ -316,7 +316,8 @@ int OutcomeOf(const std::string& path, const std::string& bytes) {
     base::ReadFromMemory(path, std::as_bytes(std::span(bytes)));
     const std::string_view start =
         std::string_view(bytes).substr(0, storm_files::UnknownFile::kStart_bytes);
-    const bool prepared = storm_files::StormFormats::BuiltIn().PrepareBeforeConfinement({start}).ok();
+    const bool prepared =
+        storm_files::StormFormats::BuiltIn().PrepareBeforeConfinement({start}).ok();
     if (!prepared || !sandbox::Confine({kMemory, 10}).ok()) _exit(kNotConfined);
     const absl::Status status = base::Guarded([&] { return ReadStorm(path); });
     const std::string message(status.message());
