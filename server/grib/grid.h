@@ -32,6 +32,8 @@ struct Grid {
   bool columns_first = false;
   bool alternates = false;
 
+  bool operator==(const Grid&) const = default;
+
   bool IsUnstructured() const { return !cells.empty(); }
   std::size_t Points() const {
     return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);

@@ -54,7 +54,7 @@ class Replies {
   std::shared_ptr<KeptLog> log_;
 };
 
-// What a reader program does with its file.
+// A reader program's work on its file.
 class FileReader {
  public:
   virtual ~FileReader() = default;

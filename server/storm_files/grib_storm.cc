@@ -74,9 +74,16 @@ absl::StatusOr<std::vector<std::shared_ptr<const GribStorm>>> MakeGribStorms(
     storm->files = files;
     storm->indexes = indexes;
     storm->contents = std::move(contents);
-    absl::StatusOr<EvenColumns> even = PlaceGribColumns(*storm);
-    if (!even.ok()) return base::Annotate(even.status(), path);
-    storm->even = std::make_shared<const EvenColumns>(*std::move(even));
+    // The members of an ensemble share a grid, whose columns are placed once.
+    const auto same = std::ranges::find_if(
+        storms, [&](const auto& other) { return other->contents.grid == storm->contents.grid; });
+    if (same != storms.end()) {
+      storm->even = (*same)->even;
+    } else {
+      absl::StatusOr<EvenColumns> even = PlaceGribColumns(*storm);
+      if (!even.ok()) return base::Annotate(even.status(), path);
+      storm->even = std::make_shared<const EvenColumns>(*std::move(even));
+    }
     storms.push_back(std::move(storm));
   }
   return storms;

@@ -61,7 +61,7 @@ Json JsonOf(const google::protobuf::Message& message);
 Json JsonOf(const std::vector<Json>& list);
 Json Null();
 
-// What a step can be expected to result in, by name.
+// The results of a step that a case can expect, by name.
 using Results = std::map<std::string, Json>;
 using Actions = std::map<std::string, std::function<Results(Arguments&)>>;
 // Makes a module in the given state, and returns the actions of its steps.

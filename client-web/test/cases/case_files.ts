@@ -79,7 +79,7 @@ export class Arguments {
   }
 }
 
-// What a step can be expected to result in, by name.
+// The results of a step that a case can expect, by name.
 export type Observed = Readonly<Record<string, JsonValue>>;
 export type Actions = Readonly<Record<string, (step: Arguments) => Observed | Promise<Observed>>>;
 // Makes a module in the given state, and returns the actions of its steps.

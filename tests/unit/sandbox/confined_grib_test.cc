@@ -130,6 +130,17 @@ TEST(ConfinedGribParts, AreReadTogether) {
 }
 
 // Small files that need far more memory or time than their size. A reader has 1 GiB and a minute.
+// Returns a message with the cloud water of one level.
+grib::testing::Message CloudWater() {
+  grib::testing::Message message;
+  message.grid = grib::testing::GridOf({.columns = 4, .rows = 4, .step = 100});
+  message.points = 16;
+  message.values = {1e-3F};
+  message.category = 1;
+  message.number = 22;
+  return message;
+}
+
 class ConfinedGribBombs : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -191,12 +202,7 @@ TEST_F(ConfinedGribBombs, FieldsLargerThanTheMemoryAreRefused) {
 }
 
 TEST_F(ConfinedGribBombs, AHundredThousandMessagesAreIndexedInTime) {
-  grib::testing::Message message;
-  message.grid = grib::testing::GridOf({.columns = 4, .rows = 4, .step = 100});
-  message.points = 16;
-  message.values = {1e-3F};
-  message.category = 1;
-  message.number = 22;
+  grib::testing::Message message = CloudWater();
   std::string bytes = Storm(4);
   for (int i = 0; i < 100'000; ++i) {
     message.level = {105, i + 3};
@@ -210,13 +216,7 @@ TEST_F(ConfinedGribBombs, AHundredThousandMessagesAreIndexedInTime) {
 
 // A file with one field of a time is no storm alone, and reading it is an error.
 TEST_F(ConfinedGribBombs, APartOfATimeIsNotReadAlone) {
-  grib::testing::Message message;
-  message.grid = grib::testing::GridOf({.columns = 4, .rows = 4, .step = 100});
-  message.points = 16;
-  message.values = {1e-3F};
-  message.category = 1;
-  message.number = 22;
-  const absl::Status status = Read(grib::testing::BytesOf(message));
+  const absl::Status status = Read(grib::testing::BytesOf(CloudWater()));
   EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument) << status;
   EXPECT_THAT(std::string(status.message()), ::testing::HasSubstr("only a part of a time"));
 }

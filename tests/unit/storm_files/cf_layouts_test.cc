@@ -6,10 +6,8 @@
 #include <cmath>
 
 #include "storm_files/cf_names.h"
-#include "storm_store/storm_store.h"
 #include "tests/support/captured_log.h"
-#include "tests/support/synthetic_cf.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/unit/storm_files/cf_file_test.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -19,30 +17,9 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::Middles;
 using testing::SyntheticCf;
-using testing::TemporaryFolder;
 using Index = std::map<std::string, std::size_t>;
 
-class CfLayouts : public ::testing::Test {
- protected:
-  absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Read(const SyntheticCf& file) {
-    testing::WriteCf(file, path_);
-    auto store = storm_store::StormStore::Open({path_}, {.read_ahead = 0});
-    if (!store.ok()) return store.status();
-    info_ = *(*store)->Storms().front();
-    return (*store)->Get(info_.id, 0, {});
-  }
-
-  void ExpectError(const SyntheticCf& file, const std::string& what) {
-    const auto fields = Read(file);
-    ASSERT_FALSE(fields.ok()) << what;
-    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(path_));
-    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(what));
-  }
-
-  TemporaryFolder folder_;
-  std::string path_ = folder_.File("cloud.nc");
-  storm_store::StormInfo info_;
-};
+class CfLayouts : public CfFileTest {};
 
 // Returns cloud water of 1e-4 kg m-3 in the lowest of `layers` layers of 500 m, on 6 x 4 columns.
 SyntheticCf Cloud(std::size_t layers = 4) {

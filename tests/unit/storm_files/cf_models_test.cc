@@ -9,9 +9,7 @@
 #include "physics/hydrometeors.h"
 #include "storm_files/mixed_water.h"
 #include "storm_files/reference_atmosphere.h"
-#include "storm_store/storm_store.h"
-#include "tests/support/synthetic_cf.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/unit/storm_files/cf_file_test.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -23,7 +21,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::Middles;
 using testing::SyntheticCf;
-using testing::TemporaryFolder;
 using Index = std::map<std::string, std::size_t>;
 using Texts = std::map<std::string, std::string>;
 
@@ -33,23 +30,8 @@ constexpr std::size_t kModelLayers = 4;
 constexpr double kModelThickness_m = 500.0;
 constexpr double kModelGas_J_per_kg_K = 287.0;
 
-class CfModels : public ::testing::Test {
+class CfModels : public CfFileTest {
  protected:
-  absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Read(const SyntheticCf& file) {
-    testing::WriteCf(file, path_);
-    auto store = storm_store::StormStore::Open({path_}, {.read_ahead = 0});
-    if (!store.ok()) return store.status();
-    info_ = *(*store)->Storms().front();
-    return (*store)->Get(info_.id, 0, {});
-  }
-
-  void ExpectError(const SyntheticCf& file, const std::string& what) {
-    const auto fields = Read(file);
-    ASSERT_FALSE(fields.ok()) << what;
-    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(path_));
-    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(what));
-  }
-
   // Expects the hydrometeors with these largest water paths.
   void ExpectPaths(const SyntheticCf& file, const std::map<Hydrometeor, double>& paths_kg_per_m2) {
     const auto fields = Read(file);
@@ -62,10 +44,6 @@ class CfModels : public ::testing::Test {
           << physics::NameOf(field.hydrometeor);
     }
   }
-
-  TemporaryFolder folder_;
-  std::string path_ = folder_.File("cloud.nc");
-  storm_store::StormInfo info_;
 };
 
 CfCoordinate EvenAxis(const std::string& name, std::size_t count, double low, double spacing) {

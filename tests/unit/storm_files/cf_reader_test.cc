@@ -9,10 +9,8 @@
 #include "storm_files/cf_names.h"
 #include "storm_files/units.h"
 #include "storm_files/vertical_remap.h"
-#include "storm_store/storm_store.h"
 #include "tests/support/captured_log.h"
-#include "tests/support/synthetic_cf.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/unit/storm_files/cf_file_test.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -26,7 +24,6 @@ using ::testing::HasSubstr;
 using testing::Middles;
 using ::testing::SizeIs;
 using testing::SyntheticCf;
-using testing::TemporaryFolder;
 using Index = std::map<std::string, std::size_t>;
 
 // Returns a value that differs in every cell and is above zero.
@@ -34,24 +31,8 @@ double Value(std::size_t x, std::size_t y, std::size_t z) {
   return 1e-3 * static_cast<double>(1 + x + 10 * y + 100 * z);
 }
 
-class CfReader : public ::testing::Test {
+class CfReader : public CfFileTest {
  protected:
-  absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Read(const SyntheticCf& file,
-                                                                        int time = 0) {
-    testing::WriteCf(file, path_);
-    auto store = storm_store::StormStore::Open({path_}, {.read_ahead = 0});
-    if (!store.ok()) return store.status();
-    info_ = *(*store)->Storms().front();
-    return (*store)->Get(info_.id, time, {});
-  }
-
-  void ExpectError(const SyntheticCf& file, const std::string& what) {
-    const auto fields = Read(file);
-    ASSERT_FALSE(fields.ok()) << what;
-    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(path_));
-    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(what));
-  }
-
   void ExpectValues(const volume::HydrometeorFields& fields) {
     ASSERT_THAT(fields.fields, SizeIs(1));
     const auto& values = fields.fields[0].concentration_kg_per_m3;
@@ -64,10 +45,6 @@ class CfReader : public ::testing::Test {
       }
     }
   }
-
-  TemporaryFolder folder_;
-  std::string path_ = folder_.File("cloud.nc");
-  storm_store::StormInfo info_;
 };
 
 SyntheticCf Small() { return ExtinctionFile(4, 3, 2, 100.0, 200.0, 50.0, Value); }

@@ -12,11 +12,9 @@
 
 #include "glm/geometric.hpp"
 #include "glm/trigonometric.hpp"
-#include "storm_store/storm_store.h"
 #include "tests/support/earth_formulas.h"
-#include "tests/support/synthetic_cf.h"
-#include "tests/support/temporary_folder.h"
 #include "tests/unit/storm_files/cell_meshes.h"
+#include "tests/unit/storm_files/cf_file_test.h"
 
 // Tests are compiled together, and other tests have the same names.
 namespace thunderhead::storm_files::unstructured_files_test {
@@ -74,7 +72,7 @@ struct Layout {
   bool level_fastest = false;
 };
 
-class UnstructuredFiles : public ::testing::Test {
+class UnstructuredFiles : public CfFileTest {
  protected:
   static std::vector<std::string> On(const Layout& layout, const std::string& z) {
     if (layout.level_fastest) return {layout.time, layout.cells, z};
@@ -203,7 +201,7 @@ class UnstructuredFiles : public ::testing::Test {
   }
 
   // Writes the file, and MPAS' times as text if it has two.
-  void Write(const SyntheticCf& file) {
+  void Write(const SyntheticCf& file) override {
     testing::WriteCf(file, path_);
     if (file.coordinates[0].values.size() < 2) return;
     int id = 0;
@@ -223,21 +221,6 @@ class UnstructuredFiles : public ::testing::Test {
     text.resize(128, ' ');
     ASSERT_EQ(nc_put_var_text(id, times, text.c_str()), NC_NOERR);
     ASSERT_EQ(nc_close(id), NC_NOERR);
-  }
-
-  absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> Read(const SyntheticCf& file) {
-    Write(file);
-    auto store = storm_store::StormStore::Open({path_}, {.read_ahead = 0});
-    if (!store.ok()) return store.status();
-    info_ = *(*store)->Storms().front();
-    return (*store)->Get(info_.id, 0, {});
-  }
-
-  void ExpectError(const SyntheticCf& file, const std::string& what) {
-    const auto fields = Read(file);
-    ASSERT_FALSE(fields.ok()) << what;
-    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(path_));
-    EXPECT_THAT(std::string(fields.status().message()), HasSubstr(what));
   }
 
   // Checks mass, water path, place and height of the cloud.
@@ -290,9 +273,6 @@ class UnstructuredFiles : public ::testing::Test {
               mesh.spacing_m);
   }
 
-  testing::TemporaryFolder folder_;
-  std::string path_ = folder_.File("cells.nc");
-  storm_store::StormInfo info_;
   const CellMesh triangles_ = testing::Triangles({80e3, 60e3}, 2500.0);
   const CellMesh hexagons_ = testing::Hexagons({80e3, 60e3}, 1500.0);
 };
