@@ -144,7 +144,7 @@ std::optional<Executor::Task> Executor::Take(Shared& shared, Worker& worker) {
   // The duration of the previous task is charged as an estimate. End replaces it by this task's own
   // duration.
   worker.charged_ms = shared.typical_ms;
-  shared.shares.Used(worker.owner, worker.charged_ms);
+  shared.shares.Charge(worker.owner, worker.charged_ms);
   return task;
 }
 
@@ -156,7 +156,7 @@ void Executor::Leave(Shared& shared, const std::string& owner) {
 void Executor::End(Shared& shared, Worker& worker) {
   const std::chrono::duration<double, std::milli> took = shared.time.Now() - *worker.busy_since;
   worker.busy_since.reset();
-  shared.shares.Used(worker.owner, took.count() - worker.charged_ms);
+  shared.shares.Settle(worker.owner, worker.charged_ms, took.count());
   if (worker.hangs) return;
   shared.typical_ms = took.count();
   Leave(shared, worker.owner);

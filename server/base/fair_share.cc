@@ -11,30 +11,40 @@ std::string FairShare::Next(const std::vector<std::string>& waiting) {
 
 std::optional<std::string> FairShare::Next(const std::vector<std::string>& waiting,
                                            const std::function<bool(const std::string&)>& may) {
-  double least_ms = std::numeric_limits<double>::infinity();
+  Account newcomer{std::numeric_limits<double>::infinity(), 0.0};
   for (const std::string& id : waiting) {
-    const auto known = used_ms_.find(id);
-    if (known != used_ms_.end()) least_ms = std::min(least_ms, known->second);
+    const auto known = accounts_.find(id);
+    if (known == accounts_.end()) continue;
+    newcomer.settled_ms = std::min(newcomer.settled_ms, known->second.settled_ms);
   }
-  if (least_ms == std::numeric_limits<double>::infinity()) least_ms = 0.0;
-  std::map<std::string, double> used_ms;
+  if (newcomer.settled_ms == std::numeric_limits<double>::infinity()) newcomer.settled_ms = 0.0;
+  std::map<std::string, Account> accounts;
   std::optional<std::string> next;
   double next_ms = std::numeric_limits<double>::infinity();
   for (const std::string& id : waiting) {
-    const auto known = used_ms_.find(id);
-    const double ms = known != used_ms_.end() ? known->second : least_ms;
-    used_ms[id] = ms;
-    if (ms >= next_ms || !may(id)) continue;
+    const auto known = accounts_.find(id);
+    const Account account = known != accounts_.end() ? known->second : newcomer;
+    accounts[id] = account;
+    const double used_ms = account.settled_ms + account.charged_ms;
+    if (used_ms >= next_ms || !may(id)) continue;
     next = id;
-    next_ms = ms;
+    next_ms = used_ms;
   }
-  used_ms_ = std::move(used_ms);
+  accounts_ = std::move(accounts);
   return next;
 }
 
-void FairShare::Used(const std::string& id, double milliseconds) {
-  const auto known = used_ms_.find(id);
-  if (known != used_ms_.end()) known->second += milliseconds;
+void FairShare::Charge(const std::string& id, double expected_ms) {
+  const auto known = accounts_.find(id);
+  if (known != accounts_.end()) known->second.charged_ms += expected_ms;
+}
+
+void FairShare::Settle(const std::string& id, double charged_ms, double used_ms) {
+  const auto known = accounts_.find(id);
+  if (known == accounts_.end()) return;
+  // A client that was forgotten since the charge has a new account without the charge.
+  known->second.charged_ms = std::max(0.0, known->second.charged_ms - charged_ms);
+  known->second.settled_ms += used_ms;
 }
 
 }  // namespace thunderhead::base

@@ -171,6 +171,7 @@ bool ImageDrawer::Ends(Begun& image) {
   if (image.status.ok()) {
     image.job.done(Drawn(image));
   } else {
+    queue_.Settle(image.job, std::nullopt);
     image.job.done(image.status);
   }
   return true;
@@ -250,6 +251,7 @@ bool ImageDrawer::EndsTracing(Begun& image) {
   }
   if (failed.ok()) return false;
   tracer_.Stop(image.name);
+  queue_.Settle(image.job, std::nullopt);
   image.job.done(failed);
   return true;
 }
@@ -268,7 +270,7 @@ absl::StatusOr<DisplayFrame> ImageDrawer::Drawn(Begun& image) {
                 {.measured = image.error, .is_last = true}, &*image.frame);
   double drawn_ms = 0.0;
   for (const StageTime& stage : image.frame->stages) drawn_ms += stage.milliseconds;
-  queue_.Drew(image.job, drawn_ms);
+  queue_.Settle(image.job, drawn_ms);
   image.frame->stages.insert(image.frame->stages.begin(), image.stages.begin(), image.stages.end());
   return *std::move(image.frame);
 }

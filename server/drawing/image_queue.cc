@@ -98,13 +98,15 @@ std::optional<ImageJob> ImageQueue::Take(const std::function<bool(const ImageJob
   if (found == waiting_.end()) return std::nullopt;
   ImageJob job = std::move(*found);
   waiting_.erase(found);
-  if (!job.gives_way) owners_.Used(job.owner, job.predicted_ms);
+  job.charged_ms = job.predicted_ms;
+  if (!job.gives_way) owners_.Charge(job.owner, job.charged_ms);
   return job;
 }
 
-void ImageQueue::Drew(const ImageJob& job, double milliseconds) {
+void ImageQueue::Settle(const ImageJob& job, std::optional<double> milliseconds) {
   const std::lock_guard lock(mutex_);
-  if (!job.gives_way) owners_.Used(job.owner, milliseconds - job.predicted_ms);
+  if (job.gives_way) return;
+  owners_.Settle(job.owner, job.charged_ms, milliseconds.value_or(job.charged_ms));
 }
 
 void ImageQueue::DropCancelled() {

@@ -65,6 +65,8 @@ struct ImageJob {
   // Set on admission: the scene with its decided setting, and its predicted drawing time.
   std::optional<scene::Scene> decided = std::nullopt;
   double predicted_ms = 0.0;
+  // Set when the job is taken: the predicted drawing time that its owner was charged.
+  double charged_ms = 0.0;
 };
 
 class ImageQueue {
@@ -84,7 +86,8 @@ class ImageQueue {
   // drawing time. Takes a background job only if no other job suits.
   std::optional<ImageJob> Take(const std::function<bool(const ImageJob&)>& suits);
   // Replaces the predicted drawing time, which was charged to the owner, by the actual time.
-  void Drew(const ImageJob& job, double milliseconds);
+  // Without a time, as for a picture that failed, the predicted time counts as used.
+  void Settle(const ImageJob& job, std::optional<double> milliseconds);
   // Removes cancelled jobs and calls their `done`.
   void DropCancelled();
   std::size_t Waiting() const;

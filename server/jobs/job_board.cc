@@ -213,10 +213,10 @@ std::optional<PicturePlace> JobBoard::Begin(Time now) {
   const std::string id = shares_[owner].Next(waiting[owner]);
   // The duration of an earlier picture is charged as an estimate, until the picture's own duration
   // is known.
-  owners_.Used(owner, typical_ms_);
-  shares_[owner].Used(id, typical_ms_);
+  owners_.Charge(owner, typical_ms_);
+  shares_[owner].Charge(id, typical_ms_);
   PicturePlace picture{id, places[id]};
-  charged_ms_[picture] = typical_ms_;
+  charges_[picture] = {owner, typical_ms_};
   Entry& entry = jobs_.at(id);
   ++entry.record.pictures[picture.place].attempts;
   SetState(entry, picture.place, PictureState::kDrawing);
@@ -288,16 +288,22 @@ int JobBoard::Attempts(const PicturePlace& picture) const {
                             : job->second.record.pictures[picture.place].attempts;
 }
 
+void JobBoard::Settle(const PicturePlace& picture, std::optional<double> draw_ms) {
+  const auto found = charges_.extract(picture);
+  if (found.empty()) return;
+  const auto& [owner, expected_ms] = found.mapped();
+  const double used_ms = draw_ms.value_or(expected_ms);
+  owners_.Settle(owner, expected_ms, used_ms);
+  const auto share = shares_.find(owner);
+  if (share != shares_.end()) share->second.Settle(picture.job_id, expected_ms, used_ms);
+}
+
 bool JobBoard::Drawn(const PicturePlace& picture, const ResultFile& file, double milliseconds,
                      double draw_ms, Time now) {
-  const auto charged = charged_ms_.extract(picture);
+  Settle(picture, draw_ms);
   Entry* entry = nullptr;
   PictureRecord* record = Drawing(picture, &entry);
   if (record == nullptr) return false;
-  if (!charged.empty()) {
-    owners_.Used(entry->record.owner, draw_ms - charged.mapped());
-    shares_[entry->record.owner].Used(picture.job_id, draw_ms - charged.mapped());
-  }
   typical_ms_ = draw_ms;
   record->bytes = file.bytes;
   record->sha256 = file.sha256;
@@ -311,7 +317,7 @@ bool JobBoard::Drawn(const PicturePlace& picture, const ResultFile& file, double
 }
 
 bool JobBoard::Fail(const PicturePlace& picture, const Problem& problem, Time now) {
-  charged_ms_.erase(picture);
+  Settle(picture, std::nullopt);
   Entry* entry = nullptr;
   PictureRecord* record = Drawing(picture, &entry);
   if (record == nullptr) return false;
@@ -322,7 +328,7 @@ bool JobBoard::Fail(const PicturePlace& picture, const Problem& problem, Time no
 }
 
 bool JobBoard::PutBack(const PicturePlace& picture, bool counts, Time not_before) {
-  charged_ms_.erase(picture);
+  Settle(picture, std::nullopt);
   Entry* entry = nullptr;
   PictureRecord* record = Drawing(picture, &entry);
   if (record == nullptr) return false;

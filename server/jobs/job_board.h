@@ -241,6 +241,8 @@ class JobBoard {
   // such picture.
   std::optional<std::size_t> Waiting(Entry& entry, Time now) const;
   PictureRecord* Drawing(const PicturePlace& picture, Entry** entry);
+  // Settles what Next charged for the picture. Without a time, what was charged counts as used.
+  void Settle(const PicturePlace& picture, std::optional<double> draw_ms);
 
   const JobLimits limits_;
   Jobs jobs_;
@@ -252,8 +254,11 @@ class JobBoard {
   std::vector<std::string> forgotten_;
   base::FairShare owners_;
   std::map<std::string, base::FairShare> shares_;  // shares of each owner's jobs
-  std::map<PicturePlace, double> charged_ms_;      // time charged for each picture that is being
-                                                   // drawn
+  struct Charge {
+    std::string owner;
+    double expected_ms = 0.0;
+  };
+  std::map<PicturePlace, Charge> charges_;  // charges for the pictures that are being drawn
   double typical_ms_ = 1.0;
 };
 
