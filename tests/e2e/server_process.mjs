@@ -11,16 +11,35 @@ export const BINARY = process.env.THUNDERHEAD_BINARY ?? `${ROOT}build/release/bi
 const START_TIMEOUT_MS = 600_000;
 const STOP_TIMEOUT_MS = 600_000;
 
-// Returns a port that is free now. The program uses the same port again after a restart.
-export function freePort() {
-  return new Promise((resolve, reject) => {
-    const server = createServer();
-    server.once("error", reject);
-    server.listen(0, "127.0.0.1", () => {
-      const { port } = server.address();
-      server.close(() => resolve(port));
-    });
+// Test programs take ports from this range, which lies below the ports that the kernel gives to connections and to
+// programs that ask for any port.
+const FIRST_PORT = 20_000;
+const END_OF_PORTS = 32_000;
+
+// Listens until the returned server is closed. Returns undefined if the port is taken.
+function listenAt(host, port) {
+  return new Promise((resolve) => {
+    const server = createServer().once("error", () => resolve(undefined));
+    server.listen(port, host, () => resolve(server));
   });
+}
+
+// Returns a port of 127.0.0.1 that belongs to this process until it ends, so that a program that is started again later
+// finds it free. While this process runs, it holds the same port of 127.0.0.2, which keeps other tests from taking it.
+export async function freePort() {
+  while (true) {
+    const port = FIRST_PORT + Math.floor(Math.random() * (END_OF_PORTS - FIRST_PORT));
+    const held = await listenAt("127.0.0.2", port);
+    if (held === undefined) continue;
+    const probe = await listenAt("127.0.0.1", port);
+    if (probe === undefined) {
+      held.close();
+      continue;
+    }
+    await new Promise((resolve) => probe.close(resolve));
+    held.unref();
+    return port;
+  }
 }
 
 // Starts the server. `state` is the folder in which the server saves its sessions, `data` the folder of storms, and

@@ -35,16 +35,29 @@ def need(programs: dict[str, str]) -> None:
     os.environ["PATH"] = path
 
 
+HELD_PORTS: list[socket.socket] = []
+
+
 def free_port() -> int:
-    """Returns a free port between 20000 and 32000, because ecFlow accepts only registered ports."""
+    """Returns a port of 127.0.0.1 that belongs to this process until it ends.
+
+    It lies between 20000 and 32000, because ecFlow accepts only registered ports, and because the kernel gives such
+    ports to nobody who asks for any port. While this process runs, it holds the same port of 127.0.0.2, which keeps
+    other tests from taking it (freePort in tests/e2e/server_process.mjs does the same).
+    """
     while True:
+        port = random.randrange(20000, 32000)
+        held = socket.socket()
         with socket.socket() as probe:
-            port = random.randrange(20000, 32000)
             try:
+                held.bind(("127.0.0.2", port))
+                held.listen()
                 probe.bind(("127.0.0.1", port))
             except OSError:
+                held.close()
                 continue
-            return port
+        HELD_PORTS.append(held)
+        return port
 
 
 def run(*command: object, check: bool = True, **more: object) -> str:

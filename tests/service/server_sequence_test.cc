@@ -20,6 +20,7 @@
 #include "tests/service/product_folder.h"
 #include "tests/service/running_program.h"
 #include "tests/service/synthetic_run.h"
+#include "tests/support/own_host.h"
 #include "tests/support/self_signed.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait_for.h"
@@ -31,14 +32,6 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 constexpr int kSequenceTimes = 5;
-
-// Returns a loopback address that only this process uses, so that no other program takes a port
-// while the server restarts.
-std::string OwnHost() {
-  const pid_t process = getpid();
-  return absl::StrCat("127.", 1 + (process >> 16 & 127), ".", process >> 8 & 255, ".",
-                      process & 255);
-}
 
 class ServerSequence : public ::testing::Test {
  protected:

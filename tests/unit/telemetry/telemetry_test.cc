@@ -22,6 +22,7 @@
 #include "telemetry/exposition.h"
 #include "telemetry/metrics.h"
 #include "telemetry/operator_port.h"
+#include "tests/support/own_host.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait_for.h"
 
@@ -195,10 +196,11 @@ TEST_F(Port, IsScrapedByPrometheus) {
                         << "  static_configs:\n  - targets: ['127.0.0.1:" << port_->Port()
                         << "']\n";
   const auto free_port = [this] {
-    boost::asio::ip::tcp::acceptor acceptor(io_, {boost::asio::ip::make_address("127.0.0.1"), 0});
+    boost::asio::ip::tcp::acceptor acceptor(io_,
+                                            {boost::asio::ip::make_address(testing::OwnHost()), 0});
     return acceptor.local_endpoint().port();
   }();
-  const std::string address = "127.0.0.1:" + std::to_string(free_port);
+  const std::string address = testing::OwnHost() + ":" + std::to_string(free_port);
   const std::string pid_file = folder.File("pid");
   ASSERT_EQ(std::system(("prometheus --config.file=" + config + " --storage.tsdb.path=" +
                          folder.File("tsdb") + " --web.listen-address=" + address + " > " +
