@@ -13,10 +13,11 @@ namespace thunderhead::base {
 class FairShare {
  public:
   // Returns the client of `waiting` that has used the least time, or the first of several with
-  // equal times. Time that was charged in advance counts as used. `waiting` must not be empty. A
-  // client that is new, or that returns after a pause, starts with the least settled time of the
-  // waiting clients that are already known, so that it does not wait for the correction of a charge
-  // that was too high.
+  // equal times. Time that was charged in advance counts as used. `waiting` must not be empty.
+  //
+  // A client that is new, or that returns after a pause, starts with the least settled time of the
+  // waiting clients that are already known. Their charges do not count for it, because a charge may
+  // turn out to be too high.
   std::string Next(const std::vector<std::string>& waiting);
   // Considers only the clients for which `may` returns true. Returns nothing if there is no such
   // client.
