@@ -22,9 +22,9 @@ class ConfinedRecordReader final : public storm_files::RecordReader {
       : files_(std::move(files)), description_(std::move(description)) {}
 
   absl::StatusOr<volume::HydrometeorFields> Read(
-      std::size_t record, const std::optional<storm_files::VerticalGrid>& grid,
+      const storm_files::RecordPart& part, const std::optional<storm_files::VerticalGrid>& grid,
       const storm_files::ReadCheckpoint& checkpoint) const override {
-    return files_->Read(description_, record, grid, checkpoint);
+    return files_->Read(description_, part, grid, checkpoint);
   }
 
   absl::StatusOr<storm_files::VerticalGrid> ReadVerticalGrid(std::size_t record) const override {
@@ -157,16 +157,20 @@ std::vector<absl::StatusOr<storm_files::StormFile>> ConfinedFiles::DescribeEach(
 }
 
 absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
-    const storm_files::StormFile& of, std::size_t record,
+    const storm_files::StormFile& of, const storm_files::RecordPart& part,
     const std::optional<storm_files::VerticalGrid>& grid,
     const storm_files::ReadCheckpoint& checkpoint) {
-  Request request = RequestFor(Wanted::kFields, of.path, of.parts, of.first_record + record);
+  const glm::ivec2 storm_columns(of.cells);
+  THUNDERHEAD_RETURN_IF_ERROR(storm_files::CheckPart(of.path, part, storm_columns));
+  Request request = RequestFor(Wanted::kFields, of.path, of.parts, of.first_record + part.record);
+  request.window = part.window;
+  request.stride = part.stride;
   request.grid = grid;
   volume::HydrometeorFields fields;
   THUNDERHEAD_RETURN_IF_ERROR(Run(std::move(request), Reply::kFields, options_.limits.time,
                                   checkpoint, [&](Receiver& from_reader) {
                                     Visit(from_reader, fields);
-                                    return CheckPlausible(fields, of);
+                                    return CheckPlausible(fields, ColumnsOf(part, storm_columns));
                                   }));
   return fields;
 }

@@ -44,9 +44,9 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
   // Describes the files at `paths` as one time. `path` is the first of them.
   absl::StatusOr<storm_files::StormFile> DescribeTogether(const std::string& path,
                                                           const std::vector<std::string>& paths);
-  // Reads record `record` of the file that `of` describes.
+  // Reads a part of a record of the file that `of` describes.
   absl::StatusOr<volume::HydrometeorFields> Read(
-      const storm_files::StormFile& of, std::size_t record,
+      const storm_files::StormFile& of, const storm_files::RecordPart& part,
       const std::optional<storm_files::VerticalGrid>& grid,
       const storm_files::ReadCheckpoint& checkpoint);
   absl::StatusOr<storm_files::VerticalGrid> ReadVerticalGrid(const storm_files::StormFile& of,

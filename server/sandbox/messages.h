@@ -36,6 +36,8 @@ struct Request {
   std::uint8_t bundle = 0;
   std::vector<std::string> bundled;  // the paths of these files; not sent, as the bundle has them
   std::uint64_t record = 0;
+  std::optional<storm_files::ColumnWindow> window;  // for kFields
+  std::int32_t stride = 1;                          // for kFields
   std::string part;  // for kOther: the name of the part of the file that is wanted
   std::optional<storm_files::VerticalGrid> grid;
   std::uint64_t memory_bytes = 0;  // limit in bytes for reading, without the mapped file
@@ -89,6 +91,8 @@ void Visit(Archive& archive, Request& request) {
   archive(request.path);
   archive(request.bundle);
   archive(request.record);
+  VisitOptional(archive, request.window);
+  archive(request.stride);
   archive(request.part);
   VisitOptional(archive, request.grid);
   archive(request.memory_bytes);

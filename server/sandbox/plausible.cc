@@ -188,20 +188,19 @@ absl::Status CheckPlausible(const storm_files::VerticalGrid& grid) {
                  "its heights");
 }
 
-absl::Status CheckPlausible(const volume::HydrometeorFields& fields,
-                            const storm_files::StormFile& file) {
+absl::Status CheckPlausible(const volume::HydrometeorFields& fields, const glm::ivec2& columns) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckGrid(fields.grid));
   const glm::ivec3 cells = fields.grid.cells;
   THUNDERHEAD_RETURN_IF_ERROR(
-      Require(cells.x == file.cells.x && cells.y == file.cells.y,
+      Require(glm::ivec2(cells) == columns,
               "the number of its columns, which was different before (was the file replaced?)"));
-  const std::size_t columns = static_cast<std::size_t>(cells.x) * static_cast<std::size_t>(cells.y);
   for (const volume::HydrometeorField& field : fields.fields) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckField(field, fields.grid.CellCount()));
   }
   THUNDERHEAD_RETURN_IF_ERROR(
       Require(IsInside(fields.condensate, cells), "the box of its condensate"));
-  THUNDERHEAD_RETURN_IF_ERROR(CheckGround(fields, columns));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      CheckGround(fields, static_cast<std::size_t>(cells.x) * static_cast<std::size_t>(cells.y)));
   THUNDERHEAD_RETURN_IF_ERROR(CheckAir(fields.air, cells));
   return CheckMotion(fields.motion, fields.grid.CellCount());
 }

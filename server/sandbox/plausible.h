@@ -12,9 +12,8 @@ namespace thunderhead::sandbox {
 // Each function returns INVALID_ARGUMENT, naming the member, if a value is implausible.
 absl::Status CheckPlausible(const storm_files::StormFile& file);
 absl::Status CheckPlausible(const storm_files::VerticalGrid& grid);
-// `file` is the description of the fields' file. A different number of columns is an error: the
-// file was replaced, or the reader was taken over.
-absl::Status CheckPlausible(const volume::HydrometeorFields& fields,
-                            const storm_files::StormFile& file);
+// `columns` is the number of columns that was requested. A different number is an error: the file
+// was replaced, or the reader was taken over.
+absl::Status CheckPlausible(const volume::HydrometeorFields& fields, const glm::ivec2& columns);
 
 }  // namespace thunderhead::sandbox

@@ -109,8 +109,11 @@ absl::Status StormReader::Answer(const Request& request, Replies& replies) {
       Replies::SendProgress(share);
       return absl::OkStatus();
     };
+    storm_files::RecordPart part = record;
+    part.window = request.window;
+    part.stride = request.stride;
     THUNDERHEAD_ASSIGN_OR_RETURN(volume::HydrometeorFields fields,
-                                 storm->reader->Read(record, request.grid, progress));
+                                 storm->reader->Read(part, request.grid, progress));
     ReturnUnusedMemory(fields);
     replies.Send(Reply::kFields, fields);
   }

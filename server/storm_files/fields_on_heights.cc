@@ -11,8 +11,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
+#include "glm/common.hpp"
 #include "storm_files/field_scan.h"
 #include "storm_files/resampled_columns.h"
+#include "storm_files/windowed_source.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -32,11 +34,13 @@ struct RemappedField {
 // thread remaps the previous variable, because reading and remapping take about equally long.
 class TimeReader {
  public:
-  explicit TimeReader(LayerSource& source)
+  explicit TimeReader(LayerSource& source, int stride = 1)
       : source_(source),
+        stride_(stride),
         domain_(source.Domain()),
         resampling_(domain_.even != nullptr && domain_.even->Resampled() ? domain_.even.get()
-                                                                         : nullptr) {
+                                                                         : nullptr),
+        columns_(resampling_ != nullptr ? resampling_->columns : glm::ivec2(domain_.cells)) {
     air_.levels = domain_.cells.z;
     air_.columns = domain_.Columns();
   }
@@ -64,7 +68,10 @@ class TimeReader {
   volume::AirDensity MeanDensity(const std::vector<float>& density_kg_per_m3) const;
   void SetGrid();
   std::vector<float> OntoHeights(const std::vector<float>& values) const;
+  std::vector<float> OntoEvenColumns(std::vector<float> values, Beyond beyond) const;
   double OntoColumns(std::vector<float>& values) const;
+  std::size_t ModelColumnAt(const glm::ivec2& column) const;
+  std::vector<float> NearestOnGrid(std::vector<float> values) const;
   std::vector<std::uint8_t> BytesOntoGrid(const std::vector<float>& values) const;
   absl::Status ReadMotion(volume::HydrometeorFields& result);
   void TakeWind(const ModelWind& wind, volume::HydrometeorFields& result) const;
@@ -74,8 +81,10 @@ class TimeReader {
   bool NeedsTemperature() const;
 
   LayerSource& source_;
+  const int stride_;
   const LayerDomain& domain_;
   const EvenColumns* const resampling_;  // null if the source's columns stay as they are
+  const glm::ivec2 columns_;             // the even columns, of which blocks are averaged
   LayerAir air_;
   VerticalGrid own_grid_;
   VerticalGrid grid_;
@@ -174,19 +183,16 @@ absl::Status TimeReader::ReadTerrain(volume::HydrometeorFields& result) {
     terrain[i] = domain_.on_terrain ? air_.interface_height_m[i] : std::min(0.0F, bottom_m);
     if (std::isnan(terrain[i])) terrain[i] = bottom_m;
   }
-  if (resampling_ != nullptr) terrain = Resampled(*resampling_, terrain, Beyond::kNearest);
-  result.terrain_height_m = std::move(terrain);
+  result.terrain_height_m = OntoEvenColumns(std::move(terrain), Beyond::kNearest);
   return absl::OkStatus();
 }
 
 absl::Status TimeReader::ReadLand(volume::HydrometeorFields& result) {
   THUNDERHEAD_ASSIGN_OR_RETURN(volume::LandColumns columns, source_.Land());
   if (columns.land_use.empty()) return absl::OkStatus();
-  if (resampling_ != nullptr) {
-    for (std::vector<float>* values : {&columns.land_use, &columns.water, &columns.albedo,
-                                       &columns.green_percent, &columns.snow_share}) {
-      *values = NearestOf(*resampling_, *values);
-    }
+  for (std::vector<float>* values : {&columns.land_use, &columns.water, &columns.albedo,
+                                     &columns.green_percent, &columns.snow_share}) {
+    *values = NearestOnGrid(std::move(*values));
   }
   result.land = volume::MakeLandSurface(columns, glm::ivec2(regular_.cells));
   return absl::OkStatus();
@@ -316,9 +322,8 @@ void TimeReader::RemapSizes(const std::vector<float>& concentration, std::vector
   radii.resize(concentration.size(), std::nanf(""));
   volume::ToConcentrationPerRadius(field.hydrometeor, domain_.microphysics, concentration,
                                    air_.temperature_K, radii);
-  std::vector<float> per_radius = OntoHeights(radii);
-  if (resampling_ != nullptr) {
-    per_radius = Resampled(*resampling_, per_radius, Beyond::kZero);
+  std::vector<float> per_radius = OntoEvenColumns(OntoHeights(radii), Beyond::kZero);
+  if (factor != 1.0) {
     for (float& value : per_radius) value *= static_cast<float>(factor);
   }
   field.sizes = volume::SizesOf(field.sizes, field.concentration_kg_per_m3, per_radius);
@@ -372,8 +377,7 @@ volume::AirDensity TimeReader::MeanDensity(const std::vector<float>& density_kg_
   const glm::ivec2 stride = means.Stride();
   for (int y = 0; y < regular_.cells.y; y += stride.y) {
     for (int x = 0; x < regular_.cells.x; x += stride.x) {
-      std::size_t at = regular_.Offset(x, y, 0);
-      if (resampling_ != nullptr) at = NearestColumn(*resampling_, at);
+      std::size_t at = ModelColumnAt({x, y});
       for (int level = 0; level < air_.levels; ++level, at += air_.columns) {
         means.Add(x, y, air_.interface_height_m[at], air_.interface_height_m[at + air_.columns],
                   density_kg_per_m3[at]);
@@ -389,21 +393,51 @@ std::vector<float> TimeReader::OntoHeights(const std::vector<float>& values) con
   return RemapColumns(air_.interface_height_m, values, air_.levels, air_.columns, grid_);
 }
 
+// Returns values of the source's columns at the columns of the regular grid.
+std::vector<float> TimeReader::OntoEvenColumns(std::vector<float> values, Beyond beyond) const {
+  if (resampling_ != nullptr) values = Resampled(*resampling_, values, beyond);
+  return stride_ == 1 ? values : BlockMeans(values, columns_, stride_, beyond);
+}
+
 // Resamples values at the heights of the regular grid to its columns, in place. The sum over the
 // domain is kept. Returns the factor that this needed.
 double TimeReader::OntoColumns(std::vector<float>& values) const {
-  if (resampling_ == nullptr) return 1.0;
-  std::vector<float> resampled = Resampled(*resampling_, values, Beyond::kZero);
-  const double factor = SumFactor(*resampling_, values, resampled);
-  for (float& value : resampled) value *= static_cast<float>(factor);
-  values = std::move(resampled);
+  double factor = 1.0;
+  if (resampling_ != nullptr) {
+    std::vector<float> resampled = Resampled(*resampling_, values, Beyond::kZero);
+    factor = SumFactor(*resampling_, values, resampled);
+    for (float& value : resampled) value *= static_cast<float>(factor);
+    values = std::move(resampled);
+  }
+  if (stride_ > 1) values = BlockMeans(values, columns_, stride_, Beyond::kZero);
   return factor;
+}
+
+// Returns the index of the source's column that is nearest to the middle of a column of the regular
+// grid.
+std::size_t TimeReader::ModelColumnAt(const glm::ivec2& column) const {
+  const glm::ivec2 even = glm::min(column * stride_ + stride_ / 2, columns_ - 1);
+  const auto at = static_cast<std::size_t>(even.y) * static_cast<std::size_t>(columns_.x) +
+                  static_cast<std::size_t>(even.x);
+  return resampling_ != nullptr ? NearestColumn(*resampling_, at) : at;
+}
+
+// Returns the values of the source's columns that are nearest to those of the regular grid. An
+// empty array stays empty.
+std::vector<float> TimeReader::NearestOnGrid(std::vector<float> values) const {
+  if (values.empty() || (resampling_ == nullptr && stride_ == 1)) return values;
+  std::vector<float> nearest;
+  nearest.reserve(static_cast<std::size_t>(regular_.cells.x) *
+                  static_cast<std::size_t>(regular_.cells.y));
+  for (int y = 0; y < regular_.cells.y; ++y) {
+    for (int x = 0; x < regular_.cells.x; ++x) nearest.push_back(values[ModelColumnAt({x, y})]);
+  }
+  return nearest;
 }
 
 // Returns values from 0 to 255 in layers on the regular grid. Missing values become 0.
 std::vector<std::uint8_t> TimeReader::BytesOntoGrid(const std::vector<float>& values) const {
-  std::vector<float> remapped = OntoHeights(values);
-  if (resampling_ != nullptr) remapped = Resampled(*resampling_, remapped, Beyond::kZero);
+  const std::vector<float> remapped = OntoEvenColumns(OntoHeights(values), Beyond::kZero);
   std::vector<std::uint8_t> bytes(remapped.size());
   std::ranges::transform(remapped, bytes.begin(), [](float value) {
     return static_cast<std::uint8_t>(std::min(value + 0.5F, 255.0F));
@@ -490,15 +524,16 @@ void TrimTop(const VerticalGrid& storm_grid, volume::HydrometeorFields& fields) 
   }
 }
 
-// Sets the regular grid, whose middle is that of the domain.
+// Sets the regular grid. The first block of columns begins at the western and southern edge, and
+// the last may reach beyond the eastern and northern edge.
 void TimeReader::SetGrid() {
-  const glm::ivec2 columns =
-      resampling_ != nullptr ? resampling_->columns : glm::ivec2(domain_.cells);
-  const double dx_m = resampling_ != nullptr ? resampling_->dx_m : domain_.dx_m;
-  const double dy_m = resampling_ != nullptr ? resampling_->dy_m : domain_.dy_m;
-  regular_.cells = {columns.x, columns.y, grid_.cells};
-  regular_.spacing_m = {dx_m, dy_m, grid_.spacing_m};
-  regular_.low_corner_m = {-0.5 * dx_m * columns.x, -0.5 * dy_m * columns.y, grid_.low_m};
+  const glm::dvec2 spacing_m = resampling_ != nullptr
+                                   ? glm::dvec2(resampling_->dx_m, resampling_->dy_m)
+                                   : glm::dvec2(domain_.dx_m, domain_.dy_m);
+  const glm::dvec2 low_m = domain_.middle_m - 0.5 * spacing_m * glm::dvec2(columns_);
+  regular_.cells = {(columns_ + stride_ - 1) / stride_, grid_.cells};
+  regular_.spacing_m = {static_cast<double>(stride_) * spacing_m, grid_.spacing_m};
+  regular_.low_corner_m = {low_m, grid_.low_m};
 }
 
 absl::StatusOr<volume::HydrometeorFields> TimeReader::Read(const std::optional<VerticalGrid>& grid,
@@ -523,10 +558,10 @@ absl::StatusOr<volume::HydrometeorFields> TimeReader::Read(const std::optional<V
 // Runs `read` on a reader of the source. Running out of memory counts as an error of the input,
 // because it must not end the server.
 template <typename Result, typename ReadFunction>
-absl::StatusOr<Result> WithReader(LayerSource& source, ReadFunction read) {
+absl::StatusOr<Result> WithReader(LayerSource& source, int stride, ReadFunction read) {
   const LayerDomain& domain = source.Domain();
   try {
-    TimeReader reader(source);
+    TimeReader reader(source, stride);
     return read(reader);
   } catch (const std::bad_alloc&) {
   } catch (const std::length_error&) {
@@ -538,15 +573,23 @@ absl::StatusOr<Result> WithReader(LayerSource& source, ReadFunction read) {
 
 }  // namespace
 
-absl::StatusOr<volume::HydrometeorFields> ReadOnHeights(LayerSource& source,
+absl::StatusOr<volume::HydrometeorFields> ReadOnHeights(LayerSource& source, const RecordPart& part,
                                                         const std::optional<VerticalGrid>& grid,
                                                         const ReadCheckpoint& checkpoint) {
+  const LayerDomain& domain = source.Domain();
+  const bool resampled = domain.even != nullptr && domain.even->Resampled();
+  THUNDERHEAD_RETURN_IF_ERROR(
+      CheckPart(domain.path, part, resampled ? domain.even->columns : glm::ivec2(domain.cells)));
+  std::unique_ptr<LayerSource> windowed;
+  if (part.window.has_value()) windowed = MakeWindowedSource(source, *part.window);
   return WithReader<volume::HydrometeorFields>(
-      source, [&](TimeReader& reader) { return reader.Read(grid, checkpoint); });
+      windowed != nullptr ? *windowed : source, part.stride,
+      [&](TimeReader& reader) { return reader.Read(grid, checkpoint); });
 }
 
 absl::StatusOr<VerticalGrid> HeightGridOf(LayerSource& source) {
-  return WithReader<VerticalGrid>(source, [](TimeReader& reader) { return reader.ReadHeights(); });
+  return WithReader<VerticalGrid>(source, 1,
+                                  [](TimeReader& reader) { return reader.ReadHeights(); });
 }
 
 namespace {
@@ -555,11 +598,11 @@ class LayerRecordReader final : public RecordReader {
  public:
   explicit LayerRecordReader(OpenRecord open) : open_(std::move(open)) {}
 
-  absl::StatusOr<volume::HydrometeorFields> Read(std::size_t record,
+  absl::StatusOr<volume::HydrometeorFields> Read(const RecordPart& part,
                                                  const std::optional<VerticalGrid>& grid,
                                                  const ReadCheckpoint& checkpoint) const override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<LayerSource> source, open_(record));
-    return ReadOnHeights(*source, grid, checkpoint);
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<LayerSource> source, open_(part.record));
+    return ReadOnHeights(*source, part, grid, checkpoint);
   }
 
   absl::StatusOr<VerticalGrid> ReadVerticalGrid(std::size_t record) const override {

@@ -15,11 +15,11 @@
 
 namespace thunderhead::storm_files {
 
-// Reads the source and remaps it to even heights, so that each column keeps its mass. `grid` is the
-// storm's height grid. If it is absent, the grid is chosen from the source's heights. If the source
-// reaches beyond the grid, cells of the same spacing are added. Errors name the file, the variable
-// and what to do.
-absl::StatusOr<volume::HydrometeorFields> ReadOnHeights(LayerSource& source,
+// Reads a part of the source and remaps it to even heights. Each column, or each block of `stride`
+// x `stride` columns, keeps its mass. `grid` is the storm's height grid. If it is absent, the grid
+// is chosen from the source's heights. If the source reaches beyond the grid, cells of the same
+// spacing are added. Errors name the file, the variable and what to do.
+absl::StatusOr<volume::HydrometeorFields> ReadOnHeights(LayerSource& source, const RecordPart& part,
                                                         const std::optional<VerticalGrid>& grid,
                                                         const ReadCheckpoint& checkpoint);
 

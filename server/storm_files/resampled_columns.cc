@@ -1,5 +1,6 @@
 #include "storm_files/resampled_columns.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -57,18 +58,37 @@ std::size_t NearestColumn(const EvenColumns& even, std::size_t even_column) {
   return column;
 }
 
-std::vector<float> NearestOf(const EvenColumns& even, const std::vector<float>& values) {
-  std::vector<float> nearest;
-  if (values.empty()) return nearest;
-  nearest.reserve(even.from.size());
-  for (std::size_t at = 0; at < even.from.size(); ++at) {
-    nearest.push_back(values[NearestColumn(even, at)]);
+std::vector<float> BlockMeans(const std::vector<float>& values, const glm::ivec2& columns,
+                              int stride, Beyond beyond) {
+  const glm::ivec2 blocks = (columns + stride - 1) / stride;
+  const auto row = static_cast<std::size_t>(columns.x);
+  const std::size_t level_size = row * static_cast<std::size_t>(columns.y);
+  const std::size_t levels = values.size() / level_size;
+  std::vector<float> means;
+  means.reserve(levels * static_cast<std::size_t>(blocks.x) * static_cast<std::size_t>(blocks.y));
+  for (std::size_t level = 0; level < levels; ++level) {
+    const float* const layer = values.data() + level * level_size;
+    for (int block_y = 0; block_y < blocks.y; ++block_y) {
+      const int end_y = std::min((block_y + 1) * stride, columns.y);
+      for (int block_x = 0; block_x < blocks.x; ++block_x) {
+        const int end_x = std::min((block_x + 1) * stride, columns.x);
+        double sum = 0.0;
+        for (int y = block_y * stride; y < end_y; ++y) {
+          const float* const at = layer + static_cast<std::size_t>(y) * row;
+          for (int x = block_x * stride; x < end_x; ++x) sum += at[x];
+        }
+        const int inside = (end_x - block_x * stride) * (end_y - block_y * stride);
+        means.push_back(
+            static_cast<float>(sum / (beyond == Beyond::kZero ? stride * stride : inside)));
+      }
+    }
   }
-  return nearest;
+  return means;
 }
 
 double SumFactor(const EvenColumns& even, const std::vector<float>& values,
                  const std::vector<float>& resampled) {
+  if (even.model_areas.empty()) return 1.0;
   const std::size_t columns = ModelColumnCount(even);
   double sum = 0.0;
   for (std::size_t first = 0; first < values.size(); first += columns) {

@@ -20,15 +20,20 @@ enum class Beyond { kZero, kNearest };
 std::vector<float> Resampled(const EvenColumns& even, const std::vector<float>& values,
                              Beyond beyond);
 
-// Returns the values of the nearest of the model's columns. An empty array stays empty.
-std::vector<float> NearestOf(const EvenColumns& even, const std::vector<float>& values);
-
 // Returns the index of the model's column nearest to an even column.
 std::size_t NearestColumn(const EvenColumns& even, std::size_t even_column);
 
+// Returns the means of blocks of `stride` x `stride` columns, for any number of levels of `columns`
+// columns. Blocks at the eastern and northern edge may reach beyond the columns. With
+// Beyond::kZero the values there count as 0, so the sum over all columns is kept, apart from the
+// factor stride^2. With Beyond::kNearest only the columns inside count.
+std::vector<float> BlockMeans(const std::vector<float>& values, const glm::ivec2& columns,
+                              int stride, Beyond beyond);
+
 // Returns the factor by which `resampled` must be multiplied to have the sum of `values`, in which
 // each column is weighted by its area. Interpolation between columns that are farther apart, or
-// less far, than the even columns changes the sum a little. Returns 1 if a sum is 0.
+// less far, than the even columns changes the sum a little. Returns 1 if a sum is 0, or if the
+// areas of the model's columns are not known.
 double SumFactor(const EvenColumns& even, const std::vector<float>& values,
                  const std::vector<float>& resampled);
 

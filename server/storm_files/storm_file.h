@@ -12,6 +12,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "storm_files/record_part.h"
 #include "storm_files/vertical_remap.h"
 #include "volume/hydrometeor_fields.h"
 #include "volume/map_projection.h"
@@ -30,10 +31,12 @@ class RecordReader {
  public:
   virtual ~RecordReader() = default;
 
-  // Reads record `record`. `grid` is the storm's height grid. If it is absent, the reader chooses a
-  // grid from this record. A format whose heights are the same at all times can ignore `grid`.
+  // Reads a part of a record. `grid` is the storm's height grid. If it is absent, the reader
+  // chooses a grid from this part. A format whose heights are the same at all times can ignore
+  // `grid`. The fields lie where they are in the whole storm. INVALID_ARGUMENT if the storm has no
+  // such part.
   virtual absl::StatusOr<volume::HydrometeorFields> Read(
-      std::size_t record, const std::optional<VerticalGrid>& grid,
+      const RecordPart& part, const std::optional<VerticalGrid>& grid,
       const ReadCheckpoint& checkpoint) const = 0;
 
   // Returns the height grid of a storm whose first time is this record.

@@ -304,7 +304,7 @@ absl::StatusOr<volume::HydrometeorFields> ReadWrfTime(const WrfMetadata& metadat
                                                       const ReadCheckpoint& checkpoint) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<LayerSource> source,
                                OpenWrfTime(std::make_shared<WrfMetadata>(metadata), record));
-  return ReadOnHeights(*source, grid, checkpoint);
+  return ReadOnHeights(*source, record, grid, checkpoint);
 }
 
 }  // namespace thunderhead::storm_files

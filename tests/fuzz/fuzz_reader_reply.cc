@@ -56,7 +56,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     volume::HydrometeorFields fields;
     Visit(reply, fields);
     file.cells = fields.grid.cells;
-    if (reply.Ok() && CheckPlausible(fields, file).ok()) ReadArrays(fields);
+    if (reply.Ok() && CheckPlausible(fields, glm::ivec2(file.cells)).ok()) ReadArrays(fields);
   }
   close(ends[0]);
   return 0;

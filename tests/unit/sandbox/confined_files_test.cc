@@ -165,6 +165,13 @@ void ExpectSameStorm(ConfinedFiles& files, const std::string& path) {
     ASSERT_TRUE(fields.ok()) << fields.status();
     EXPECT_TRUE(BytesOf(*fields) == BytesOf(*expected)) << path << " record " << record;
     EXPECT_GT(shares.size(), 1U);
+    storm_files::RecordPart part = record;
+    part.window = storm_files::ColumnWindow{{1, 0}, glm::ivec2(own->cells) - 1};
+    part.stride = 2;
+    const auto expected_part = own->reader->Read(part, *grid, {});
+    const auto read_part = confined->reader->Read(part, *grid, {});
+    ASSERT_TRUE(expected_part.ok() && read_part.ok()) << read_part.status();
+    EXPECT_TRUE(BytesOf(*read_part) == BytesOf(*expected_part)) << path << " record " << record;
   }
 }
 

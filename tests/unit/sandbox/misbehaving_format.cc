@@ -146,7 +146,7 @@ class MisbehavingReader final : public storm_files::RecordReader {
   explicit MisbehavingReader(std::string name) : name_(std::move(name)) {}
 
   absl::StatusOr<HydrometeorFields> Read(
-      std::size_t, const std::optional<storm_files::VerticalGrid>&,
+      const storm_files::RecordPart&, const std::optional<storm_files::VerticalGrid>&,
       const storm_files::ReadCheckpoint& checkpoint) const override {
     if (checkpoint) static_cast<void>(checkpoint(0.5));
     HydrometeorFields fields = SoundFields();

@@ -167,7 +167,7 @@ BlobRead ReadBlob(const ColumnPlaces& places, const Blob& blob, bool east_and_no
   EXPECT_TRUE(even->Resampled());
   BlobSource source(places, blob, *even);
   source.east_and_north = east_and_north;
-  auto fields = ReadOnHeights(source, std::nullopt, {});
+  auto fields = ReadOnHeights(source, 0, std::nullopt, {});
   EXPECT_TRUE(fields.ok()) << fields.status();
   return {*even, *std::move(fields)};
 }

@@ -30,10 +30,13 @@ class ToyReader final : public RecordReader {
  public:
   explicit ToyReader(std::string path) : path_(std::move(path)) {}
 
-  absl::StatusOr<volume::HydrometeorFields> Read(std::size_t record,
+  absl::StatusOr<volume::HydrometeorFields> Read(const RecordPart& part,
                                                  const std::optional<VerticalGrid>&,
                                                  const ReadCheckpoint& checkpoint) const override {
-    if (record != 0) return absl::OutOfRangeError(absl::StrCat(path_, ": has one record"));
+    if (part.record != 0) return absl::OutOfRangeError(absl::StrCat(path_, ": has one record"));
+    if (part.window.has_value() || part.stride != 1) {
+      return absl::UnimplementedError(absl::StrCat(path_, ": is read as a whole"));
+    }
     std::string word;
     int cells = 0;
     float concentration = 0.0F;

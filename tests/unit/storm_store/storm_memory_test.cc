@@ -100,7 +100,8 @@ class CubeFormat final : public storm_files::StormFormat {
         : storage_(std::move(storage)), cells_(cells) {}
 
     absl::StatusOr<volume::HydrometeorFields> Read(
-        std::size_t /*record*/, const std::optional<storm_files::VerticalGrid>& /*grid*/,
+        const storm_files::RecordPart& /*part*/,
+        const std::optional<storm_files::VerticalGrid>& /*grid*/,
         const storm_files::ReadCheckpoint& checkpoint) const override {
       if (storage_ != nullptr) storage_->Pass();
       if (absl::Status ended = checkpoint(0.5); !ended.ok()) return ended;
