@@ -104,7 +104,7 @@ grpc::Status FakeService::CreateSession(grpc::ServerContext* /*context*/,
                                         const v1::CreateSessionRequest* request,
                                         v1::CreateSessionResponse* response) {
   if (answer_opening) {
-    const grpc::Status status = answer_opening(request->scene());
+    grpc::Status status = answer_opening(request->scene());
     if (!status.ok()) return status;
   }
   const std::lock_guard lock(mutex_);

@@ -29,7 +29,7 @@ std::string JpegOf(std::uint8_t level, int width = kWidth, int height = kHeight)
   unsigned char* bytes = nullptr;
   unsigned long size = 0;
   tjCompress2(encoder, rgb.data(), width, 0, height, TJPF_RGB, &bytes, &size, TJSAMP_420, 95, 0);
-  const std::string jpeg(reinterpret_cast<const char*>(bytes), size);
+  std::string jpeg(reinterpret_cast<const char*>(bytes), size);
   tjFree(bytes);
   tjDestroy(encoder);
   return jpeg;
@@ -137,9 +137,12 @@ TEST_F(PictureFlowTest, TheNewestOfManyIsShownAndTheOthersAreCounted) {
 TEST_F(PictureFlowTest, VideoIsDecodedInOrderHoweverFewArePainted) {
   // The frames are offered together while the decoder is busy, so that they wait in the queue.
   Encoder encoder;
+  constexpr int kFrames = 20;
   std::vector<v1::Frame> frames;
-  for (int i = 0; i < 20; ++i)
+  frames.reserve(kFrames);
+  for (int i = 0; i < kFrames; ++i) {
     frames.push_back(encoder.Next(static_cast<std::uint8_t>(60 + 5 * i)));
+  }
   {
     const std::lock_guard busy(decoding);
     flow.Offer(JpegFrame(0, 90), 1);

@@ -98,7 +98,7 @@ absl::Status PictureDecoder::DecodeJpeg(const std::string& bytes, Pixels& pixels
     return absl::InvalidArgumentError(
         absl::StrCat("the JPEG cannot be decoded: ", tjGetErrorStr2(state_->jpeg)));
   }
-  if (const absl::Status status = Resize(width_px, height_px, pixels); !status.ok()) return status;
+  if (absl::Status status = Resize(width_px, height_px, pixels); !status.ok()) return status;
   if (tjDecompress2(state_->jpeg, data, bytes.size(), pixels.rgbx.data(), width_px, 0, height_px,
                     TJPF_RGBX, TJFLAG_FASTDCT) != 0 &&
       tjGetErrorCode(state_->jpeg) == TJERR_FATAL) {
@@ -130,7 +130,7 @@ absl::Status PictureDecoder::DecodeVp9(const v1::Frame& frame, bool wanted, Pixe
   if (!wanted) return absl::OkStatus();
   const auto width_px = static_cast<int>(image->d_w);
   const auto height_px = static_cast<int>(image->d_h);
-  if (const absl::Status status = Resize(width_px, height_px, pixels); !status.ok()) return status;
+  if (absl::Status status = Resize(width_px, height_px, pixels); !status.ok()) return status;
   libyuv::J420ToABGR(image->planes[VPX_PLANE_Y], image->stride[VPX_PLANE_Y],
                      image->planes[VPX_PLANE_U], image->stride[VPX_PLANE_U],
                      image->planes[VPX_PLANE_V], image->stride[VPX_PLANE_V], pixels.rgbx.data(),
@@ -148,7 +148,7 @@ absl::Status PictureDecoder::DecodeAvif(const std::string& bytes, Pixels& pixels
       avifDecoderReadMemory(decoder.get(), image.get(),
                             reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
   if (result != AVIF_RESULT_OK) return AvifError(result);
-  const absl::Status status =
+  absl::Status status =
       Resize(static_cast<int>(image->width), static_cast<int>(image->height), pixels);
   if (!status.ok()) return status;
   constexpr int kBits = 10;

@@ -3,12 +3,12 @@
 namespace thunderhead::desktop {
 
 bool Choices::Close() {
-  if (panel != Panel::kNone && panel != Panel::kDrawer) {
+  // The drawer stays open while the hand is in use.
+  const bool drawer_stays = panel == Panel::kDrawer && hand != Hand::kCamera;
+  if (panel != Panel::kNone && !drawer_stays) {
     panel = Panel::kNone;
   } else if (hand != Hand::kCamera) {
     hand = Hand::kCamera;
-  } else if (panel == Panel::kDrawer) {
-    panel = Panel::kNone;
   } else if (tool != Tool::kNone) {
     tool = Tool::kNone;
   } else {

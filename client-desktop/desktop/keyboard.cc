@@ -147,8 +147,7 @@ bool TakeKey(const SDL_KeyboardEvent& event, const KeyFocus& focus, const KeyAct
   if ((event.keysym.mod & (KMOD_CTRL | KMOD_GUI)) != 0) return Edits(key, shift, actions);
   if (const auto arrow = ArrowOf(key)) {
     if (focus.controls) return false;
-    const auto [right, down] = *arrow;
-    actions.move([=](const Pose& pose) {
+    actions.move([shift, right = arrow->first, down = arrow->second](const Pose& pose) {
       return shift ? client::Pan(pose, right * kPan_px, down * kPan_px, kPicture)
                    : Look(pose, right, down);
     });

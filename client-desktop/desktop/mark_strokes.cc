@@ -39,6 +39,7 @@ std::vector<MarkStroke> StrokesOf(const v1::Mark& mark, const v1::View& view) {
   for (const Stroke& part : client::ProjectLine(view, mark.positions())) AddStrokes(part, strokes);
   const bool ink = strokes.size() == 1 && strokes.front().size() > kMaxStraightCorners;
   std::vector<MarkStroke> marked;
+  marked.reserve(strokes.size());
   for (Stroke& stroke : strokes) marked.push_back({ink, std::move(stroke)});
   return marked;
 }

@@ -12,6 +12,7 @@ namespace {
 ParsedFlags Parse(std::vector<std::string> words) {
   words.insert(words.begin(), "thunderhead-desktop");
   std::vector<char*> argv;
+  argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
   return ParseFlags(static_cast<int>(argv.size()), argv.data());
 }

@@ -160,8 +160,6 @@ absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
     const storm_files::StormFile& of, const storm_files::RecordPart& part,
     const std::optional<storm_files::VerticalGrid>& grid,
     const storm_files::ReadCheckpoint& checkpoint) {
-  const glm::ivec2 storm_columns(of.cells);
-  THUNDERHEAD_RETURN_IF_ERROR(storm_files::CheckPart(of.path, part, storm_columns));
   Request request = RequestFor(Wanted::kFields, of.path, of.parts, of.first_record + part.record);
   request.window = part.window;
   request.stride = part.stride;
@@ -170,7 +168,8 @@ absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
   THUNDERHEAD_RETURN_IF_ERROR(Run(std::move(request), Reply::kFields, options_.limits.time,
                                   checkpoint, [&](Receiver& from_reader) {
                                     Visit(from_reader, fields);
-                                    return CheckPlausible(fields, ColumnsOf(part, storm_columns));
+                                    return CheckPlausible(fields,
+                                                          ColumnsOf(part, glm::ivec2(of.cells)));
                                   }));
   return fields;
 }

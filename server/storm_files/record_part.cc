@@ -26,7 +26,8 @@ absl::Status CheckPart(const std::string& path, const RecordPart& part, const gl
 
 glm::ivec2 ColumnsOf(const RecordPart& part, const glm::ivec2& columns) {
   const glm::ivec2 read = part.window.has_value() ? part.window->columns : columns;
-  return (read + part.stride - 1) / part.stride;
+  const int stride = std::max(part.stride, 1);
+  return (read + stride - 1) / stride;
 }
 
 }  // namespace thunderhead::storm_files

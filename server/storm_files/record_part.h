@@ -35,7 +35,7 @@ struct RecordPart {
 absl::Status CheckPart(const std::string& path, const RecordPart& part, const glm::ivec2& columns);
 
 // Returns the number of columns along x and along y that reading the part gives. `columns` are the
-// storm's.
+// storm's. The part is one that CheckPart accepts.
 glm::ivec2 ColumnsOf(const RecordPart& part, const glm::ivec2& columns);
 
 }  // namespace thunderhead::storm_files

@@ -50,7 +50,7 @@ std::string Difference(const Struct& expected, const Struct& found, const std::s
 }
 
 std::string Difference(const Json& expected, const Json& found, const std::string& path) {
-  const std::string differs =
+  std::string differs =
       absl::StrCat(path, " is ", TextOf(found), " in place of ", TextOf(expected));
   if (expected.kind_case() != found.kind_case()) return differs;
   switch (expected.kind_case()) {

@@ -56,6 +56,7 @@ Actions RunPlayback(Arguments& given) {
   };
   actions["rates"] = [](Arguments&) -> Results {
     std::vector<Json> rates;
+    rates.reserve(std::size(Playback::kRates));
     for (const float rate : Playback::kRates) rates.push_back(JsonOf(static_cast<double>(rate)));
     return {{"rates", JsonOf(rates)}};
   };

@@ -29,6 +29,7 @@ Json LineOf(const v1::View& view, const Json& points_m) {
   std::vector<Json> parts;
   for (const auto& part : ProjectLine(view, mark.positions())) {
     std::vector<Json> points;
+    points.reserve(part.size());
     for (const PicturePoint& point : part) points.push_back(Pair(point));
     parts.push_back(JsonOf(points));
   }
