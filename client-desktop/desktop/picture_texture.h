@@ -19,7 +19,9 @@ class PictureTexture {
   // Uploads the pixels. This and the destructor require the window's OpenGL context.
   void Upload(const client::Pixels& pixels);
   bool empty() const { return texture_ == 0; }
+  // Dear ImGui keeps the number of an OpenGL texture in a pointer.
   ImTextureID id() const {
+    // NOLINTNEXTLINE(performance-no-int-to-ptr)
     return reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(texture_));
   }
   int width_px() const { return width_px_; }
