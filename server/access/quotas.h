@@ -63,7 +63,7 @@ class Quotas {
   const QuotaLimits& limits() const { return limits_; }
 
  private:
-  // The number of places taken of one kind.
+  // Number of places that calls of one kind hold, in total and for each identity.
   struct Count {
     std::size_t all = 0;
     std::map<std::string, std::size_t> by_identity;

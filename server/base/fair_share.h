@@ -35,7 +35,8 @@ class FairShare {
     double settled_ms = 0.0;  // time used by tasks that have ended
     double charged_ms = 0.0;  // expected time of tasks that have not ended
   };
-  std::map<std::string, Account> accounts_;  // of the clients in `waiting` of the last call of Next
+  // Accounts of the clients that were waiting at the last call of Next.
+  std::map<std::string, Account> accounts_;
 };
 
 }  // namespace thunderhead::base

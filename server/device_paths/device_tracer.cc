@@ -183,7 +183,8 @@ void DeviceTracer::Begin(std::size_t ray, std::uint32_t sample, Begun* begun,
                          std::vector<PathState>* states) const {
   begun->first_state = states->size();
   const reference::EyeSegment& segment = begun->segment;
-  // Each ray to trace has its own random stream. Their kinds follow after the kinds of states.
+  // Each traced ray has its own random stream. The air and the path itself use a kind of state as
+  // the number of their stream. The numbers for the shaded light follow after the last kind.
   std::uint32_t kind = shaders::kPathMissed;
   for (const reference::ThroughMedium& light : segment.shaded) {
     states->push_back(StateOf(light.ray, shaders::kPathShines, StreamOf(ray, sample, ++kind)));

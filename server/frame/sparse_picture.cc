@@ -97,8 +97,9 @@ void CopyPadded(const FineImage& picture, int y, std::vector<int>* padded) {
               padded->begin() + static_cast<std::ptrdiff_t>(width + kSparseChannels));
 }
 
-// Returns 1 for each rough pixel, from which the next picture cannot be interpolated. The pixels of
-// the next picture in its place need their own rays.
+// Returns 1 for each rough pixel, and 0 for the others. A pixel is rough if it differs too much
+// from the interpolation of its neighbours. The finer picture cannot be interpolated there, so its
+// pixels in that place get their own rays.
 std::vector<std::uint8_t> Rough(const FineImage& picture, double contrast) {
   const int most = static_cast<int>(std::lround(contrast * kFineSteps));
   const std::size_t width = kSparseChannels * static_cast<std::size_t>(picture.width_px);

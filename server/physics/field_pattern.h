@@ -35,9 +35,10 @@ using glm::vec4;
 
 }  // namespace glsl
 
-// The map of the crop fields. Its red, green and blue hold the brightness, dryness and centre
-// pivots of fields, with texels of 402 m. Its alpha holds the grain, with texels of 0.8 m. The
-// means of red, green and alpha are 128 / 255.
+// The map of the crop fields and of the grain, which is uneven soil and plants within a field. Red,
+// green and blue hold a field's brightness, its dryness, and whether a centre pivot waters it. A
+// texel covers 402 m for them. Alpha holds the grain, which is looked up at a finer scale: a texel
+// covers 0.8 m. The means of red, green and alpha are 128 / 255.
 class FieldPattern {
  public:
   // Returns the only pattern, which is created on first use.

@@ -31,7 +31,7 @@ constexpr std::size_t IndexOf(Hydrometeor hydrometeor) {
 // Returns "cloud", "rain", "ice", "snow", "graupel" or "hail".
 std::string_view NameOf(Hydrometeor hydrometeor);
 
-// A kind of phase function: a formula (kPhaseFormulas in optics.h) or a table (kPhaseTables).
+// A kind of phase function: a formula (kPhaseFormulas in optics.cc) or a table (kPhaseTables).
 enum class PhaseKind {
   kHenyeyGreenstein,
   kCornetteShanks,

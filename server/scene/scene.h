@@ -197,8 +197,8 @@ struct Scene {
   bool operator==(const Scene&) const = default;
 };
 
-// Returns a field's detail as it is drawn on a grid with cells of this size, with a resolved
-// wavelength. The share is 0 if no detail is drawn.
+// Returns a field's detail as it is drawn on a grid with cells of this size. A wavelength of 0 is
+// replaced by the length for which it stands. The share is 0 if no detail is drawn.
 Detail DrawnDetail(const Scene& scene, physics::Hydrometeor hydrometeor, const glm::dvec3& cell_m);
 
 // Returns the first stage that must rerun when `before` becomes `after`.

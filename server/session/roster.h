@@ -79,7 +79,7 @@ struct RosterTimeouts {
   std::chrono::milliseconds answer = std::chrono::seconds(20);
   // Minimum time between two requests of a person.
   std::chrono::milliseconds ask_again = std::chrono::seconds(5);
-  // How long no presenter may be present until control becomes free.
+  // Control becomes free when no presenter has been present for this long.
   std::chrono::milliseconds away = std::chrono::seconds(60);
   // How long control waits for a person whose connection was lost, before others get it.
   std::chrono::milliseconds come_back = std::chrono::seconds(10);
@@ -132,9 +132,9 @@ class Roster {
   // PERMISSION_DENIED while a viewer steers.
   absl::Status PresenterMaySteer() const;
 
-  // Gives control at once if it is free or the person is a presenter. Otherwise the person who
-  // steers, or a presenter, is asked. PERMISSION_DENIED while control is locked; RESOURCE_EXHAUSTED
-  // for asking too often.
+  // Gives control at once to a presenter. Gives it at once to a viewer if it is free and the rules
+  // allow viewers to steer. Otherwise the person who steers, or a presenter, is asked. Returns
+  // PERMISSION_DENIED while control is locked, and RESOURCE_EXHAUSTED for asking too often.
   absl::Status AskControl(std::uint64_t id, Time now);
   // Gives control to a person, or gives it up if `to` is 0. The person in control and presenters
   // may do so. Control that a presenter gives up becomes free and goes to the viewer who asked

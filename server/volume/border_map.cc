@@ -106,8 +106,8 @@ class Nearest {
     Try(piece_[Index(from_x, from_y)], x, y);
   }
 
-  // Compares the nearest piece of each texel in row `y` with the pieces of its neighbours in row `y
-  // + from` and in its own row.
+  // Updates the nearest piece of each texel in row `y`. It tries the pieces that the texel's
+  // neighbours have found, in the same row and in the next row in direction `from` (-1 or 1).
   void SpreadRow(int y, int from) {
     for (int x = 0; x < texels_.x; ++x) {
       for (int side = -1; side <= 1; ++side) TryThatOf(x + side, y + from, x, y);

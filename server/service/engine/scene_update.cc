@@ -111,8 +111,8 @@ absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const Sc
   }
   THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine.store, engine.loop.Techniques(), *changed.scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckSize(engine.limits, *changed.scene));
-  // The revision is taken before the scene is framed, which may wait for a read, so that the last
-  // update wins.
+  // Framing the scene (placing its camera) may wait for a read of the storm. The update takes its
+  // revision before, so that of several updates the last one to arrive wins.
   session::IncompleteUpdate update{.still_counts = std::move(still_counts)};
   if (NeedsFraming(*changed.scene)) update.serialized = changed.scene->SerializeAsString();
   if (!expected.has_value()) {

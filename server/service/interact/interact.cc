@@ -174,7 +174,8 @@ class InteractCall : public InteractReactor,
 
   void OnDone() override {
     if (session_ != nullptr) {
-      // Touch comes first, because a session expires sooner once it has no viewers.
+      // Touch resets the session's idle time. It comes before the viewer leaves, because a session
+      // without viewers has a shorter timeout and could expire at once.
       session_->Touch();
       {
         const std::lock_guard lock(mutex_);
@@ -495,7 +496,7 @@ class InteractCall : public InteractReactor,
 
 }  // namespace
 
-// The call deletes itself when gRPC calls OnDone.
+// gRPC releases the call in OnDone. The session and pending updates may keep it alive for longer.
 InteractReactor* Interact(Engine& engine, grpc::CallbackServerContext* context,
                           std::shared_ptr<const access::Caller> caller,
                           double requests_per_second) {

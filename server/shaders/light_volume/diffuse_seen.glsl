@@ -110,7 +110,7 @@ float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, floa
   return shown;
 }
 
-// Completes a ray that ended before the medium does. Deep in a cloud, diffuse light varies little. The mean over the
+// Completes the sums of a ray that was stopped inside the medium. Deep in a cloud, diffuse light varies little. The mean over the
 // visible part is therefore extrapolated to the rest.
 void close_diffuse(inout DiffuseSeen seen) {
   float whole = 1.0 / (1.0 - seen.transmittance);

@@ -92,7 +92,7 @@ PHYSICS_FUNCTION vec3 field_reflectance(vec3 field, float pivot_circle, vec2 roa
   vec2 signs = (vec2(field) - 128.0f / 255.0f) * 2.0f;
   vec3 fields = brighter * signs.x + drier * signs.y + watered * (field.z * pivot_circle);
   vec3 gravel = vec3(0.35f, 0.33f, 0.30f);
-  vec3 green = mix(vec3(1.0f), vec3(0.950f, 1.050f, 0.620f), contrast);  // plants on plain ground
+  vec3 green = mix(vec3(1.0f), vec3(0.950f, 1.050f, 0.620f), contrast);  // tint of plants, relative to the ground
   return green * (vec3(1.0f) + contrast * ((1.0f - road.x) * fields + road.y * gravel));
 }
 
