@@ -144,7 +144,8 @@ std::size_t ErrorEstimate::BestClamp(const Group& all) const {
 
 std::optional<MeasuredError> ErrorEstimate::Result() const {
   const Group all = All();
-  // The two sides differ by the mean reference radiance, which must be positive.
+  // The left side minus the right is the sum of the estimated reference radiances. It must be
+  // positive, because errors are relative to their mean.
   if (pixels_ < kMinPixels || !(mean_drawn_ * all.pixels > all.drawn - all.clamped.back().truth)) {
     return std::nullopt;
   }

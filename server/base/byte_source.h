@@ -30,7 +30,7 @@ class ByteSource {
 };
 
 // Opens a regular file for reading, but never a pipe or device, because opening one could block or
-// act. Errors: NOT_FOUND; PERMISSION_DENIED; INVALID_ARGUMENT (no regular file).
+// have side effects. Errors: NOT_FOUND; PERMISSION_DENIED; INVALID_ARGUMENT (no regular file).
 absl::StatusOr<FileDescriptor> OpenRegularFile(const std::string& path);
 
 // Opens the file at `path`. If its bytes were registered by ReadFromMemory, these are used.

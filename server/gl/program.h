@@ -86,7 +86,7 @@ class Program {
   static absl::StatusOr<Program> LinkWholeTarget(const ProgramSource& source, bool computes);
 
   void Use() const { glUseProgram(name_.Get()); }
-  // Returns true if the program is a whole target that runs as a compute shader.
+  // Returns true if the program draws a whole target with a compute shader.
   bool Computes() const { return computes_; }
   GLuint Get() const { return name_.Get(); }
   template <typename T>

@@ -147,7 +147,7 @@ Packing PackingOf(int group, int variable) {
   packing.offset = OneNumberOr(group, variable, "add_offset", 0.0);
   const double span = SignedSpan(type);
   const std::optional<bool> is_unsigned = IsUnsigned(group, variable);
-  // A type that already is as the attribute says needs no change.
+  // The attribute _Unsigned has an effect only if the type has the other signedness.
   if (is_unsigned.has_value() && *is_unsigned == (span > 0.0)) packing.wrap = span;
   packing.fill = Meant(OneNumberOr(group, variable, "_FillValue", DefaultFill(type)), packing);
   packing.missing = NumbersOf(group, variable, "missing_value");

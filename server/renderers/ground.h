@@ -96,10 +96,11 @@ class Ground {
   gl::Texture2D shadow_;
   gl::Framebuffer shadow_target_;
   glm::dvec3 shadow_middle_m_{0.0};
-  // Its dot product with an offset from shadow_middle_m_ is 1 at the shadow's half width.
+  // The dot product with an offset from shadow_middle_m_ is 1 at half the shadow's width.
   glm::dvec3 shadow_right_{0.0};
   glm::dvec3 shadow_up_{0.0};
-  // Its dot product with an offset is 1 at the shadow's half depth, away from the sun.
+  // The dot product with an offset from shadow_middle_m_ is 1 at half the shadow's depth, in the
+  // direction away from the sun.
   glm::dvec3 shadow_down_{0.0};
 
   std::shared_ptr<const LightCorrection> correction_;

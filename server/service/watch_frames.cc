@@ -90,7 +90,8 @@ class FrameStream : public FramesReactor,
   }
 
   void OnDone() override {
-    // Touch comes first, because a session expires sooner once it has no viewers.
+    // Touch resets the session's idle time. It comes before the viewer leaves, because a session
+    // without viewers has a shorter timeout and could expire at once.
     session_->Touch();
     if (viewer_id_ != 0) session_->hub().Leave(viewer_id_);
     session_->audience().RemoveOnlooker();
@@ -133,7 +134,7 @@ class FrameStream : public FramesReactor,
   }
 
   const std::shared_ptr<session::Session> session_;
-  const CallerRef caller_;  // counts the stream while it lives
+  const CallerRef caller_;  // holds the place of the stream in its quota
   std::shared_ptr<FrameStream> held_by_grpc_;
   v1::WatchFramesResponse response_;
   // The revision of the scene that was sent last. It is used under the same conditions as

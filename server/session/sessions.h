@@ -60,8 +60,10 @@ class OwnView;
 
 // An update of the scene that was received, but whose scene is not complete yet.
 struct IncompleteUpdate {
-  std::function<bool()> still_counts = {};  // false: its sender lost control; empty: it counts
-  std::string serialized = {};              // the scene as far as it is known; may be empty
+  // Returns false if the update is no longer valid because its sender lost control. If the function
+  // is empty, the update stays valid.
+  std::function<bool()> still_counts = {};
+  std::string serialized = {};  // the scene as far as it is known; may be empty
 };
 
 struct SerializedScene {

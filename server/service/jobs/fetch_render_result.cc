@@ -120,7 +120,7 @@ class ResultStream final : public ResultReactor {
 
   jobs::Jobs& jobs_;
   const ResultReading reading_;
-  const CallerRef caller_;  // counts the stream while it lives
+  const CallerRef caller_;  // holds the place of the stream in its quota
   const jobs::PicturePlace picture_;
   const std::shared_ptr<ResultFile> file_;
   v1::FetchRenderResultResponse response_;  // gRPC reads it during the write
