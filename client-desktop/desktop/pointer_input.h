@@ -14,7 +14,7 @@
 namespace thunderhead::desktop {
 
 struct ScreenPoint {
-  float x = 0.0F;  // from the left, in the window's units
+  float x = 0.0F;  // distance from the window's left edge, in its units
   float y = 0.0F;  // distance from the window's top edge
 };
 

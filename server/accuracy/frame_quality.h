@@ -4,9 +4,9 @@
 namespace thunderhead::accuracy {
 
 struct FrameQuality {
-  double image_scale =
-      1.0;  // of the eye buffer's width and height, (0, 1]; the frame keeps its size
-  double slice_share = 1.0;  // of the scene's slices, (0, 1]
+  // Factor of the eye buffer's width and height, (0, 1]. The frame keeps its size.
+  double image_scale = 1.0;
+  double slice_share = 1.0;  // share of the scene's slices, (0, 1]
 
   // True if the picture is drawn sparsely: rays are placed only where the picture needs them
   // (accuracy/moving_picture.h). Not all techniques support it. A smaller image_scale then means

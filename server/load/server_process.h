@@ -8,7 +8,7 @@
 namespace thunderhead::load {
 
 struct ProcessSample {
-  double at_s = 0.0;   // on the clock of Now_s()
+  double at_s = 0.0;   // time in seconds on the clock of Now_s()
   double cpu_s = 0.0;  // processor time since the process began
   double rss_mb = 0.0;
 };

@@ -24,8 +24,8 @@ bool IsHdf5Signature(std::span<const std::byte> bytes);
 // - A link leads to another file, or to a group to which another link leads.
 // - The structure cannot be read.
 //
-// They return OK for a file that is not HDF5. The caller must hold NetcdfLock. CheckHdf5Bytes does
-// not copy the bytes.
+// Both functions return OK for a file that is not HDF5. The caller must hold NetcdfLock.
+// CheckHdf5Bytes does not copy the bytes.
 absl::Status CheckHdf5File(const std::string& path);
 absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> bytes);
 

@@ -106,8 +106,9 @@ class Manifest {
   std::string path_;
   // File descriptor of the locked file; -1 if none.
   int file_;
-  std::vector<ManifestEntry> entries_;                // of this manifest, in order
-  std::map<std::string, std::vector<Other>> others_;  // by product, newest last
+  std::vector<ManifestEntry> entries_;  // entries of this manifest, in order
+  // Entries of the other manifests by product, the newest last.
+  std::map<std::string, std::vector<Other>> others_;
   // Other manifests whose locks other processes hold.
   std::set<std::string> held_;
 };

@@ -13,7 +13,7 @@ namespace thunderhead::product {
 // A coordinate axis of a map in this mapping. A value on it is `origin` + `per_metre` times the
 // projection's own coordinate.
 struct CfMapAxis {
-  std::string name;  // of the dimension and its variable
+  std::string name;  // name of the dimension and of its variable
   std::string units;
   std::string standard_name;
   double origin = 0.0;

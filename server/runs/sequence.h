@@ -17,7 +17,7 @@ namespace thunderhead::runs {
 
 struct SequenceOptions {
   std::vector<std::string> storms;  // files or folders; ids if a server draws
-  std::string times;                // as of pipeline::ParseTimes
+  std::string times;                // in the notation of pipeline::ParseTimes
   pipeline::Shard shard;            // the share of the pictures that this process makes
   PictureRunOptions pictures;
   MovieOptions movie;

@@ -86,7 +86,8 @@ const View* ViewOf(const PictureRun& run, const pipeline::ManifestEntry& entry) 
 // Marks files of which earlier runs have drawn every view as done, so that they count towards
 // --until. They may have been moved away since.
 void RememberDone(const PictureRun& run, WatchedFolder& folder) {
-  std::map<std::string, std::map<std::string, std::size_t>> views;  // by input and valid time
+  // Number of drawn views, by input and valid time.
+  std::map<std::string, std::map<std::string, std::size_t>> views;
   std::map<std::string, pipeline::InputFile> inputs;
   for (const pipeline::ManifestEntry& entry : run.Records().Entries()) {
     if (ViewOf(run, entry) == nullptr) continue;

@@ -75,7 +75,7 @@ def kill_those_of(folder: pathlib.Path) -> None:
             if str(folder).encode() in (process / "cmdline").read_bytes() and int(process.name) != os.getpid():
                 os.kill(int(process.name), signal.SIGKILL)
         except OSError:
-            pass  # It has ended.
+            pass  # The job has ended.
 
 
 class EngineTest(unittest.TestCase):

@@ -10,7 +10,8 @@ struct Taken {
 
 // Computes the opacity from the extinction at the segment's two ends.
 Taken taken_on(float segment, float start, float end) {
-  float start_depth = segment * start;  // of a segment with its start's extinction everywhere
+  // The depth that the segment would have with the extinction of its start everywhere.
+  float start_depth = segment * start;
   float rise = segment * (end - start);
   float depth = start_depth + 0.5 * rise;
   float share = depth < 0.01 ? depth * (1.0 - 0.5 * depth) : 1.0 - exp(-depth);
