@@ -11,9 +11,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
-#include "glm/common.hpp"
 #include "storm_files/field_scan.h"
-#include "storm_files/resampled_columns.h"
+#include "storm_files/storm_columns.h"
 #include "storm_files/windowed_source.h"
 
 namespace thunderhead::storm_files {
@@ -34,13 +33,8 @@ struct RemappedField {
 // thread remaps the previous variable, because reading and remapping take about equally long.
 class TimeReader {
  public:
-  explicit TimeReader(LayerSource& source, int stride = 1)
-      : source_(source),
-        stride_(stride),
-        domain_(source.Domain()),
-        resampling_(domain_.even != nullptr && domain_.even->Resampled() ? domain_.even.get()
-                                                                         : nullptr),
-        columns_(resampling_ != nullptr ? resampling_->columns : glm::ivec2(domain_.cells)) {
+  TimeReader(LayerSource& source, int stride)
+      : source_(source), domain_(source.Domain()), columns_(domain_, stride) {
     air_.levels = domain_.cells.z;
     air_.columns = domain_.Columns();
   }
@@ -68,10 +62,6 @@ class TimeReader {
   volume::AirDensity MeanDensity(const std::vector<float>& density_kg_per_m3) const;
   void SetGrid();
   std::vector<float> OntoHeights(const std::vector<float>& values) const;
-  std::vector<float> OntoEvenColumns(std::vector<float> values, Beyond beyond) const;
-  double OntoColumns(std::vector<float>& values) const;
-  std::size_t ModelColumnAt(const glm::ivec2& column) const;
-  std::vector<float> NearestOnGrid(std::vector<float> values) const;
   std::vector<std::uint8_t> BytesOntoGrid(const std::vector<float>& values) const;
   absl::Status ReadMotion(volume::HydrometeorFields& result);
   void TakeWind(const ModelWind& wind, volume::HydrometeorFields& result) const;
@@ -81,10 +71,8 @@ class TimeReader {
   bool NeedsTemperature() const;
 
   LayerSource& source_;
-  const int stride_;
   const LayerDomain& domain_;
-  const EvenColumns* const resampling_;  // null if the source's columns stay as they are
-  const glm::ivec2 columns_;             // the even columns, of which blocks are averaged
+  const StormColumns columns_;
   LayerAir air_;
   VerticalGrid own_grid_;
   VerticalGrid grid_;
@@ -183,7 +171,7 @@ absl::Status TimeReader::ReadTerrain(volume::HydrometeorFields& result) {
     terrain[i] = domain_.on_terrain ? air_.interface_height_m[i] : std::min(0.0F, bottom_m);
     if (std::isnan(terrain[i])) terrain[i] = bottom_m;
   }
-  result.terrain_height_m = OntoEvenColumns(std::move(terrain), Beyond::kNearest);
+  result.terrain_height_m = columns_.Of(std::move(terrain), Beyond::kNearest);
   return absl::OkStatus();
 }
 
@@ -192,7 +180,7 @@ absl::Status TimeReader::ReadLand(volume::HydrometeorFields& result) {
   if (columns.land_use.empty()) return absl::OkStatus();
   for (std::vector<float>* values : {&columns.land_use, &columns.water, &columns.albedo,
                                      &columns.green_percent, &columns.snow_share}) {
-    *values = NearestOnGrid(std::move(*values));
+    *values = columns_.NearestOf(std::move(*values));
   }
   result.land = volume::MakeLandSurface(columns, glm::ivec2(regular_.cells));
   return absl::OkStatus();
@@ -289,7 +277,7 @@ absl::StatusOr<RemappedField> TimeReader::Remap(const LayerField& from, LayerAmo
   double factor = 1.0;
   if (field.statistics.maximum_water_path_kg_per_m2 > 0.0) {
     field.concentration_kg_per_m3 = OntoHeights(values);
-    factor = OntoColumns(field.concentration_kg_per_m3);
+    factor = columns_.KeepSum(field.concentration_kg_per_m3);
     remapped.condensate = FlushAndBound(regular_, field.concentration_kg_per_m3);
     if (remapped.condensate.Empty()) field.concentration_kg_per_m3 = {};
   }
@@ -322,7 +310,7 @@ void TimeReader::RemapSizes(const std::vector<float>& concentration, std::vector
   radii.resize(concentration.size(), std::nanf(""));
   volume::ToConcentrationPerRadius(field.hydrometeor, domain_.microphysics, concentration,
                                    air_.temperature_K, radii);
-  std::vector<float> per_radius = OntoEvenColumns(OntoHeights(radii), Beyond::kZero);
+  std::vector<float> per_radius = columns_.Of(OntoHeights(radii), Beyond::kZero);
   if (factor != 1.0) {
     for (float& value : per_radius) value *= static_cast<float>(factor);
   }
@@ -377,7 +365,7 @@ volume::AirDensity TimeReader::MeanDensity(const std::vector<float>& density_kg_
   const glm::ivec2 stride = means.Stride();
   for (int y = 0; y < regular_.cells.y; y += stride.y) {
     for (int x = 0; x < regular_.cells.x; x += stride.x) {
-      std::size_t at = ModelColumnAt({x, y});
+      std::size_t at = columns_.NearestTo({x, y});
       for (int level = 0; level < air_.levels; ++level, at += air_.columns) {
         means.Add(x, y, air_.interface_height_m[at], air_.interface_height_m[at + air_.columns],
                   density_kg_per_m3[at]);
@@ -393,51 +381,9 @@ std::vector<float> TimeReader::OntoHeights(const std::vector<float>& values) con
   return RemapColumns(air_.interface_height_m, values, air_.levels, air_.columns, grid_);
 }
 
-// Returns values of the source's columns at the columns of the regular grid.
-std::vector<float> TimeReader::OntoEvenColumns(std::vector<float> values, Beyond beyond) const {
-  if (resampling_ != nullptr) values = Resampled(*resampling_, values, beyond);
-  return stride_ == 1 ? values : BlockMeans(values, columns_, stride_, beyond);
-}
-
-// Resamples values at the heights of the regular grid to its columns, in place. The sum over the
-// domain is kept. Returns the factor that this needed.
-double TimeReader::OntoColumns(std::vector<float>& values) const {
-  double factor = 1.0;
-  if (resampling_ != nullptr) {
-    std::vector<float> resampled = Resampled(*resampling_, values, Beyond::kZero);
-    factor = SumFactor(*resampling_, values, resampled);
-    for (float& value : resampled) value *= static_cast<float>(factor);
-    values = std::move(resampled);
-  }
-  if (stride_ > 1) values = BlockMeans(values, columns_, stride_, Beyond::kZero);
-  return factor;
-}
-
-// Returns the index of the source's column that is nearest to the middle of a column of the regular
-// grid.
-std::size_t TimeReader::ModelColumnAt(const glm::ivec2& column) const {
-  const glm::ivec2 even = glm::min(column * stride_ + stride_ / 2, columns_ - 1);
-  const auto at = static_cast<std::size_t>(even.y) * static_cast<std::size_t>(columns_.x) +
-                  static_cast<std::size_t>(even.x);
-  return resampling_ != nullptr ? NearestColumn(*resampling_, at) : at;
-}
-
-// Returns the values of the source's columns that are nearest to those of the regular grid. An
-// empty array stays empty.
-std::vector<float> TimeReader::NearestOnGrid(std::vector<float> values) const {
-  if (values.empty() || (resampling_ == nullptr && stride_ == 1)) return values;
-  std::vector<float> nearest;
-  nearest.reserve(static_cast<std::size_t>(regular_.cells.x) *
-                  static_cast<std::size_t>(regular_.cells.y));
-  for (int y = 0; y < regular_.cells.y; ++y) {
-    for (int x = 0; x < regular_.cells.x; ++x) nearest.push_back(values[ModelColumnAt({x, y})]);
-  }
-  return nearest;
-}
-
 // Returns values from 0 to 255 in layers on the regular grid. Missing values become 0.
 std::vector<std::uint8_t> TimeReader::BytesOntoGrid(const std::vector<float>& values) const {
-  const std::vector<float> remapped = OntoEvenColumns(OntoHeights(values), Beyond::kZero);
+  const std::vector<float> remapped = columns_.Of(OntoHeights(values), Beyond::kZero);
   std::vector<std::uint8_t> bytes(remapped.size());
   std::ranges::transform(remapped, bytes.begin(), [](float value) {
     return static_cast<std::uint8_t>(std::min(value + 0.5F, 255.0F));
@@ -524,16 +470,10 @@ void TrimTop(const VerticalGrid& storm_grid, volume::HydrometeorFields& fields) 
   }
 }
 
-// Sets the regular grid. The first block of columns begins at the western and southern edge, and
-// the last may reach beyond the eastern and northern edge.
 void TimeReader::SetGrid() {
-  const glm::dvec2 spacing_m = resampling_ != nullptr
-                                   ? glm::dvec2(resampling_->dx_m, resampling_->dy_m)
-                                   : glm::dvec2(domain_.dx_m, domain_.dy_m);
-  const glm::dvec2 low_m = domain_.middle_m - 0.5 * spacing_m * glm::dvec2(columns_);
-  regular_.cells = {(columns_ + stride_ - 1) / stride_, grid_.cells};
-  regular_.spacing_m = {static_cast<double>(stride_) * spacing_m, grid_.spacing_m};
-  regular_.low_corner_m = {low_m, grid_.low_m};
+  regular_.cells = {columns_.Columns(), grid_.cells};
+  regular_.spacing_m = {columns_.Spacing_m(), grid_.spacing_m};
+  regular_.low_corner_m = {columns_.LowCorner_m(), grid_.low_m};
 }
 
 absl::StatusOr<volume::HydrometeorFields> TimeReader::Read(const std::optional<VerticalGrid>& grid,
