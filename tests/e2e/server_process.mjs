@@ -12,9 +12,9 @@ const START_TIMEOUT_MS = 600_000;
 const STOP_TIMEOUT_MS = 600_000;
 
 // Test programs take ports from this range, which lies below the ports that the kernel gives to connections and to
-// programs that ask for any port.
+// programs that ask for any port. The range above it belongs to tests/engines/engine_test.py.
 const FIRST_PORT = 20_000;
-const END_OF_PORTS = 32_000;
+const END_OF_PORTS = 26_000;
 
 // Listens until the returned server is closed. Returns undefined if the port is taken.
 function listenAt(host, port) {

@@ -41,18 +41,17 @@ HELD_PORTS: list[socket.socket] = []
 def free_port() -> int:
     """Returns a port of 127.0.0.1 that belongs to this process until it ends.
 
-    It lies between 20000 and 32000, because ecFlow accepts only registered ports, and because the kernel gives such
-    ports to nobody who asks for any port. While this process runs, it holds the same port of 127.0.0.2, which keeps
-    other tests from taking it (freePort in tests/e2e/server_process.mjs does the same).
+    It lies between 26000 and 32000, because ecFlow accepts only registered ports, and because the kernel gives such
+    ports to nobody who asks for any port. While this process runs, it holds an abstract Unix socket named after the
+    port, which keeps other tests of this folder from taking it. The range below belongs to tests/e2e/server_process.mjs.
     """
     while True:
-        port = random.randrange(20000, 32000)
-        held = socket.socket()
+        port = random.randrange(26000, 32000)
+        held = socket.socket(socket.AF_UNIX)
         with socket.socket() as probe:
             try:
-                held.bind(("127.0.0.2", port))
-                held.listen()
-                probe.bind(("127.0.0.1", port))
+                held.bind(f"\0thunderhead-test-port-{port}")
+                probe.bind(("", port))
             except OSError:
                 held.close()
                 continue
