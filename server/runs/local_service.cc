@@ -6,6 +6,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
+#include "base/error_details.h"
 #include "base/file_stamp.h"
 #include "base/status.h"
 #include "drawing/gl_frame_source.h"
@@ -21,8 +22,13 @@ constexpr absl::Duration kStillWritten = absl::Minutes(2);
 
 }  // namespace
 
+bool IsLastingRefusal(const absl::Status& status) {
+  return absl::IsFailedPrecondition(status) ||
+         (absl::IsResourceExhausted(status) && base::DetailsOf(status).permanent);
+}
+
 absl::Status AsFileProblem(const absl::Status& status) {
-  if (!absl::IsInvalidArgument(status) && !absl::IsFailedPrecondition(status)) return status;
+  if (!absl::IsInvalidArgument(status) && !IsLastingRefusal(status)) return status;
   return absl::DataLossError(status.message());
 }
 

@@ -22,6 +22,11 @@ absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::st
 absl::StatusOr<int> TimeOf(const storm_store::StormStore& store, const std::string& path,
                            std::optional<int> wanted);
 
+// Returns whether the error means that a whole storm file can never be read as it is. It must be
+// converted first, or needs more memory than there is. A file of another kind (INVALID_ARGUMENT) is
+// no such file.
+bool IsLastingRefusal(const absl::Status& status);
+
 // Converts an error about a storm's file to DATA_LOSS, whatever code the store gives for a bad
 // file. So it is not reported as a wrong request.
 absl::Status AsFileProblem(const absl::Status& status);

@@ -509,7 +509,8 @@ std::vector<absl::StatusOr<storm_files::StormFile>> Describe(
     files.assign(
         paths.size(),
         absl::ResourceExhaustedError(absl::StrCat(
-            paths.front(), ": its metadata does not fit in memory; the file is probably damaged")));
+            paths.front(), ": describing it needs more memory than there is; cut or split the ",
+            "file, or copy it again if it is damaged")));
   }
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!files[i].ok() || files[i]->device != 0) continue;

@@ -87,7 +87,10 @@ class ConfinedFilesTest : public ::testing::Test {
 
   std::shared_ptr<ConfinedFiles> Files(std::uint64_t memory = kMemory, milliseconds time = kTime) {
     ConfinedOptions options;
-    options.limits = {memory, time};
+    options.limits = {.memory_bytes = memory,
+                      .time = time,
+                      .memory_flag = "--sandbox-memory",
+                      .time_flag = "--sandbox-seconds"};
     options.time = &time_;
     options.program = "/proc/self/exe";
     return std::make_shared<ConfinedFiles>(options);
