@@ -459,6 +459,26 @@ TEST(GribGroups, FirstValuesMustBeThere) {
   EXPECT_THAT(message(3, 0, ""), HasSubstr("differences of order 3"));
 }
 
+// The distance of rows means nothing to some writers if there is one row.
+TEST(GribGrid, OneRowWithoutAWidthIsAsWideAsItsColumns) {
+  LatLon one;
+  one.rows = 1;
+  std::string section = GridOf(one);
+  constexpr std::size_t kRowDistance = 68 - 6;  // octet, without the section's length and number
+  const auto grid_with = [&](const std::string& distance) {
+    section.replace(kRowDistance, 4, distance);
+    return ReadGrid(AsBytes(testing::Section(3, section)));
+  };
+  const auto grid = grid_with("\xff\xff\xff\xff");
+  ASSERT_TRUE(grid.ok()) << grid.status();
+  EXPECT_DOUBLE_EQ(grid->step.y, grid->step.x);
+  EXPECT_THAT(grid->assumptions, ElementsAre(HasSubstr("one row without a width")));
+  const auto given = grid_with(Number(500'000, 4));
+  ASSERT_TRUE(given.ok()) << given.status();
+  EXPECT_DOUBLE_EQ(given->step.y, 0.5);
+  EXPECT_TRUE(given->assumptions.empty());
+}
+
 TEST(GribGrid, PlacesTheMiddleOfLatitudesAndLongitudes) {
   LatLon layout;
   layout.columns = 5;

@@ -503,6 +503,9 @@ TEST_F(ConfinedFilesTest, AnErrorOfTheFileIsThatOfTheProgramItself) {
     EXPECT_EQ(confined.code(), own.code());
     EXPECT_EQ(std::string(confined.message()), std::string(own.message()));
   }
+  std::ofstream(path, std::ios::trunc).flush();
+  EXPECT_THAT(std::string(Files()->Describe(path).status().message()),
+              HasSubstr("notes.txt: is empty (0 bytes); wait for the model to write it"));
   EXPECT_EQ(Files()->Describe(folder_.File("nowhere")).status().code(),
             absl::StatusCode::kNotFound);
   mkfifo(folder_.File("pipe").c_str(), 0600);
