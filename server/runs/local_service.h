@@ -1,6 +1,7 @@
 // The service run inside a command, for commands that work on a file without a server.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,10 @@
 #include "storm_store/storm_store.h"
 
 namespace thunderhead::runs {
+
+// Returns how long a read may make no progress before its storage counts as hanging. It is longer
+// than a reader may be silent, so that a reader that hangs is ended first, and the error names it.
+std::chrono::milliseconds LocalReadDeadline();
 
 // Opens the file or folder at `path`, which must contain exactly one storm.
 absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::string& path);
