@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -30,6 +31,7 @@ struct ImportVdbFlags {
   std::optional<double> metres_per_unit;
   std::optional<double> extinction_per_unit;
   std::optional<double> base_m;
+  double memory_mib = 0.0;
 };
 
 constexpr char kUpHelp[] = "the axis of the file that is up: x, y or z";
@@ -110,8 +112,11 @@ absl::Status ImportVdb(const ImportVdbFlags& flags) {
     bar.Set(kShareOfReading * share);
     return absl::OkStatus();
   };
+  const interchange::VdbReaderOptions reader = {
+      .memory_bytes = static_cast<std::uint64_t>(flags.memory_mib) << 20,
+      .memory_flag = "--memory"};
   THUNDERHEAD_ASSIGN_OR_RETURN(interchange::VdbVolume volume,
-                               interchange::ReadVdb(flags.file, flags.grid, checkpoint));
+                               interchange::ReadVdb(flags.file, flags.grid, checkpoint, reader));
   if (!options.has_value()) {
     return absl::InternalError(absl::StrCat(flags.file, ": a grid without a name was read"));
   }
@@ -143,6 +148,11 @@ Command AddImportVdb(CLI::App& app) {
                       absl::StrCat("Required: ", kExtinctionHelp));
   command->add_option("--base", flags->base_m,
                       "Height in m of the lowest active voxels; by default the file's");
+  command
+      ->add_option("--memory", flags->memory_mib,
+                   "Maximum MiB of memory for reading the file; by default 512 and 100 times the "
+                   "file's size")
+      ->check(CLI::Range(16.0, 1e9));
   return {command, [flags] { return ImportVdb(*flags); }};
 }
 

@@ -23,7 +23,9 @@ void AddReaderFlags(CLI::App& command, ReaderFlags& flags) {
 
 sandbox::ReaderLimits LimitsOf(const ReaderFlags& flags) {
   return {.memory_bytes = static_cast<std::uint64_t>(flags.memory_mib) << 20,
-          .time = std::chrono::milliseconds(std::lround(1e3 * flags.seconds))};
+          .time = std::chrono::milliseconds(std::lround(1e3 * flags.seconds)),
+          .memory_flag = "--sandbox-memory",
+          .time_flag = "--sandbox-seconds"};
 }
 
 absl::Status ProbeReaders(const sandbox::ReaderLimits& limits) {

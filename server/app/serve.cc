@@ -176,6 +176,7 @@ absl::Status Serve(ServeFlags flags) {
   const std::chrono::milliseconds read_deadline(std::lround(1e3 * flags.read_deadline_s));
   sandbox::ReaderLimits reader_limits = LimitsOf(flags.reader);
   reader_limits.silence = read_deadline;
+  reader_limits.silence_flag = "--read-deadline";
   // The read's deadline is later than the reader's, so that a reader that does not respond is ended
   // first. Only then is it known that its storage hangs.
   store_options.read_deadline = read_deadline + std::chrono::seconds(5);

@@ -22,27 +22,74 @@ namespace {
 using Bytes = std::vector<std::byte>;
 
 constexpr std::size_t kInputBytes = 256 << 10;
-constexpr std::size_t kOutputBytes = 1 << 20;
+
+// Bytes in blocks of one size. Memory grows by one block at a time, and no byte is moved. So the
+// bytes take at most one block of memory in addition to their own size.
+class Blocks {
+ public:
+  std::uint64_t Size_bytes() const { return size_bytes_; }
+
+  // Returns the unused part of the last block, or a new block if that is full.
+  std::span<std::byte> Room() {
+    if (size_bytes_ == blocks_.size() * kBlock_bytes) blocks_.emplace_back(kBlock_bytes);
+    return std::span(blocks_.back()).subspan(size_bytes_ % kBlock_bytes);
+  }
+  // Counts `count` bytes that were written to Room().
+  void Use(std::size_t count) { size_bytes_ += count; }
+
+  // Returns the first `most` bytes, or fewer if there are not as many. `most` is at most a block.
+  std::string_view Start(std::size_t most) const {
+    if (size_bytes_ == 0) return {};
+    return {reinterpret_cast<const char*>(blocks_.front().data()),
+            static_cast<std::size_t>(std::min<std::uint64_t>(size_bytes_, most))};
+  }
+
+  // Frees the unused part of the last block.
+  void ShrinkToFit() {
+    if (blocks_.empty()) return;
+    blocks_.back().resize(size_bytes_ - (blocks_.size() - 1) * kBlock_bytes);
+    blocks_.back().shrink_to_fit();
+  }
+
+  // Copies bytes from `offset` on. They must exist.
+  void Copy(std::uint64_t offset, std::span<std::byte> to) const {
+    while (!to.empty()) {
+      const Bytes& block = blocks_[offset / kBlock_bytes];
+      const std::size_t at = offset % kBlock_bytes;
+      const std::size_t count = std::min(to.size(), block.size() - at);
+      std::copy_n(block.begin() + static_cast<std::ptrdiff_t>(at), count, to.begin());
+      to = to.subspan(count);
+      offset += count;
+    }
+  }
+
+ private:
+  static constexpr std::size_t kBlock_bytes = 1 << 20;
+
+  std::vector<Bytes> blocks_;
+  std::uint64_t size_bytes_ = 0;
+};
 
 class DecompressedBytes final : public base::ByteSource {
  public:
-  DecompressedBytes(std::string path, Bytes bytes)
+  DecompressedBytes(std::string path, Blocks bytes)
       : path_(std::move(path)), bytes_(std::move(bytes)) {}
 
   const std::string& Path() const override { return path_; }
-  std::uint64_t Size_bytes() const override { return bytes_.size(); }
+  std::uint64_t Size_bytes() const override { return bytes_.Size_bytes(); }
   absl::Status Read(std::uint64_t offset, std::span<std::byte> to) const override {
-    if (offset > bytes_.size() || to.size() > bytes_.size() - offset) {
+    const std::uint64_t size_bytes = bytes_.Size_bytes();
+    if (offset > size_bytes || to.size() > size_bytes - offset) {
       return absl::DataLossError(absl::StrCat(path_, ": its decompressed contents end at byte ",
-                                              bytes_.size(), "; copy the file again"));
+                                              size_bytes, "; copy the file again"));
     }
-    std::copy_n(bytes_.begin() + static_cast<std::ptrdiff_t>(offset), to.size(), to.begin());
+    bytes_.Copy(offset, to);
     return absl::OkStatus();
   }
 
  private:
   const std::string path_;
-  const Bytes bytes_;
+  const Blocks bytes_;
 };
 
 // The outcome of a step of a decompressor.
@@ -52,6 +99,7 @@ enum class Step { kContinues, kEnded, kDamaged };
 class Bz2 {
  public:
   static constexpr const char* kName = "bz2";
+  static constexpr const char* kProgram = "bunzip2";
 
   Bz2() { is_open_ = BZ2_bzDecompressInit(&stream_, 0, 0) == BZ_OK; }
   ~Bz2() {
@@ -81,6 +129,7 @@ class Bz2 {
 class Gz {
  public:
   static constexpr const char* kName = "gz";
+  static constexpr const char* kProgram = "gunzip";
 
   Gz() {
     constexpr int kGzipOnly = 16;
@@ -116,12 +165,12 @@ class Decompressor {
   Decompressor(const base::ByteSource& file, std::uint64_t most_bytes)
       : file_(file), most_bytes_(most_bytes) {}
 
-  absl::StatusOr<Bytes> Run() {
+  absl::StatusOr<Blocks> Run() {
     THUNDERHEAD_RETURN_IF_ERROR(Fill());
     // A file can have several streams, one after another.
     while (!input_.empty()) THUNDERHEAD_RETURN_IF_ERROR(RunStream());
     THUNDERHEAD_RETURN_IF_ERROR(CheckStart());
-    contents_.shrink_to_fit();
+    contents_.ShrinkToFit();
     return std::move(contents_);
   }
 
@@ -141,36 +190,36 @@ class Decompressor {
       return absl::ResourceExhaustedError(
           absl::StrCat(file_.Path(), ": there is no memory to decompress it; free some"));
     }
-    Bytes part(kOutputBytes);
     for (Step step = Step::kContinues; step != Step::kEnded;) {
       THUNDERHEAD_RETURN_IF_ERROR(Fill());
       const bool at_end = input_.empty();
-      std::span<std::byte> room(part);
-      step = library.Run(input_, room);
-      const std::size_t made = part.size() - room.size();
+      const std::span<std::byte> room = contents_.Room();
+      std::span<std::byte> left = room;
+      step = library.Run(input_, left);
+      const std::size_t made = room.size() - left.size();
       if (step == Step::kDamaged) return Damaged("is damaged");
       if (step == Step::kContinues && at_end && made == 0) return Damaged("ends early");
-      THUNDERHEAD_RETURN_IF_ERROR(Append(std::span(part).first(made)));
+      contents_.Use(made);
+      THUNDERHEAD_RETURN_IF_ERROR(Check());
     }
     return Fill();
   }
 
-  absl::Status Append(std::span<const std::byte> made) {
-    if (contents_.size() + made.size() > most_bytes_) {
-      return absl::ResourceExhaustedError(
-          absl::StrCat(file_.Path(), ": its decompressed contents exceed ", most_bytes_,
-                       " bytes; decompress it yourself, or split it"));
+  // Checks what has been decompressed so far, so that other files and files that are too large are
+  // refused before more of them is decompressed.
+  absl::Status Check() const {
+    if (contents_.Size_bytes() > most_bytes_) {
+      return absl::FailedPreconditionError(
+          absl::StrCat(file_.Path(), ": the ", Library::kName, " file of ", file_.Size_bytes(),
+                       " bytes holds more than ", most_bytes_,
+                       " bytes, the most for its size; decompress it with ", Library::kProgram,
+                       " first, or split it"));
     }
-    contents_.insert(contents_.end(), made.begin(), made.end());
-    // Another file is refused before more of it is decompressed.
-    constexpr std::size_t kEnough = 4096;
-    return contents_.size() < kEnough ? absl::OkStatus() : CheckStart();
+    return contents_.Size_bytes() < kStart_bytes ? absl::OkStatus() : CheckStart();
   }
 
   absl::Status CheckStart() const {
-    if (BeginsLikeGrib({reinterpret_cast<const char*>(contents_.data()), contents_.size()})) {
-      return absl::OkStatus();
-    }
+    if (BeginsLikeGrib(contents_.Start(kStart_bytes))) return absl::OkStatus();
     return absl::InvalidArgumentError(
         absl::StrCat(file_.Path(), ": is a ", Library::kName,
                      " file without a GRIB message; decompress it, or give a GRIB2 file"));
@@ -181,12 +230,14 @@ class Decompressor {
                                             std::string(what), "; copy it again"));
   }
 
+  static constexpr std::size_t kStart_bytes = 4096;
+
   const base::ByteSource& file_;
   const std::uint64_t most_bytes_;
   std::uint64_t at_ = 0;  // of the next byte to read
   Bytes buffer_;
   std::span<std::byte> input_;
-  Bytes contents_;
+  Blocks contents_;
 };
 
 bool IsBz2(std::string_view start) {
@@ -197,6 +248,14 @@ bool IsGz(std::string_view start) { return start.substr(0, 2) == "\x1f\x8b"; }
 
 }  // namespace
 
+std::uint64_t MaxDecompressed_bytes(std::uint64_t compressed_bytes) {
+  constexpr std::uint64_t kLeast_bytes = std::uint64_t{64} << 20;
+  constexpr std::uint64_t kPerByte = 100;
+  const std::uint64_t by_size =
+      kLeast_bytes + kPerByte * std::min(compressed_bytes, kMaxDecompressed_bytes);
+  return std::min(by_size, kMaxDecompressed_bytes);
+}
+
 bool BeginsCompressed(std::string_view start) { return IsBz2(start) || IsGz(start); }
 
 absl::StatusOr<std::shared_ptr<const base::ByteSource>> Decompressed(
@@ -206,7 +265,8 @@ absl::StatusOr<std::shared_ptr<const base::ByteSource>> Decompressed(
   THUNDERHEAD_RETURN_IF_ERROR(file->Read(0, std::as_writable_bytes(std::span(bytes)).first(count)));
   const std::string_view start(bytes.data(), count);
   if (!BeginsCompressed(start)) return file;
-  Bytes contents;
+  most_bytes = std::min(most_bytes, MaxDecompressed_bytes(file->Size_bytes()));
+  Blocks contents;
   if (IsBz2(start)) {
     THUNDERHEAD_ASSIGN_OR_RETURN(contents, Decompressor<Bz2>(*file, most_bytes).Run());
   } else {

@@ -136,13 +136,14 @@ void SetCorner(const glm::dvec2& first, Grid& grid) {
 constexpr std::uint64_t kAlongGrid = 0x08;  // flag table 3.3, bit 5
 
 // Returns the step between two coordinates of a grid of latitudes and longitudes in degrees. It is
-// given, or follows from the last coordinate.
+// given, or follows from the last coordinate. It is 0 if it is not given for the only coordinate.
 absl::StatusOr<double> StepOf(const Octets& section, std::size_t octet, double unit,
                               double range_deg, int count, const char* name) {
   const double from_range_deg = count > 1 ? range_deg / (count - 1) : kNaN;
   const bool is_given = !section.IsMissing(octet, 4) && section.Unsigned(octet, 4) != 0;
   const double step_deg =
       is_given ? unit * static_cast<double>(section.Unsigned(octet, 4)) : from_range_deg;
+  if (count == 1 && !is_given) return 0.0;
   if (!(step_deg > 0.0)) return BadGrid(absl::StrCat("has no distance of its ", name));
   // Coordinates are rounded to the unit, and longitudes may go around the Earth.
   if (count > 1 && std::abs(step_deg - from_range_deg) * (count - 1) > step_deg / 2.0) {
@@ -151,6 +152,23 @@ absl::StatusOr<double> StepOf(const Octets& section, std::size_t octet, double u
   }
   // The range is exact where the step is a rounded number.
   return count > 1 ? from_range_deg : step_deg;
+}
+
+// Gives the only row or column of a grid, if its width is not given, that of the other axis.
+absl::Status CompleteSteps(Grid& grid) {
+  for (const int axis : {0, 1}) {
+    if (grid.step[axis] > 0.0) continue;
+    const double other_deg = grid.step[1 - axis];
+    if (!(other_deg > 0.0)) {
+      return UnreadGrid("has one point and no distance of its latitudes and longitudes");
+    }
+    grid.step[axis] = other_deg;
+    grid.assumptions.push_back(absl::StrFormat(
+        "The grid has one %s without a width; its cells are taken to be %g degrees wide, as along "
+        "the other axis.",
+        axis == 0 ? "column" : "row", other_deg));
+  }
+  return absl::OkStatus();
 }
 
 absl::StatusOr<Grid> ReadLatitudeLongitude(const Octets& section, bool is_rotated) {
@@ -188,6 +206,7 @@ absl::StatusOr<Grid> ReadLatitudeLongitude(const Octets& section, bool is_rotate
       grid.step.x, StepOf(section, 64, unit, eastwards_deg, grid.columns, "longitudes"));
   THUNDERHEAD_ASSIGN_OR_RETURN(
       grid.step.y, StepOf(section, 68, unit, std::abs(northwards_deg), grid.rows, "latitudes"));
+  THUNDERHEAD_RETURN_IF_ERROR(CompleteSteps(grid));
   grid.wind_along_grid = (section.Unsigned(55, 1) & kAlongGrid) != 0;
   SetCorner({first_longitude_deg, first_latitude_deg}, grid);
   if (!is_rotated) {
@@ -251,6 +270,7 @@ absl::StatusOr<Grid> ReadRotatedByMiddle(const Octets& section) {
       grid.step.x, StepOf(section, 64, kMicrodegrees, range_deg.x, grid.columns, "longitudes"));
   THUNDERHEAD_ASSIGN_OR_RETURN(
       grid.step.y, StepOf(section, 68, kMicrodegrees, range_deg.y, grid.rows, "latitudes"));
+  THUNDERHEAD_RETURN_IF_ERROR(CompleteSteps(grid));
   grid.wind_along_grid = (section.Unsigned(55, 1) & kAlongGrid) != 0;
   SetCorner(first_deg, grid);
   grid.projection =

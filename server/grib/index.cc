@@ -222,6 +222,10 @@ absl::Status Reader::ReadProduct(Octets section) {
   const std::optional<absl::Duration> unit = UnitOfTime(section.Unsigned(18, 1));
   const bool is_instant = field_.product == 0 || field_.product == 1;
   field_.is_instant = is_instant && unit.has_value();
+  field_.unknown_unit.reset();
+  if (is_instant && !unit.has_value()) {
+    field_.unknown_unit = static_cast<int>(section.Unsigned(18, 1));
+  }
   if (unit.has_value()) field_.forecast = static_cast<double>(section.Signed(19, 4)) * *unit;
   if (field_.product == 1 || field_.product == 11) {
     if (section.Count() < 37) return Damaged("has a section 4 that is too short");

@@ -65,6 +65,9 @@ struct Field {
   // False if the field is a mean, a sum or an extreme over a time, a probability, or of another
   // product definition that has no single valid time.
   bool is_instant = false;
+  // The unit of the forecast time (code table 4.4) if its length is not known. Such a field is not
+  // an instant.
+  std::optional<int> unknown_unit;
   int process = 0;            // number of the generating process, which the centre defines
   absl::Duration forecast;    // from the reference time
   std::optional<int> member;  // number of the ensemble's member

@@ -1,6 +1,7 @@
 // Reads a grid of an untrusted OpenVDB file by a confined process.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -9,12 +10,24 @@
 
 namespace thunderhead::interchange {
 
-// Reads the grid named `grid` of the file at `path` by a process of `program`. If `program` is
-// empty, it is thunderhead-vdb-reader next to this program. `checkpoint` may be empty. Errors are
-// those of ReadVdbGrid, and INVALID_ARGUMENT if the file does not begin like an OpenVDB file. The
-// errors of a reader that fails are those of sandbox::Readers.
+// Returns the memory in bytes that the reader of an OpenVDB file may use by default, if the file
+// has `file_bytes` bytes. It is 512 MiB and 100 times the file's size, at most this machine's
+// memory. A small hostile file may state any size. The tree of any other file takes up to 40 times
+// its bytes in the file. The dense array of a cloud that fills a tenth of its box takes about 30
+// times these bytes.
+std::uint64_t DefaultVdbMemory_bytes(std::uint64_t file_bytes);
+
+struct VdbReaderOptions {
+  std::uint64_t memory_bytes = 0;  // limit for the reader; 0 for DefaultVdbMemory_bytes
+  std::string memory_flag = {};    // the flag by which users set the limit, for errors
+  std::string program = {};  // the reader; if empty, thunderhead-vdb-reader next to this program
+};
+
+// Reads the grid named `grid` of the file at `path` by a confined process. `checkpoint` may be
+// empty. Errors are those of ReadVdbGrid, and INVALID_ARGUMENT if the file does not begin like an
+// OpenVDB file. The errors of a reader that fails are those of sandbox::Readers.
 absl::StatusOr<VdbVolume> ReadVdb(const std::string& path, const std::string& grid,
                                   const storm_files::ReadCheckpoint& checkpoint,
-                                  const std::string& program = "");
+                                  const VdbReaderOptions& options = {});
 
 }  // namespace thunderhead::interchange

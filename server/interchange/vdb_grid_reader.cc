@@ -11,6 +11,7 @@
 #include <istream>
 #include <memory>
 #include <new>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -253,6 +254,12 @@ absl::StatusOr<VdbVolume> Read(std::span<const std::byte> bytes, const std::stri
   return DenseOf(name, *grid, progress);
 }
 
+absl::Status TooLarge(const std::string& path) {
+  return absl::ResourceExhaustedError(absl::StrCat(
+      path, ": the sizes that it states need more memory than its limit, so it is very large or ",
+      "damaged; write it again, or cut or resample its grid"));
+}
+
 }  // namespace
 
 void PrepareVdb() { openvdb::initialize(); }
@@ -265,8 +272,9 @@ absl::StatusOr<VdbVolume> ReadVdbGrid(const std::string& path, std::span<const s
     if (!volume.ok()) return base::Annotate(volume.status(), path);
     return volume;
   } catch (const std::bad_alloc&) {
-    return absl::DataLossError(absl::StrCat(
-        path, ": needs more memory than there is, or is damaged; write it again, or cut it"));
+    return TooLarge(path);
+  } catch (const std::length_error&) {  // a container larger than any memory
+    return TooLarge(path);
   } catch (const std::exception& error) {
     return absl::DataLossError(absl::StrCat(path,
                                             ": is damaged, or is not an OpenVDB file of version ",

@@ -20,7 +20,7 @@ void PrepareVdb();
 // grid, or if it is no density: not of floats, a level set, or with a background. Also if its
 // transform is not linear, or if the box of its active voxels has more than kMostVdbVoxels. The
 // error for an empty or unknown name lists the file's grids. Returns DATA_LOSS if the file is
-// damaged, or needs more memory than there is.
+// damaged, and RESOURCE_EXHAUSTED if it needs more memory than there is.
 absl::StatusOr<VdbVolume> ReadVdbGrid(const std::string& path, std::span<const std::byte> bytes,
                                       const std::string& grid,
                                       const std::function<void(double share)>& progress);

@@ -81,6 +81,12 @@ absl::Status OpenError(const std::string& path, int code) {
   }
 }
 
+// Returns the error for a file of 0 bytes, which its writer may have just created.
+absl::Status IsEmpty(const std::string& path) {
+  return absl::DataLossError(
+      absl::StrCat(path, ": is empty (0 bytes); wait for the model to write it, or copy it again"));
+}
+
 // The most groups that are looked at.
 constexpr std::size_t kMostGroups = 1000;
 
@@ -137,7 +143,7 @@ absl::Status NetcdfFile::CheckStart(const std::string& path, int file) {
     return pread(file, start.data(), start.size(), static_cast<off_t>(offset));
   };
   ssize_t count = read_at(0);
-  if (count == 0) return OpenError(path, NC_EHDFERR);
+  if (count == 0) return IsEmpty(path);
   if (std::string_view(start.data(), 3) == "CDF") return absl::OkStatus();
   for (std::uint64_t offset = kFirstHdf5Offset; count == std::ssize(start); offset *= 2) {
     if (IsHdf5Signature(std::as_bytes(std::span(start)))) return absl::OkStatus();
@@ -163,7 +169,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::OpenRoot(const std::string& path) {
   if (base::ReadsOnlyFromMemory()) {
     const std::optional<std::span<const std::byte>> bytes = base::RegisteredBytes(path);
     if (!bytes.has_value()) return OpenError(path, EACCES);
-    if (bytes->empty()) return OpenError(path, NC_EHDFERR);
+    if (bytes->empty()) return IsEmpty(path);
     BytesBuffer buffer(*bytes);
     std::istream header(&buffer);
     THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
@@ -177,8 +183,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::OpenRoot(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return OpenError(path, ENOENT);
   if (!std::filesystem::is_regular_file(path, error)) return OpenError(path, NC_ENOTNC);
-  // An empty file has just been created by its writer. HDF5 would report it as "unknown format".
-  if (std::filesystem::file_size(path, error) == 0) return OpenError(path, NC_EHDFERR);
+  if (std::filesystem::file_size(path, error) == 0) return IsEmpty(path);
   std::ifstream header(path, std::ios::binary);
   THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
   int handle = kNoHandle;

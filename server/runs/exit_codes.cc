@@ -1,5 +1,7 @@
 #include "runs/exit_codes.h"
 
+#include "base/error_details.h"
+
 namespace thunderhead::runs {
 
 ExitCode ExitCodeOf(const absl::Status& status) {
@@ -22,8 +24,10 @@ ExitCode ExitCodeOf(const absl::Status& status) {
     case absl::StatusCode::kAborted:
     case absl::StatusCode::kCancelled:
     case absl::StatusCode::kDeadlineExceeded:
-    case absl::StatusCode::kResourceExhausted:
       return ExitCode::kTryAgain;
+    case absl::StatusCode::kResourceExhausted:
+      // A file that needs more memory than its reader may use needs as much at the next try.
+      return base::DetailsOf(status).permanent ? ExitCode::kBadInput : ExitCode::kTryAgain;
     default:
       return ExitCode::kProgramError;
   }
@@ -33,7 +37,9 @@ std::string ExitCodesHelp() {
   return "Exit codes:\n"
          "  0   all is done\n"
          "  64  bad request: the command line or the scene is wrong\n"
-         "  65  bad input: a storm file is damaged or of another kind; trying again does not help\n"
+         "  65  bad input: a storm file is damaged, too large or of another kind; trying again "
+         "does not "
+         "help\n"
          "  70  an error of the program itself\n"
          "  75  not now: a file is missing or still being written, something is busy or full, or "
          "a\n"

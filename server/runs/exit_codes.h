@@ -18,9 +18,10 @@ enum class ExitCode {
   kConfiguration = 78,
 };
 
-// Returns the exit code for a status. INVALID_ARGUMENT gives kBadRequest, DATA_LOSS kBadInput,
-// FAILED_PRECONDITION and PERMISSION_DENIED kConfiguration. Errors that may pass by themselves give
-// kTryAgain. NOT_FOUND is one of these, because a file may not exist yet.
+// Returns the exit code for a status. INVALID_ARGUMENT gives kBadRequest, DATA_LOSS and a permanent
+// RESOURCE_EXHAUSTED kBadInput, FAILED_PRECONDITION and PERMISSION_DENIED kConfiguration. Errors
+// that may pass by themselves give kTryAgain. NOT_FOUND is one of these, because a file may not
+// exist yet.
 ExitCode ExitCodeOf(const absl::Status& status);
 
 // Returns the table of exit codes for --help.

@@ -6,6 +6,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
+#include "base/error_details.h"
 #include "base/file_stamp.h"
 #include "base/status.h"
 #include "drawing/gl_frame_source.h"
@@ -21,8 +22,17 @@ constexpr absl::Duration kStillWritten = absl::Minutes(2);
 
 }  // namespace
 
+std::chrono::milliseconds LocalReadDeadline() {
+  return sandbox::ReaderLimits().silence + std::chrono::seconds(5);
+}
+
+bool IsLastingRefusal(const absl::Status& status) {
+  return absl::IsFailedPrecondition(status) ||
+         (absl::IsResourceExhausted(status) && base::DetailsOf(status).permanent);
+}
+
 absl::Status AsFileProblem(const absl::Status& status) {
-  if (!absl::IsInvalidArgument(status) && !absl::IsFailedPrecondition(status)) return status;
+  if (!absl::IsInvalidArgument(status) && !IsLastingRefusal(status)) return status;
   return absl::DataLossError(status.message());
 }
 
@@ -45,6 +55,7 @@ absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::st
   options.formats = sandbox::ConfinedFormats();
   options.links = storm_store::EveryLink();
   options.read_ahead = 0;
+  options.read_deadline = LocalReadDeadline();
   options.borders = storm_store::BorderData::Find(storm_store::kBorderFolder);
   auto opened = storm_store::StormStore::Open({path}, options);
   if (!opened.ok()) return AsFileProblem(path, opened.status());

@@ -1,6 +1,7 @@
 // The service run inside a command, for commands that work on a file without a server.
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,10 @@
 
 namespace thunderhead::runs {
 
+// Returns how long a read may make no progress before its storage counts as hanging. It is longer
+// than a reader may be silent, so that a reader that hangs is ended first, and the error names it.
+std::chrono::milliseconds LocalReadDeadline();
+
 // Opens the file or folder at `path`, which must contain exactly one storm.
 absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::string& path);
 
@@ -21,6 +26,11 @@ absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::st
 // INVALID_ARGUMENT if the storm does not have that time; the error names the storm by `path`.
 absl::StatusOr<int> TimeOf(const storm_store::StormStore& store, const std::string& path,
                            std::optional<int> wanted);
+
+// Returns whether the error means that a whole storm file can never be read as it is. It must be
+// converted first, or needs more memory than there is. A file of another kind (INVALID_ARGUMENT) is
+// no such file.
+bool IsLastingRefusal(const absl::Status& status);
 
 // Converts an error about a storm's file to DATA_LOSS, whatever code the store gives for a bad
 // file. So it is not reported as a wrong request.

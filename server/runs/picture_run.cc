@@ -313,6 +313,7 @@ absl::Status PictureRun::Make(const std::vector<storm_store::CataloguedStorm>& s
 
   begun_.clear();
   storm_store::StormStoreOptions store_options;
+  store_options.read_deadline = LocalReadDeadline();
   store_options.links = storm_store::EveryLink();
   store_options.read_ahead = 0;
   store_options.borders = storm_store::BorderData::Find(storm_store::kBorderFolder);

@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/file_stamp.h"
 #include "base/status.h"
+#include "runs/local_service.h"
 
 namespace thunderhead::runs {
 namespace {
@@ -113,10 +114,15 @@ void WatchedFolder::Open(const std::string& path, File& file, RunProgress& progr
   // marked as refused.
   if (absl::IsUnavailable(storm.status())) return;
   file.refused = true;
-  if (absl::IsInvalidArgument(storm.status())) file.state = State::kOther;
-  progress.Note(path, absl::StrCat(file.state == State::kOther ? "ignored until it changes: "
-                                                               : "waits until it changes: ",
-                                   storm.status().message()));
+  const char* what = "waits until it changes: ";
+  if (absl::IsInvalidArgument(storm.status())) {
+    file.state = State::kOther;
+    what = "ignored until it changes: ";
+  } else if (IsLastingRefusal(storm.status())) {
+    file.state = State::kBad;
+    what = "cannot be drawn until it changes: ";
+  }
+  progress.Note(path, absl::StrCat(what, storm.status().message()));
 }
 
 std::vector<FolderStorm> WatchedFolder::Storms() const {

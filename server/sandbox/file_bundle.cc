@@ -105,7 +105,7 @@ absl::StatusOr<FileBundle> Bundle(const std::vector<std::string>& paths, const O
   if (total > most_bytes) {
     return absl::ResourceExhaustedError(
         absl::StrCat(paths.front(), " and the ", paths.size() - 1, " other files of its time have ",
-                     total >> 20, " MiB, more than may be read; raise --sandbox-memory"));
+                     total >> 20, " MiB, more than may be read; give fewer or smaller files"));
   }
   THUNDERHEAD_RETURN_IF_ERROR(Write(bundle.file.Get(), paths.front(), table));
   for (std::size_t i = 0; i < paths.size(); ++i) {

@@ -115,6 +115,14 @@ absl::Status Answer(FileReader& reader, const Request& request, Replies& replies
   return absl::OkStatus();
 }
 
+// Answers a request, or returns an error that names the file if that needs too much memory.
+absl::Status AnswerWithinMemory(FileReader& reader, const Request& request, Replies& replies) {
+  absl::Status status = base::Guarded([&] { return Answer(reader, request, replies); });
+  if (base::DetailsOf(status).reason != base::DetailsOf(base::OutOfMemory()).reason) return status;
+  return absl::ResourceExhaustedError(absl::StrCat(
+      request.path, ": needs more memory to be read than its limit; cut a smaller domain"));
+}
+
 }  // namespace
 
 Replies::Replies(std::span<std::byte> shared) : shared_(shared), log_(std::make_shared<KeptLog>()) {
@@ -150,7 +158,7 @@ int RunReader(FileReader& reader) {
   Replies replies(shared);
   absl::Status status = Prepare(reader, request);
   while (status.ok()) {
-    status = base::Guarded([&] { return Answer(reader, request, replies); });
+    status = AnswerWithinMemory(reader, request, replies);
     if (!status.ok()) break;
     // Unused memory is returned to the system after each answer, because the next request may never
     // come.

@@ -38,24 +38,29 @@ absl::Status Failed(const std::string& path, const char* reason, absl::Status st
   return base::WithDetails(std::move(status), {.reason = std::string(kReaderFailed)});
 }
 
-absl::Status TookTooLong(const std::string& path, milliseconds time) {
-  return Failed(path, "time",
-                absl::DeadlineExceededError(
-                    absl::StrCat("was ended after ", absl::FormatDuration(absl::FromChrono(time)),
-                                 " (--sandbox-seconds of `serve`)", kWhatToDo)));
+// Returns a duration for a message, with the flag that sets it if there is one.
+std::string LimitText(milliseconds time, const std::string& flag) {
+  return absl::StrCat(absl::FormatDuration(absl::FromChrono(time)), flag.empty() ? "" : " (", flag,
+                      flag.empty() ? "" : ")");
 }
 
-absl::Status WasSilent(const std::string& path, milliseconds silence) {
+absl::Status TookTooLong(const std::string& path, const ReaderLimits& limits) {
+  return Failed(path, "time",
+                absl::DeadlineExceededError(absl::StrCat(
+                    "was ended after ", LimitText(limits.time, limits.time_flag), kWhatToDo)));
+}
+
+absl::Status WasSilent(const std::string& path, const ReaderLimits& limits) {
   return Failed(
       path, "time",
-      absl::DeadlineExceededError(absl::StrCat(
-          "was ended: it had given no result for ", absl::FormatDuration(absl::FromChrono(silence)),
-          " (--read-deadline of `serve`), although its storage answered", kWhatToDo)));
+      absl::DeadlineExceededError(absl::StrCat("was ended: it had given no result for ",
+                                               LimitText(limits.silence, limits.silence_flag),
+                                               ", although its storage answered", kWhatToDo)));
 }
 
 // Returns the error for a reader that ended without a result.
-absl::Status EndedEarly(const std::string& path, int signal, milliseconds time) {
-  if (signal == SIGXCPU) return TookTooLong(path, time);
+absl::Status EndedEarly(const std::string& path, int signal, const ReaderLimits& limits) {
+  if (signal == SIGXCPU) return TookTooLong(path, limits);
   if (signal == SIGKILL) {
     return Failed(path, "killed",
                   absl::UnavailableError("was killed, probably because the machine's memory is "
@@ -89,16 +94,22 @@ std::uint64_t MemoryOf(const ReaderLimits& limits) {
   return limits.memory_bytes > 0 ? limits.memory_bytes : std::uint64_t{1} << 46;
 }
 
+// Returns the error for a file that needs more memory than a reader may use. The limit is for this
+// reader only, so waiting until others end does not help.
+absl::Status TooLarge(std::string text, const ReaderLimits& limits) {
+  absl::StrAppend(&text, " (its reader may use ", MemoryOf(limits) >> 20, " MiB");
+  if (!limits.memory_flag.empty()) absl::StrAppend(&text, "; ", limits.memory_flag, " sets that");
+  absl::StrAppend(&text, ")");
+  return base::WithDetails(absl::ResourceExhaustedError(text), {.permanent = true});
+}
+
 // Returns the status for an error that the reader found in the file.
 absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
   const auto code = static_cast<absl::StatusCode>(note.code);
   std::string text = OneLine(note.text);
   switch (code) {
     case absl::StatusCode::kResourceExhausted:
-      absl::StrAppend(&text, " (reading a storm file may take ", MemoryOf(limits) >> 20,
-                      " MiB; --sandbox-memory of `serve` sets that)");
-      // The limit is for this reader only, so waiting until others end does not help.
-      return base::WithDetails(absl::ResourceExhaustedError(text), {.permanent = true});
+      return TooLarge(std::move(text), limits);
     case absl::StatusCode::kInvalidArgument:
     case absl::StatusCode::kNotFound:
     case absl::StatusCode::kPermissionDenied:
@@ -115,13 +126,13 @@ absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& 
                    const ReaderLimits& limits) {
   switch (from_reader.Why()) {
     case Receiver::Failure::kTooLate:
-      return TookTooLong(path, limits.time);
+      return TookTooLong(path, limits);
     case Receiver::Failure::kSilent:
-      return WasSilent(path, limits.silence);
+      return WasSilent(path, limits);
     case Receiver::Failure::kTooLarge:
       return Nonsense(path, "its size");
     default:
-      return EndedEarly(path, child.End(milliseconds(1000)).value_or(0), limits.time);
+      return EndedEarly(path, child.End(milliseconds(1000)).value_or(0), limits);
   }
 }
 
@@ -226,6 +237,8 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
                                          const Take& take) {
   reader->Ask(request);
   ReaderLimits limits = limits_;
+  // A request may have less time than the flag allows, which the flag does not change.
+  if (patience < limits.time) limits.time_flag.clear();
   limits.time = patience;
   Receiver from_reader(reader->Replies(), patience, request.memory_bytes, time_,
                        reader->Arrays().Bytes());
@@ -263,9 +276,12 @@ absl::Status Readers::Run(Request request, Reply wanted, milliseconds patience,
   if (program.empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(program, ReaderProgram());
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<StartedReader> reader,
-                               StartedReader::Start(program, request, checks_, time_));
-  return *Ask(std::move(reader), false, request, wanted, patience, checkpoint, take);
+  auto reader = StartedReader::Start(program, request, checks_, time_);
+  if (absl::IsResourceExhausted(reader.status())) {
+    return TooLarge(std::string(reader.status().message()), limits_);
+  }
+  if (!reader.ok()) return reader.status();
+  return *Ask(*std::move(reader), false, request, wanted, patience, checkpoint, take);
 }
 
 absl::StatusOr<std::string> ReaderProgram() {

@@ -33,6 +33,11 @@ struct ReaderLimits {
   std::chrono::milliseconds time{600'000};
   // The longest time that a reader may send nothing, unless it is waiting for its storage.
   std::chrono::milliseconds silence{60'000};
+  // The flags by which users set these limits, for errors, such as "--sandbox-memory". A flag is
+  // empty if the command has none.
+  std::string memory_flag = {};
+  std::string time_flag = {};
+  std::string silence_flag = {};
 };
 
 // Returns the path of thunderhead-reader, which is next to this program. Returns INTERNAL if it is

@@ -112,11 +112,21 @@ absl::Status NoCells(const netcdf::NetcdfFile& file, const std::string& field,
       "longitude and latitude first, for example with cdo remapcon or with ncremap"));
 }
 
+// Returns the error for a dimension that is not known as x, y, z or time. It may still be one of
+// them if `may_be_axis`.
 absl::Status ExtraDimension(const netcdf::NetcdfFile& file, const std::string& variable,
-                            const std::string& dimension, std::size_t length) {
-  return absl::InvalidArgumentError(absl::StrCat(
+                            const std::string& dimension, std::size_t length, bool may_be_axis) {
+  std::string message = absl::StrCat(
       file.Path(), ": ", variable, " has a dimension ", dimension, " of ", length,
-      " beside x, y, z and time; extract one of them, or give its coordinate an axis attribute"));
+      " in addition to x, y, z and time, and each storm needs a file of its own; extract one, for "
+      "example with ncks -d ",
+      dimension, ",0 in.nc out.nc");
+  if (may_be_axis) {
+    absl::StrAppend(&message, "; if ", dimension,
+                    " is x, y, z or time, give its coordinate variable the attribute axis "
+                    "(X, Y, Z or T)");
+  }
+  return absl::InvalidArgumentError(message);
 }
 
 }  // namespace
@@ -172,7 +182,8 @@ absl::StatusOr<CfDimensions> FindDimensions(const netcdf::NetcdfFile& file,
     }
   }
   for (const std::string& name : unknown) {
-    if (length_of(name) != 1) return ExtraDimension(file, field, name, length_of(name));
+    if (length_of(name) == 1) continue;
+    return ExtraDimension(file, field, name, length_of(name), !(has[0] && has[1] && has[2]));
   }
   if (has[0] && has[1] && has[2]) return found;
   const char* lacking = !has[0] ? "x" : !has[1] ? "y" : "z";
@@ -213,7 +224,7 @@ absl::StatusOr<CfVariable> Arrange(const netcdf::NetcdfFile& file, const std::st
                                                        names[i], " where the fields lie on ",
                                                        on.axes[at].name, "; put all on one grid"));
       }
-      return ExtraDimension(file, variable, names[i], shape[i]);
+      return ExtraDimension(file, variable, names[i], shape[i], false);
     }
     arranged.places[at] = place;
     arranged.more[at] = 1;

@@ -9,6 +9,7 @@
 #include "grib/values.h"
 #include "storm_files/grib_parts.h"
 #include "storm_files/grib_storm.h"
+#include "storm_files/grib_summary.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -49,6 +50,7 @@ class GribFormat final : public StormFormat {
       return Together(file.Path(), {GribFileAt(file.Path())}, {std::move(index)});
     }
     StormFile described = PartAt(file.Path(), parts.front());
+    described.about = SummaryOfGrib(*index);
     for (std::size_t i = 1; i < parts.size(); ++i) {
       described.others.push_back(PartAt(file.Path(), parts[i]));
     }
@@ -70,7 +72,6 @@ class GribFormat final : public StormFormat {
   static StormFile PartAt(const std::string& path, const GribPart& part) {
     StormFile described;
     described.path = path;
-    described.about = "Part of a time in GRIB2";
     described.times = part.times;
     described.member = part.member;
     described.part = {part.of, part.kind == GribPartKind::kInvariant};

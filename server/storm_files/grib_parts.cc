@@ -30,6 +30,21 @@ bool IsInvariant(const grib::Field& field, GribKind kind) {
           field.first.type == kAtGround);
 }
 
+// Returns the error for a forecast time whose unit has no known length.
+absl::Status RefuseUnit(const std::string& path, const grib::Field& field) {
+  constexpr int kMonth = 3;
+  constexpr int kCentury = 7;
+  const int unit = *field.unknown_unit;
+  const char* what = unit == kMonth                      ? "months, whose lengths differ"
+                     : unit > kMonth && unit <= kCentury ? "years, whose lengths differ"
+                                                         : "a unit that is not known";
+  return absl::InvalidArgumentError(absl::StrCat(
+      path, ": the field ", grib::NumbersOf(field.parameter), " in the GRIB message at byte ",
+      field.message_offset, " has its forecast time in ", what, " (code table 4.4, unit ", unit,
+      "); give it in hours, for example with grib_set -s "
+      "indicatorOfUnitOfTimeRange=1,forecastTime=HOURS"));
+}
+
 }  // namespace
 
 std::string GribRunOf(const grib::Origin& origin) {
@@ -51,6 +66,9 @@ absl::StatusOr<std::vector<GribPart>> GribPartsOf(const grib::Index& index) {
   std::map<std::pair<std::string, std::string>, Contents> parts;
   for (const grib::Field& field : index.fields) {
     const GribKind kind = MeaningOf(field.parameter).kind;
+    if (field.unknown_unit.has_value() && kind != GribKind::kNone) {
+      return RefuseUnit(index.path, field);
+    }
     if (!field.is_instant || kind == GribKind::kNone || IsOfLand(kind)) continue;
     if (kind == GribKind::kAmount) amount_levels.insert(field.first.value);
     if (kind == GribKind::kTemperature) temperature_levels.insert(field.first.value);

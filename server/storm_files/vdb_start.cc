@@ -4,9 +4,10 @@
 
 namespace thunderhead::storm_files {
 
-// The code is that of a storm that cannot be read, so that a folder's search warns of it.
+// The code is not that of a file of another kind, so that a folder's search warns of it. Nor is it
+// that of a damaged file, which may still be being written.
 absl::Status RefuseVdb(const std::string& path) {
-  return absl::DataLossError(absl::StrCat(
+  return absl::FailedPreconditionError(absl::StrCat(
       path,
       ": is an OpenVDB file, which names neither its units nor which axis is up; convert it by "
       "`thunderhead import-vdb ",

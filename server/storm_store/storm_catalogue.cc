@@ -369,11 +369,20 @@ absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
   return absl::OkStatus();
 }
 
-// Appends the canonical form of each path that exists.
+// Returns the file of which `path` names a storm, as in "eps.grib2/mem05". Other paths are returned
+// unchanged.
+fs::path FileOfStorm(const fs::path& path) {
+  std::error_code error;
+  fs::path file = path;
+  while (file.has_relative_path() && !fs::exists(file, error)) file = file.parent_path();
+  return fs::is_regular_file(file, error) ? file : path;
+}
+
+// Appends the canonical form of each path that exists, or of the file whose storm the path names.
 void AppendCanonical(const std::vector<std::string>& paths, std::vector<fs::path>* canonical) {
   for (const std::string& path : paths) {
     std::error_code error;
-    fs::path found = fs::canonical(path, error);
+    fs::path found = fs::canonical(FileOfStorm(path), error);
     if (!error) canonical->push_back(std::move(found));
   }
 }
@@ -386,15 +395,6 @@ LinkRules LinkRulesOf(const std::vector<std::string>& paths, const LinkPolicy& l
   return rules;
 }
 
-// Returns the file of which `path` names a storm, as in "eps.grib2/mem05". Other paths are returned
-// unchanged.
-fs::path FileOfStorm(const fs::path& path) {
-  std::error_code error;
-  fs::path file = path;
-  while (file.has_relative_path() && !fs::exists(file, error)) file = file.parent_path();
-  return fs::is_regular_file(file, error) ? file : path;
-}
-
 // Appends the storms of one file, or the one that the path names.
 absl::Status SearchFile(const std::string& path, const StormSearch& search,
                         std::vector<NamedStorm>& storms) {
@@ -402,7 +402,10 @@ absl::Status SearchFile(const std::string& path, const StormSearch& search,
   THUNDERHEAD_ASSIGN_OR_RETURN(storm_files::StormFile file, search.describe({at.string()}).front());
   if (!file.part.of.empty()) {
     return absl::InvalidArgumentError(absl::StrCat(
-        path, ": is one of several files of a time; give the folder with all of them"));
+        path, ": holds only a part of a storm", file.about.empty() ? "" : ": ",
+        base::Printable(file.about),
+        "; add what is missing to the file, or, if it is one of several files of a time, give the ",
+        "folder with all of them"));
   }
   const std::string wanted = fs::path(path).lexically_relative(at).string();
   std::vector<storm_files::StormFile> files = StormsOf(std::move(file));
@@ -425,7 +428,8 @@ absl::Status SearchFile(const std::string& path, const StormSearch& search,
 absl::Status Search(const std::string& path, FolderWalk walk, std::vector<NamedStorm>& storms) {
   const StormSearch& search = walk.search;
   std::error_code error;
-  if (search.may_find_nothing && fs::status(path, error).type() == fs::file_type::not_found) {
+  if (search.may_find_nothing &&
+      fs::status(FileOfStorm(path), error).type() == fs::file_type::not_found) {
     return absl::OkStatus();
   }
   if (!fs::is_directory(path, error)) {
@@ -509,7 +513,8 @@ std::vector<absl::StatusOr<storm_files::StormFile>> Describe(
     files.assign(
         paths.size(),
         absl::ResourceExhaustedError(absl::StrCat(
-            paths.front(), ": its metadata does not fit in memory; the file is probably damaged")));
+            paths.front(), ": describing it needs more memory than there is; cut or split the ",
+            "file, or copy it again if it is damaged")));
   }
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!files[i].ok() || files[i]->device != 0) continue;
@@ -732,6 +737,17 @@ void LogNotes(const std::vector<CataloguedStorm>& storms, std::set<std::string>*
 absl::StatusOr<storm_files::StormFile> DescribeFile(const std::string& path,
                                                     const storm_files::StormFormats& formats) {
   return Describe({path}, formats).front();
+}
+
+absl::Status CheckFile(const std::string& path, const storm_files::StormFormats& formats) {
+  const StormSearch search{
+      .describe = [&](const std::vector<std::string>& files) { return Describe(files, formats); },
+      .describe_together = {},
+      .on_unlisted = {},
+      .on_folder = {},
+      .examples = {}};
+  std::vector<NamedStorm> storms;
+  return SearchFile(path, search, storms);
 }
 
 std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(

@@ -83,6 +83,10 @@ absl::Status CheckPlace(const std::vector<std::string>& paths, const LinkPolicy&
 absl::StatusOr<storm_files::StormFile> DescribeFile(const std::string& path,
                                                     const storm_files::StormFormats& formats);
 
+// Returns the error of a file that is no storm. `path` may also name one storm of a file, as in
+// "eps.grib2/mem05"; NOT_FOUND, with the names of the file's storms, if there is no such storm.
+absl::Status CheckFile(const std::string& path, const storm_files::StormFormats& formats);
+
 // Describes each of the files, small files in batches. Before each batch `before` is called, and if
 // it returns false, the rest is CANCELLED.
 std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(

@@ -59,8 +59,11 @@ absl::Status CheckPaths(const std::vector<std::string>& paths,
       const std::filesystem::directory_iterator listed(path, error);
       return true;
     };
-    if (!is_folder()) THUNDERHEAD_RETURN_IF_ERROR(DescribeFile(path, formats).status());
-    if (error) return CannotBeListed(path, error);
+    if (!is_folder()) {
+      THUNDERHEAD_RETURN_IF_ERROR(CheckFile(path, formats));
+    } else if (error) {
+      return CannotBeListed(path, error);
+    }
   }
   return absl::OkStatus();
 }

@@ -286,6 +286,19 @@ TEST_F(WatchCommand, ABadFileCountsAndTheEndTellsOfIt) {
   ExpectFinished(folder_.File("out"), Products(1));
 }
 
+// The file must be converted first, so waiting for it never helps.
+TEST_F(WatchCommand, AFileThatIsRefusedForGoodCountsAsBad) {
+  std::ofstream(inbox_ + "/cloud.vdb", std::ios::binary) << std::string(" BDV\0\0\0\0 a grid", 15);
+  EXPECT_EQ(
+      RunningProgram(PROGRAM, Arguments({"--ready", "age:0", "--until", "1", "file", In(600)}),
+                     out_, err_)
+          .Wait()
+          .code,
+      65)
+      << Contents(err_);
+  EXPECT_THAT(Contents(err_), HasSubstr("thunderhead import-vdb"));
+}
+
 // Only one of two files with the same time is drawn. The command reports once which one it draws.
 TEST_F(WatchCommand, OfTwoFilesWithOneTimeItSaysWhichItDraws) {
   Put(0, Bytes(0));

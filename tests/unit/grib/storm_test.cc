@@ -18,6 +18,7 @@
 #include "storm_files/grib_parts.h"
 #include "storm_files/grib_storm.h"
 #include "storm_files/storm_format.h"
+#include "storm_store/storm_catalogue.h"
 #include "storm_store/storm_store.h"
 #include "tests/support/earth_formulas.h"
 #include "tests/support/temporary_folder.h"
@@ -289,6 +290,63 @@ TEST_F(GribStormTest, EachMemberInAFileIsAStorm) {
   EXPECT_THAT(CloudIn(path + "/mem03", StormFormats::BuiltIn()),
               ElementsAre(::testing::Pair(
                   HasSubstr("eps/mem03: there is no such storm in the file; it has "), 0.0)));
+}
+
+// A server may be given one storm of a file, too.
+TEST_F(GribStormTest, AServerFindsTheMemberOfAFile) {
+  const std::string path =
+      Write("eps", FileOf(WithCloud(3, {.member = 2})) + FileOf(WithCloud(5, {.member = 1})));
+  const auto open = [](const std::string& data) {
+    storm_store::StormStoreOptions options;
+    options.read_ahead = 0;
+    options.live = storm_store::LiveCatalogueOptions{.settle = std::chrono::milliseconds(0)};
+    return storm_store::StormStore::Open({data}, options);
+  };
+  const auto store = open(path + "/mem02");
+  ASSERT_TRUE(store.ok()) << store.status();
+  ASSERT_EQ((*store)->Storms().size(), 1U);
+  EXPECT_EQ((*store)->Storms().front()->id, "eps-mem02");
+  EXPECT_TRUE((*store)->Get("eps-mem02", 0, {}).ok());
+  // The file lies where the server may read.
+  EXPECT_TRUE(storm_store::CheckPlace({path + "/mem02"}, {}, path, path).ok());
+  EXPECT_THAT(
+      std::string(open(path + "/mem03").status().message()),
+      HasSubstr("no such storm in the file; it has " + path + "/mem01, " + path + "/mem02"));
+  EXPECT_EQ(open(path + "x/mem03").status().code(), absl::StatusCode::kNotFound);
+}
+
+// A file that lacks a field of a whole storm looks like one of several files of a time.
+TEST_F(GribStormTest, AFileThatIsNotWholeSaysWhatItHasAndLacks) {
+  const auto error_without = [this](int category, std::vector<int> numbers) {
+    const std::string path =
+        Write("storm.grib2", FileOf({.edit = [&](Message& message) {
+                return message.category != category ||
+                       std::ranges::find(numbers, message.number) == numbers.end();
+              }}));
+    const auto store = storm_store::StormStore::Open({path}, {.read_ahead = 0});
+    EXPECT_EQ(store.status().code(), absl::StatusCode::kInvalidArgument);
+    return std::string(store.status().message());
+  };
+  EXPECT_THAT(error_without(0, {0}),
+              HasSubstr("storm.grib2: holds only a part of a storm: it has geopotential height "
+                        "(0/3/5) on 5 levels, pressure (0/3/0) on 5 levels, specific humidity "
+                        "(0/1/0) on 4 levels, cloud (0/1/22) on 4 levels and rain (0/1/24) on 4 "
+                        "levels, and no temperature (0/0/0) on two levels; add what is missing"));
+  EXPECT_THAT(error_without(1, {22, 24}), HasSubstr("and no hydrometeors (0/1/22, "));
+}
+
+TEST_F(GribStormTest, ForecastTimesInMonthsAreRefused) {
+  const auto with_unit = [](int unit) {
+    return [unit](Message& message) {
+      message.unit = unit;
+      return true;
+    };
+  };
+  EXPECT_THAT(ErrorWith(with_unit(3)),
+              HasSubstr("the field 0/3/5 in the GRIB message at byte 0 has its forecast time in "
+                        "months, whose lengths differ (code table 4.4, unit 3); give it in hours"));
+  EXPECT_THAT(ErrorWith(with_unit(5)), HasSubstr("in years, whose lengths differ"));
+  EXPECT_THAT(ErrorWith(with_unit(200)), HasSubstr("in a unit that is not known"));
 }
 
 TEST_F(GribStormTest, EachRunInAFileIsAStorm) {

@@ -17,6 +17,8 @@
 #include <string>
 #include <vector>
 
+#include "base/error_details.h"
+#include "base/machine_memory.h"
 #include "glm/geometric.hpp"
 #include "interchange/vdb_file.h"
 #include "interchange/vdb_file_reader.h"
@@ -35,6 +37,14 @@ using ::testing::Not;
 using testing::TemporaryFolder;
 
 constexpr char kOwnProgram[] = "/proc/self/exe";
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr bool kNewEndsTheProgram = true;
+#else
+constexpr bool kNewEndsTheProgram = false;
+#endif
+constexpr char kWhyNot[] =
+    "AddressSanitizer's operator new ends the program where others throw std::bad_alloc";
 
 std::string Contents(const std::string& path) {
   std::ostringstream text;
@@ -95,7 +105,7 @@ class VdbImportTest : public ::testing::Test {
   }
 
   absl::StatusOr<VdbVolume> Read(const std::string& grid = "density") const {
-    return ReadVdb(path_, grid, {}, kOwnProgram);
+    return ReadVdb(path_, grid, {}, {.program = kOwnProgram});
   }
 
   absl::StatusOr<storm_files::CfCloud> Import(const ImportOptions& options = {
@@ -382,32 +392,32 @@ TEST_F(VdbImportTest, AFileWithoutAnIndexIsRefused) {
 TEST_F(VdbImportTest, AFileOfAnotherKindStartsNoReader) {
   Write(path_, "Once upon a time there was a cloud.");
   ExpectRefused("does not begin like an OpenVDB file");
-  const auto missing = ReadVdb(folder_.File("none.vdb"), "density", {}, kOwnProgram);
+  const auto missing = ReadVdb(folder_.File("none.vdb"), "density", {}, {.program = kOwnProgram});
   EXPECT_EQ(missing.status().code(), absl::StatusCode::kNotFound) << missing.status();
 }
 
 TEST_F(VdbImportTest, AsAStormItIsRefusedWithTheCommandThatConvertsIt) {
   Save({OneVoxel()});
   const auto file = sandbox::ConfinedFormats({.program = kOwnProgram}).Describe(path_);
-  EXPECT_EQ(file.status().code(), absl::StatusCode::kDataLoss);
+  EXPECT_EQ(file.status().code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_THAT(std::string(file.status().message()), HasSubstr("thunderhead import-vdb " + path_));
 }
 
 TEST_F(VdbImportTest, ProgressGrowsAndItsErrorStopsTheReading) {
   Save({GridOf({{0.0, 0.0, 0.0}, 20.0}, 1.0)});
   double last = 0.0;
-  const auto volume = ReadVdb(
-      path_, "density",
-      [&last](double share) {
-        EXPECT_GE(share, last);
-        last = share;
-        return absl::OkStatus();
-      },
-      kOwnProgram);
+  const auto volume = ReadVdb(path_, "density",
+                              [&last](double share) {
+                                EXPECT_GE(share, last);
+                                last = share;
+                                return absl::OkStatus();
+                              },
+                              {.program = kOwnProgram});
   ASSERT_TRUE(volume.ok()) << volume.status();
   EXPECT_GT(last, 0.5);
-  const auto stopped = ReadVdb(
-      path_, "density", [](double) { return absl::CancelledError("stop"); }, kOwnProgram);
+  const auto stopped =
+      ReadVdb(path_, "density", [](double) { return absl::CancelledError("stop"); },
+              {.program = kOwnProgram});
   EXPECT_EQ(stopped.status(), absl::CancelledError("stop"));
 }
 
@@ -422,7 +432,8 @@ class DamagedVdbTest : public VdbImportTest {
       return;
     }
     EXPECT_THAT(volume.status().code(),
-                AnyOf(absl::StatusCode::kInvalidArgument, absl::StatusCode::kDataLoss))
+                AnyOf(absl::StatusCode::kInvalidArgument, absl::StatusCode::kDataLoss,
+                      absl::StatusCode::kResourceExhausted))
         << volume.status();
     const std::string message(volume.status().message());
     EXPECT_THAT(message, HasSubstr(path_ + ": "));
@@ -434,6 +445,49 @@ class DamagedVdbTest : public VdbImportTest {
     return Contents(path_);
   }
 };
+
+// Expects an error that says what to do for a file that needs more memory than its reader may use.
+void ExpectTooLarge(const absl::Status& status, const std::string& limit) {
+  EXPECT_EQ(status.code(), absl::StatusCode::kResourceExhausted) << status;
+  EXPECT_TRUE(base::DetailsOf(status).permanent) << "the same file needs as much again";
+  EXPECT_THAT(std::string(status.message()), HasSubstr("cloud.vdb: the sizes that it states"));
+  EXPECT_THAT(std::string(status.message()),
+              HasSubstr("(its reader may use " + limit + " MiB; --memory sets that)"));
+}
+
+// The length of the text is four bytes before it. OpenVDB allocates it before it reads the text.
+TEST_F(DamagedVdbTest, ASmallFileMayNotClaimMuchMemory) {
+  if (kNewEndsTheProgram) GTEST_SKIP() << kWhyNot;
+  const FloatGrid::Ptr grid = OneVoxel();
+  grid->insertMeta("comment", openvdb::StringMetadata("0123456789"));
+  Save({grid});
+  std::string bytes = Contents(path_);
+  const std::size_t text = bytes.find("0123456789");
+  ASSERT_NE(text, std::string::npos);
+  bytes.replace(text - 4, 4, "\xff\xff\xff\x7f");
+  Write(path_, bytes);
+  const auto file =
+      ReadVdb(path_, "density", {}, {.memory_flag = "--memory", .program = kOwnProgram});
+  ExpectTooLarge(file.status(), "512");
+}
+
+TEST_F(DamagedVdbTest, TheMemoryOfTheReaderCanBeSet) {
+  if (kNewEndsTheProgram) GTEST_SKIP() << kWhyNot;
+  const FloatGrid::Ptr grid = OneVoxel();
+  grid->tree().setValueOn(Coord(255, 255, 511), 1.0F);
+  Save({grid});  // its dense array takes 128 MiB
+  VdbReaderOptions options = {.memory_flag = "--memory", .program = kOwnProgram};
+  EXPECT_TRUE(ReadVdb(path_, "density", {}, options).ok());
+  options.memory_bytes = std::uint64_t{64} << 20;
+  ExpectTooLarge(ReadVdb(path_, "density", {}, options).status(), "64");
+}
+
+TEST(VdbMemory, GrowsWithTheFile) {
+  constexpr std::uint64_t kMiB = 1 << 20;
+  EXPECT_EQ(DefaultVdbMemory_bytes(0), 512 * kMiB);
+  EXPECT_EQ(DefaultVdbMemory_bytes(kMiB), 612 * kMiB);
+  EXPECT_EQ(DefaultVdbMemory_bytes(std::uint64_t{1} << 60), base::MachineMemoryBytes());
+}
 
 TEST_F(DamagedVdbTest, ATruncatedFileIsAnError) {
   const std::string whole = Whole();

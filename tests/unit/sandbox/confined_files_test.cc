@@ -87,7 +87,10 @@ class ConfinedFilesTest : public ::testing::Test {
 
   std::shared_ptr<ConfinedFiles> Files(std::uint64_t memory = kMemory, milliseconds time = kTime) {
     ConfinedOptions options;
-    options.limits = {memory, time};
+    options.limits = {.memory_bytes = memory,
+                      .time = time,
+                      .memory_flag = "--sandbox-memory",
+                      .time_flag = "--sandbox-seconds"};
     options.time = &time_;
     options.program = "/proc/self/exe";
     return std::make_shared<ConfinedFiles>(options);
@@ -507,6 +510,9 @@ TEST_F(ConfinedFilesTest, AnErrorOfTheFileIsThatOfTheProgramItself) {
     EXPECT_EQ(confined.code(), own.code());
     EXPECT_EQ(std::string(confined.message()), std::string(own.message()));
   }
+  std::ofstream(path, std::ios::trunc).flush();
+  EXPECT_THAT(std::string(Files()->Describe(path).status().message()),
+              HasSubstr("notes.txt: is empty (0 bytes); wait for the model to write it"));
   EXPECT_EQ(Files()->Describe(folder_.File("nowhere")).status().code(),
             absl::StatusCode::kNotFound);
   mkfifo(folder_.File("pipe").c_str(), 0600);

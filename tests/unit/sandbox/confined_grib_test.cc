@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "absl/strings/match.h"
+#include "base/error_details.h"
 #include "sandbox/confined_files.h"
 #include "storm_files/storm_format.h"
 #include "tests/support/synthetic_cf.h"
@@ -240,7 +241,11 @@ TEST_F(ConfinedGribBombs, CompressedFilesAreDecompressedToALimit) {
   std::string bytes = packed(Storm(4));
   const std::string zeros = packed(std::string(16 << 20, '\0'));
   for (int i = 0; i < 160; ++i) bytes += zeros;
-  EXPECT_EQ(Read(bytes).code(), absl::StatusCode::kResourceExhausted) << Read(bytes);
+  const absl::Status refused = Read(bytes);
+  EXPECT_EQ(refused.code(), absl::StatusCode::kResourceExhausted) << refused;
+  EXPECT_THAT(std::string(refused.message()),
+              ::testing::HasSubstr("storm.grib2: describing it needs more memory"));
+  EXPECT_TRUE(base::DetailsOf(refused).permanent);
   EXPECT_TRUE(Read(packed(Storm(4))).ok());
 }
 

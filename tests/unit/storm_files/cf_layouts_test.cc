@@ -282,6 +282,30 @@ TEST_F(CfLayouts, BoundsTakePrecedenceOverCoordinates) {
   EXPECT_GE((*fields)->grid.HighCorner_m().z, 2000.0);
 }
 
+// What the messages advise is done, and then the file is read.
+TEST_F(CfLayouts, AnotherDimensionIsRefusedWithARemedyThatWorks) {
+  SyntheticCf file = Cloud();
+  SyntheticCf members = file;
+  members.variables[0].dimensions.insert(members.variables[0].dimensions.begin(), "member");
+  members.coordinates.push_back({"member", {0.0, 1.0, 2.0}, {}, {}});
+  ExpectError(members, "has a dimension member of 3 in addition to x, y, z and time");
+  ExpectError(members, "for example with ncks -d member,0 in.nc out.nc");
+  members.coordinates.back().values.resize(1);
+  EXPECT_TRUE(Read(members).ok()) << Read(members).status();
+  // The dimension may also be a direction without a name that is known.
+  file.coordinates[2].name = "storey";
+  file.coordinates[2].attributes.erase("axis");
+  file.coordinates[2].attributes.erase("positive");
+  file.coordinates[2].attributes.erase("standard_name");
+  file.coordinates[2].attributes["units"] = "m";
+  std::ranges::replace(file.variables[0].dimensions, std::string("z"), std::string("storey"));
+  file.variables[0].value = [](const Index&) { return 1e-4; };
+  ExpectError(file,
+              "if storey is x, y, z or time, give its coordinate variable the attribute axis");
+  file.coordinates[2].attributes["axis"] = "Z";
+  EXPECT_TRUE(Read(file).ok()) << Read(file).status();
+}
+
 // Adds a grid mapping to the cloud.
 void AddMapping(SyntheticCf& file, const std::map<std::string, std::string>& texts,
                 const std::map<std::string, double>& numbers) {
