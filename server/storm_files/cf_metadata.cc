@@ -371,6 +371,7 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root) {
       ReadCfTimes(file, metadata.fields.front().variable.name, metadata.dimensions.time));
   metadata.times = std::move(times.times);
   metadata.run_start = times.run_start;
+  metadata.calendar = times.calendar;
   THUNDERHEAD_RETURN_IF_ERROR(ReadMoves(file, &metadata));
   for (std::vector<std::string>* more : {&metadata.places.assumptions, &times.assumptions}) {
     metadata.assumptions.insert(metadata.assumptions.end(), more->begin(), more->end());
