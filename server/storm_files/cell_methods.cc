@@ -50,18 +50,16 @@ CellMethod MeaningOfCellMethods(std::string_view cell_methods) {
   const std::vector<std::string> words = WordsOf(cell_methods);
   bool in_space = true;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    const bool is_name = words[i].ends_with(':');
+    const std::string& word = words[i];
     const bool follows_name = i > 0 && words[i - 1].ends_with(':');
-    if (is_name) {
-      in_space = (!follows_name || in_space) && IsInSpace(words[i].substr(0, words[i].size() - 1));
-    } else if (follows_name && GivesNoAmount(words[i])) {
-      return CellMethod::kNoAmount;
-    } else if (follows_name && words[i] != "point" && !(in_space && words[i] == "mean")) {
-      meaning = CellMethod::kStatistic;
-    } else if (words[i] == "where") {
-      // The mean of a part of each cell, such as its clouds, is not that of the cell.
-      meaning = CellMethod::kStatistic;
+    if (word.ends_with(':')) {
+      in_space = (!follows_name || in_space) && IsInSpace(word.substr(0, word.size() - 1));
+      continue;
     }
+    if (follows_name && GivesNoAmount(word)) return CellMethod::kNoAmount;
+    const bool is_value = word == "point" || (in_space && word == "mean");
+    // The mean of a part of each cell, such as its clouds ("where"), is not that of the cell.
+    if (follows_name ? !is_value : word == "where") meaning = CellMethod::kStatistic;
   }
   return meaning;
 }

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "storm_files/cell_methods.h"
+#include "storm_files/cf_writer.h"
 #include "tests/unit/storm_files/cf_file_test.h"
 
 namespace thunderhead::storm_files {
@@ -70,6 +71,19 @@ TEST_F(CfUnsaid, ASingleLayerNeedsBounds) {
   file.variables.push_back(Same("zg", {"z", "y", "x"},
                                 {{"units", "m"}, {"standard_name", "geopotential_height"}}, 3750));
   ExpectError(file, "zg has the height of one layer and not of its interfaces");
+}
+
+// Clouds that this program writes have bounds, so that a single cell is read back with its size.
+TEST_F(CfUnsaid, AWrittenCloudOfOneCellKeepsItsSize) {
+  const volume::RegularGrid grid{{1, 1, 1}, {10.0, 20.0, 30.0}, {-500.0, 700.0, 900.0}};
+  ASSERT_TRUE(
+      WriteCfCloud({grid, volume::Quantity::kExtinction, {0.5F}, "a", "b", "c"}, path_).ok());
+  const auto store = storm_store::StormStore::Open({path_}, {.read_ahead = 0});
+  ASSERT_TRUE(store.ok()) << store.status();
+  const auto fields = (*store)->Get((*store)->Storms().front()->id, 0, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->grid.spacing_m, grid.spacing_m);
+  EXPECT_EQ((*fields)->grid.low_corner_m.z, 900.0);
 }
 
 TEST_F(CfUnsaid, TheWidthOfASingleRowIsStated) {
