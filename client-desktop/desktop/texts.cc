@@ -129,6 +129,7 @@ std::string NameOfRun(const v1::StormDescription& storm) {
 }
 
 double LeadSeconds(const v1::StormDescription& storm, const v1::StormTime& time) {
+  if (time.has_lead_s()) return time.lead_s();
   const auto start = MomentOf(storm.run_start());
   const auto valid = MomentOf(time.valid_time());
   return start && valid ? valid->Seconds() - start->Seconds() : time.elapsed_s();

@@ -372,6 +372,8 @@ TEST(Texts, TheLeadTimeIsSinceTheRunsStart) {
   storm.set_run_start("0001-01-01T00:00:00Z");
   time.set_valid_time("0001-01-01T01:20:00Z");
   EXPECT_EQ(LeadSeconds(storm, time), 4800.0);
+  time.set_lead_s(3600.0);
+  EXPECT_EQ(LeadSeconds(storm, time), 3600.0) << "the server counts in the file's calendar";
 }
 
 TEST(Texts, AmountsAreInThePagesUnits) {

@@ -137,8 +137,7 @@ absl::StatusOr<std::string> ProductName::For(const ProductKey& key) const {
     } else {
       const absl::Duration unit = part.field == "lead" ? absl::Hours(1) : absl::Minutes(1);
       absl::Duration rest;
-      absl::StrAppendFormat(&name, "%0*d", part.width,
-                            absl::IDivDuration(key.valid - *key.run, unit, &rest));
+      absl::StrAppendFormat(&name, "%0*d", part.width, absl::IDivDuration(key.Lead(), unit, &rest));
     }
   }
   return name;

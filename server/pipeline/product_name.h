@@ -18,8 +18,14 @@ struct ProductKey {
   std::string storm;
   std::optional<absl::Time> run;  // start of the run; absent if unknown
   absl::Time valid;
+  // The lead time, if it is not the difference of `valid` and `run`, because the model counts in
+  // another calendar.
+  std::optional<absl::Duration> lead = {};
   int time_index = 0;  // index of the time in the run, counted from 0
   std::string view;
+
+  // Returns the time since `run`, which must be known.
+  absl::Duration Lead() const { return lead.value_or(valid - *run); }
 };
 
 class ProductName {

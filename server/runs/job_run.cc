@@ -354,6 +354,7 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanOfServer(
       picture.view = view;
       THUNDERHEAD_ASSIGN_OR_RETURN(picture.key.valid, ParseIso(time.valid_time()));
       picture.key.run = run;
+      if (time.has_lead_s()) picture.key.lead = absl::Seconds(time.lead_s());
       picture.key.time_index = time_index;
       picture.key.storm = storm.id();
       picture.key.view = options.views[view].name;

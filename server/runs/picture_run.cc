@@ -43,6 +43,7 @@ pipeline::ProductKey KeyOf(const storm_store::CataloguedStorm& storm, int time_i
     const storm_store::TimeSource& first = storm.sources.front();
     key.run = storm.files[first.file].times[first.record];
   }
+  if (key.run.has_value()) key.lead = storm_files::DurationIn(file.calendar, *key.run, key.valid);
   return key;
 }
 
@@ -117,7 +118,7 @@ pipeline::ManifestEntry EntryOf(const pipeline::ProductKey& key, const View& vie
   entry.valid = Iso(key.valid);
   if (key.run.has_value()) {
     entry.run = Iso(*key.run);
-    entry.lead_s = absl::ToDoubleSeconds(key.valid - *key.run);
+    entry.lead_s = absl::ToDoubleSeconds(key.Lead());
   }
   entry.view = view.name;
   entry.scene_sha256 = view.sha256;

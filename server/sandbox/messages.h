@@ -122,9 +122,9 @@ void VisitOthers(Archive& archive, std::vector<storm_files::StormFile>& others);
 // nanoseconds since 1970.
 template <typename Archive>
 void Visit(Archive& archive, storm_files::StormFile& file) {
-  auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, run_start, latitude_deg,
-         longitude_deg, middles, projection, projections, member, assumptions, part, parts, reader,
-         others, first_record, version, id, device, modified_ns] = file;
+  auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, run_start, calendar,
+         latitude_deg, longitude_deg, middles, projection, projections, member, assumptions, part,
+         parts, reader, others, first_record, version, id, device, modified_ns] = file;
   archive(cells);
   archive(dx_m);
   archive(dy_m);
@@ -150,6 +150,7 @@ void Visit(Archive& archive, storm_files::StormFile& file) {
   if (run_start.has_value()) run_start_s = absl::ToUnixSeconds(*run_start);
   VisitOptional(archive, run_start_s);
   if (run_start_s.has_value()) run_start = absl::FromUnixSeconds(*run_start_s);
+  archive(calendar);
   VisitOptional(archive, latitude_deg);
   VisitOptional(archive, longitude_deg);
   archive(middles);

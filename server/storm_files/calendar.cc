@@ -129,4 +129,22 @@ CalendarDate DateOf(Calendar calendar, std::int64_t day) {
   return {year, month, of_year - years.before[static_cast<std::size_t>(month) - 1] + 1};
 }
 
+absl::Duration DurationIn(Calendar calendar, absl::Time from, absl::Time to) {
+  const absl::TimeZone utc = absl::UTCTimeZone();
+  const auto midnight = [&](absl::Time time) {
+    return absl::CivilDay(absl::ToCivilSecond(time, utc));
+  };
+  const auto day = [&](absl::Time time) {
+    const absl::CivilDay date = midnight(time);
+    return DayNumber(calendar, {date.year(), date.month(), date.day()});
+  };
+  const auto first = day(from);
+  const auto last = day(to);
+  if (!first.has_value() || !last.has_value()) return to - from;
+  const auto of_day = [&](absl::Time time) {
+    return time - absl::FromCivil(absl::CivilSecond(midnight(time)), utc);
+  };
+  return absl::Hours(24 * (*last - *first)) + of_day(to) - of_day(from);
+}
+
 }  // namespace thunderhead::storm_files

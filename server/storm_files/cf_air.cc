@@ -5,12 +5,16 @@
 #include <string>
 #include <utility>
 
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
+#include "storm_files/cell_methods.h"
 #include "storm_files/cf_checks.h"
 #include "storm_files/cf_models.h"
+#include "storm_files/units.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -60,6 +64,7 @@ class AirFinder {
     for (const CfDescription& variable : variables) {
       const std::optional<CfAir> air = AirVariableOf(variable);
       if (!air.has_value() || Has(metadata_, air->variable)) continue;
+      if (HoldsNoAmount(file_, variable.name) || IsUnnamedLevels(variable)) continue;
       if (profiles ? !IsProfile(variable.name) : !MayBeOnAllAxes(variable.name)) continue;
       if (!air->known_units) return WrongUnits(file_, variable, "kg m-3, Pa, K or kg kg-1");
       THUNDERHEAD_RETURN_IF_ERROR(TakeOne(variable, *air, profiles));
@@ -67,10 +72,43 @@ class AirFinder {
     return absl::OkStatus();
   }
 
+  // Takes the coordinate of the layers as the pressure if its units are those of a pressure, and
+  // nothing says that it is the nominal pressure of model levels.
+  absl::Status TakeLevels() {
+    const std::string& name = metadata_.dimensions.axes[2].coordinate;
+    if (name.empty() || Has(metadata_, AirVariable::kPressure) ||
+        metadata_.heights.kind == CfHeightKind::kPressure) {
+      return absl::OkStatus();
+    }
+    const CfDescription levels = DescribeCf(file_, name);
+    const auto conversion = ConversionOf(levels.units, "Pa");
+    const std::string long_name = absl::AsciiStrToLower(levels.long_name);
+    for (const char* nominal : {"hybrid", "sigma", "eta", "nominal", "reference", "midpoint"}) {
+      if (absl::StrContains(long_name, nominal)) return absl::OkStatus();
+    }
+    if (!conversion.has_value() || !levels.standard_name.empty() || !IsProfile(name) ||
+        !file_.TextOrEmpty(name, "formula_terms").empty()) {
+      return absl::OkStatus();
+    }
+    metadata_.assumptions.push_back(
+        absl::StrCat("The levels ", name, " are the air's pressure, by their units."));
+    return TakeOne(levels,
+                   {.variable = AirVariable::kPressure,
+                    .scale = conversion->scale,
+                    .offset = conversion->offset},
+                   true);
+  }
+
   // The names of deviations from a base state that is not known.
   const std::vector<std::string>& Deviations() const { return deviations_; }
 
  private:
+  // TakeLevels decides on the coordinate of the layers unless its standard name says what it is.
+  bool IsUnnamedLevels(const CfDescription& variable) const {
+    return variable.standard_name.empty() &&
+           variable.name == metadata_.dimensions.axes[2].coordinate;
+  }
+
   bool IsProfile(const std::string& name) const {
     const auto arranged = Arrange(file_, name, metadata_.dimensions);
     return arranged.ok() && arranged->places[2] >= 0 && arranged->places[0] < 0 &&
@@ -191,6 +229,7 @@ absl::Status FindCfAir(const netcdf::NetcdfFile& file, const std::vector<CfDescr
   AirFinder finder(file, *metadata);
   THUNDERHEAD_RETURN_IF_ERROR(finder.Take(variables, false));
   THUNDERHEAD_RETURN_IF_ERROR(finder.Take(variables, true));
+  THUNDERHEAD_RETURN_IF_ERROR(finder.TakeLevels());
   ChoosePressure(*metadata);
   const bool pressure = hydrostatic || Has(*metadata, AirVariable::kPressure) ||
                         Has(*metadata, AirVariable::kPressureDeviation);

@@ -9,6 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "base/status.h"
+#include "storm_files/units.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -62,7 +63,9 @@ std::optional<CfDirection> FindDirection(const netcdf::NetcdfFile& file, const s
                                          CfDimension& dimension) {
   if (file.HasVariable(dimension.name)) {
     dimension.coordinate = dimension.name;
-    if (const auto direction = DirectionOf(DescribeCf(file, dimension.name))) return direction;
+    const CfDescription described = DescribeCf(file, dimension.name);
+    if (const auto direction = DirectionOf(described)) return direction;
+    if (ConversionOf(described.units, "Pa").has_value()) return CfDirection::kZ;
   }
   for (const std::string& name : CoordinatesAlong(file, field, dimension.name)) {
     const auto direction = DirectionOf(DescribeCf(file, name));

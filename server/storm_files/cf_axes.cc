@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/status.h"
-#include "spdlog/spdlog.h"
+#include "storm_files/units.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -37,8 +39,27 @@ void Unwrap(std::vector<double>& values, double period) {
 bool IsAngle(const CfDescription& coordinate) {
   const std::string name = absl::AsciiStrToLower(
       coordinate.standard_name.empty() ? coordinate.name : coordinate.standard_name);
-  return name == "lon" || name == "lat" || name.ends_with("longitude") ||
-         name.ends_with("latitude");
+  for (const char* angle : {"lon", "lat", "rlon", "rlat"}) {
+    if (name == angle) return true;
+  }
+  return name.ends_with("longitude") || name.ends_with("latitude");
+}
+
+// Returns whether a coordinate only numbers the cells. Then its unit has no dimension. Or it has no
+// unit, and its values are 0, 1, 2 and so on, or 1, 2, 3 and so on.
+absl::StatusOr<bool> NumbersCells(const netcdf::NetcdfFile& file, const CfDescription& coordinate) {
+  if (IsAngle(coordinate)) return false;
+  if (!HasNoUnits(coordinate.units)) {
+    return ConversionOf(coordinate.units, "1").has_value() &&
+           !ConversionOf(coordinate.units, "degree").has_value();
+  }
+  if (coordinate.standard_name.starts_with("projection_")) return false;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> values, file.ReadDoubles(coordinate.name));
+  if (values.size() < 2 || (values[0] != 0.0 && values[0] != 1.0)) return false;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] != values[i - 1] + 1.0) return false;
+  }
+  return true;
 }
 
 // Returns 1 for a coordinate that increases upwards, or -1 for a depth, which increases downwards.
@@ -96,23 +117,22 @@ Faces FacesFrom(double low_m, const std::vector<double>& centres_m) {
   return faces;
 }
 
-absl::StatusOr<std::vector<double>> FacesOfOne(const netcdf::NetcdfFile& file,
-                                               const std::string& coordinate, CfDirection direction,
-                                               double centre, double size_without_bounds) {
-  double size = 2.0 * std::abs(centre);
-  double low = std::min(0.0, 2.0 * centre);
-  if (size == 0.0 && direction != CfDirection::kZ) {
-    size = size_without_bounds;
-    low = -0.5 * size;
-  }
+// Returns the faces of the only cell of an axis. Its width is `single_cell`, or else twice the
+// coordinate. Adds an assumption to the axis.
+absl::StatusOr<std::vector<double>> FacesOfOne(const netcdf::NetcdfFile& file, double centre,
+                                               double single_cell, CfAxis& axis) {
+  const std::string& coordinate = axis.coordinate;
+  const double size = single_cell > 0.0 ? single_cell : 2.0 * std::abs(centre);
   if (!(size > 0.0)) {
     return absl::InvalidArgumentError(absl::StrCat(
         file.Path(), ": ", coordinate, " has one cell at 0 and no bounds, so it has no size; add ",
         coordinate, ":bounds"));
   }
-  spdlog::warn("{}: {} has one cell and no bounds; taken to be {} m wide", file.Path(), coordinate,
-               size);
-  return std::vector<double>{low, low + size};
+  axis.assumptions.push_back(absl::StrFormat(
+      "%s has one cell and no bounds; the cell is taken to be %g %s wide%s.", coordinate, size,
+      axis.unit == CfAxisUnit::kDegrees ? "degrees" : "m",
+      single_cell > 0.0 ? ", like the cells along the other axis" : ", twice its coordinate"));
+  return std::vector<double>{centre - 0.5 * size, centre + 0.5 * size};
 }
 
 absl::Status CheckLength(const netcdf::NetcdfFile& file, const CfDimension& dimension) {
@@ -141,8 +161,8 @@ absl::StatusOr<WrittenAxis> ReadWritten(const netcdf::NetcdfFile& file,
 }
 
 // Sets the faces of the axis, in ascending order.
-absl::Status TakeFaces(const netcdf::NetcdfFile& file, WrittenAxis written, CfDirection direction,
-                       double single_cell, CfAxis& axis) {
+absl::Status TakeFaces(const netcdf::NetcdfFile& file, WrittenAxis written, double single_cell,
+                       CfAxis& axis) {
   std::vector<double>& centres = written.centres;
   axis.reversed = centres.front() > centres.back();
   if (axis.reversed) std::ranges::reverse(centres);
@@ -152,11 +172,23 @@ absl::Status TakeFaces(const netcdf::NetcdfFile& file, WrittenAxis written, CfDi
   } else if (centres.size() > 1) {
     axis.faces = FacesAround(centres);
   } else {
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        axis.faces, FacesOfOne(file, axis.coordinate, direction, centres[0], single_cell));
+    THUNDERHEAD_ASSIGN_OR_RETURN(axis.faces, FacesOfOne(file, centres[0], single_cell, axis));
   }
   if (axis.faces.front() > axis.faces.back()) std::ranges::reverse(axis.faces);
   return CheckMonotonic(file, axis.coordinate, axis.faces);
+}
+
+// Returns the first cell whose first bound is not the second bound of the cell before. Returns
+// nothing if all cells are adjacent. `pairs` has two bounds for each cell.
+std::optional<std::size_t> FirstGap(const std::vector<double>& pairs) {
+  // Bounds that are stored as floats differ by rounding.
+  constexpr double kRounding = 1e-6;
+  for (std::size_t i = 1; 2 * i < pairs.size(); ++i) {
+    const double slack = kEvenTolerance * std::abs(pairs[2 * i + 1] - pairs[2 * i]) +
+                         kRounding * std::abs(pairs[2 * i]);
+    if (!(std::abs(pairs[2 * i] - pairs[2 * i - 1]) <= slack)) return i;
+  }
+  return std::nullopt;
 }
 
 absl::Status WrongLength(const netcdf::NetcdfFile& file, const CfDescription& coordinate,
@@ -165,28 +197,43 @@ absl::Status WrongLength(const netcdf::NetcdfFile& file, const CfDescription& co
                                                  " has units '", coordinate.units, "'; ", needed));
 }
 
+// Returns the axis as one without places, whose cells are only numbered.
+CfAxis AxisOfNumbers(CfAxis axis) {
+  axis.unit = CfAxisUnit::kNone;
+  axis.counted_by = std::move(axis.coordinate);
+  axis.coordinate.clear();
+  for (int i = 0; i <= axis.cells; ++i) axis.faces.push_back(i);
+  return axis;
+}
+
 }  // namespace
 
 absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
-                                               const std::string& dimension, std::size_t cells,
+                                               const std::string& coordinate, std::size_t cells,
                                                double period) {
-  const auto name = file.TextAttribute(dimension, "bounds");
-  std::vector<double> faces;
-  if (!name.has_value() || !file.HasVariable(*name)) return faces;
+  const auto name = file.TextAttribute(coordinate, "bounds");
+  if (!name.has_value() || !file.HasVariable(*name)) return std::vector<double>();
+  return ReadBoundsIn(file, *name, coordinate, cells, period);
+}
+
+absl::StatusOr<std::vector<double>> ReadBoundsIn(const netcdf::NetcdfFile& file,
+                                                 const std::string& bounds,
+                                                 const std::string& coordinate, std::size_t cells,
+                                                 double period) {
   // Bounds are in the units of their coordinate. CF files usually omit the units of the bounds.
-  const std::string units = file.TextOrEmpty(*name, "units");
-  if (!units.empty() && units != file.TextOrEmpty(dimension, "units")) {
+  const std::string units = file.TextOrEmpty(bounds, "units");
+  if (!units.empty() && units != file.TextOrEmpty(coordinate, "units")) {
     return absl::InvalidArgumentError(
-        absl::StrCat(file.Path(), ": ", *name, " has units '", units, "', and ", dimension,
+        absl::StrCat(file.Path(), ": ", bounds, " has units '", units, "', and ", coordinate,
                      ", whose bounds they are, others; give both the same"));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape(*name));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape(bounds));
   if (shape != std::vector<std::size_t>{cells, 2}) {
-    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", *name, ", the bounds of ",
-                                                   dimension, ", must have dimensions (", cells,
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", bounds, ", the bounds of ",
+                                                   coordinate, ", must have dimensions (", cells,
                                                    ", 2)"));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<double> pairs, file.ReadDoubles(*name));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<double> pairs, file.ReadDoubles(bounds));
   if (period != 0.0) {
     // Both bounds of a cell are moved next to each other, and the cells next to each other.
     for (std::size_t i = 0; i < cells; ++i) {
@@ -198,18 +245,22 @@ absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
     }
   }
   // The two bounds of a cell may be in descending order although the axis ascends, or in ascending
-  // order although it descends.
-  if (cells > 1 && (pairs[0] < pairs[1]) != (pairs[0] < pairs[2])) {
-    for (std::size_t i = 0; i < cells; ++i) std::swap(pairs[2 * i], pairs[2 * i + 1]);
-  }
-  for (std::size_t i = 0; i < cells; ++i) {
-    const double slack = kEvenTolerance * std::abs(pairs[2 * i + 1] - pairs[2 * i]);
-    if (i > 0 && !(std::abs(pairs[2 * i] - pairs[2 * i - 1]) <= slack)) {
-      return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", *name, ", the bounds of ",
-                                                     dimension, ", leave a gap before cell ", i));
+  // order although it descends. Neighbouring cells share a face in the right order only.
+  std::optional<std::size_t> gap = FirstGap(pairs);
+  if (gap.has_value()) {
+    std::vector<double> swapped = pairs;
+    for (std::size_t i = 0; i < cells; ++i) std::swap(swapped[2 * i], swapped[2 * i + 1]);
+    if (!FirstGap(swapped).has_value()) {
+      gap.reset();
+      pairs = std::move(swapped);
     }
-    faces.push_back(pairs[2 * i]);
   }
+  if (gap.has_value()) {
+    return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": ", bounds, ", the bounds of ",
+                                                   coordinate, ", leave a gap before cell ", *gap));
+  }
+  std::vector<double> faces;
+  for (std::size_t i = 0; i < cells; ++i) faces.push_back(pairs[2 * i]);
   faces.push_back(pairs.back());
   return faces;
 }
@@ -245,12 +296,10 @@ absl::StatusOr<CfAxis> ReadHorizontalAxis(const netcdf::NetcdfFile& file,
   axis.dimension = dimension.name;
   axis.coordinate = dimension.coordinate;
   axis.cells = static_cast<int>(dimension.length);
-  if (dimension.coordinate.empty()) {
-    axis.unit = CfAxisUnit::kNone;
-    for (int i = 0; i <= axis.cells; ++i) axis.faces.push_back(i);
-    return axis;
-  }
+  if (dimension.coordinate.empty()) return AxisOfNumbers(std::move(axis));
   const CfDescription described = DescribeCf(file, dimension.coordinate);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const bool numbers_cells, NumbersCells(file, described));
+  if (numbers_cells) return AxisOfNumbers(std::move(axis));
   if (const auto degrees = DegreesIn(described.units, direction); degrees.has_value()) {
     axis.unit = CfAxisUnit::kDegrees;
     axis.units_per_written = *degrees;
@@ -262,7 +311,8 @@ absl::StatusOr<CfAxis> ReadHorizontalAxis(const netcdf::NetcdfFile& file,
                                                      " has no units; add them: degrees, m or km"));
     }
     if (HasNoUnits(described.units)) {
-      spdlog::warn("{}: {} has no units; taken to be in m", file.Path(), described.name);
+      axis.assumptions.push_back(
+          absl::StrCat(described.name, " has no units; it is taken to be in m."));
     }
   } else {
     return WrongLength(file, described, "m, km or degrees are needed");
@@ -272,7 +322,7 @@ absl::StatusOr<CfAxis> ReadHorizontalAxis(const netcdf::NetcdfFile& file,
   const double period = wraps ? kFullCircle_deg / axis.units_per_written : 0.0;
   THUNDERHEAD_ASSIGN_OR_RETURN(WrittenAxis written,
                                ReadWritten(file, dimension, axis.units_per_written, period));
-  THUNDERHEAD_RETURN_IF_ERROR(TakeFaces(file, std::move(written), direction, single_cell, axis));
+  THUNDERHEAD_RETURN_IF_ERROR(TakeFaces(file, std::move(written), single_cell, axis));
   if (IsEven(axis.faces)) return axis;
   return absl::InvalidArgumentError(
       absl::StrCat(file.Path(), ": the coordinate ", axis.coordinate,
@@ -296,7 +346,13 @@ absl::StatusOr<CfAxis> ReadHeightAxis(const netcdf::NetcdfFile& file,
   axis.units_per_written = *metres * sign;
   THUNDERHEAD_ASSIGN_OR_RETURN(WrittenAxis written,
                                ReadWritten(file, dimension, axis.units_per_written, 0.0));
-  THUNDERHEAD_RETURN_IF_ERROR(TakeFaces(file, std::move(written), CfDirection::kZ, 0.0, axis));
+  if (written.centres.size() == 1 && written.faces.empty()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": ", described.name,
+                     " has one layer and no bounds, so its thickness is not known; add ",
+                     described.name, ":bounds, or give at least two layers"));
+  }
+  THUNDERHEAD_RETURN_IF_ERROR(TakeFaces(file, std::move(written), 0.0, axis));
   if (sign < 0.0 && axis.faces.back() <= 0.0) {
     return absl::InvalidArgumentError(absl::StrFormat(
         "%s: the coordinate %s has positive = 'down', so its layers lie %g to %g m "

@@ -16,30 +16,33 @@ namespace thunderhead::storm_files {
 enum class CfAxisUnit {
   kMetres,
   kDegrees,  // longitude, latitude, or an angle of a rotated grid
-  kNone,     // the axis has no coordinate; its faces are 0, 1, 2, ...
+  kNone,     // the axis has no coordinate that is a place; its faces are 0, 1, 2, ...
 };
 
 struct CfAxis {
   std::string dimension;
   std::string coordinate;  // empty for CfAxisUnit::kNone
+  std::string counted_by;  // the coordinate that only numbers the cells; empty if none does
   int cells = 0;
   bool reversed = false;  // true if the file's axis runs to the west, to the south or downwards
   CfAxisUnit unit = CfAxisUnit::kMetres;
   double units_per_written = 1.0;  // metres or degrees in one unit of the file's coordinate
   std::vector<double> faces;       // ascending, one more than cells; even but for the height axis
+  std::vector<std::string> assumptions;  // sentences for the user
 
   double Middle() const { return 0.5 * (faces.front() + faces.back()); }
   double Spacing() const { return (faces.back() - faces.front()) / cells; }
 };
 
-// Returns a horizontal axis. `single_cell` is the width of the axis's only cell, in the axis's
-// unit, if the cell is at coordinate 0 without bounds; 0 if unknown. Errors name the coordinate and
-// what is wrong with it.
+// Returns a horizontal axis. `single_cell` is the width of the axis's only cell without bounds, in
+// the axis's unit; 0 if unknown. A coordinate that only numbers the cells gives an axis of
+// CfAxisUnit::kNone. Errors name the coordinate and what is wrong with it.
 absl::StatusOr<CfAxis> ReadHorizontalAxis(const netcdf::NetcdfFile& file,
                                           const CfDimension& dimension, CfDirection direction,
                                           double single_cell);
 
-// Returns an axis of heights in metres, from a coordinate in a unit of length.
+// Returns an axis of heights in metres, from a coordinate in a unit of length. A single layer needs
+// bounds, because its thickness is not known otherwise.
 absl::StatusOr<CfAxis> ReadHeightAxis(const netcdf::NetcdfFile& file, const CfDimension& dimension);
 
 // Returns the faces of the cells around two or more ascending `centres`. If possible, the cells
@@ -53,5 +56,12 @@ std::vector<double> FacesAround(const std::vector<double>& centres);
 absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
                                                const std::string& coordinate, std::size_t cells,
                                                double period);
+
+// Does the same with the variable `bounds`, which must exist. The coordinate need not rise or fall
+// all along.
+absl::StatusOr<std::vector<double>> ReadBoundsIn(const netcdf::NetcdfFile& file,
+                                                 const std::string& bounds,
+                                                 const std::string& coordinate, std::size_t cells,
+                                                 double period);
 
 }  // namespace thunderhead::storm_files

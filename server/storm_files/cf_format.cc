@@ -93,6 +93,7 @@ class CfFormat final : public StormFormat {
     file.about = metadata.source;
     file.run = RunOf(metadata);
     file.run_start = metadata.run_start;
+    file.calendar = metadata.calendar;
     file.assumptions = metadata.assumptions;
     if (places.even != nullptr) {
       const EvenColumns& even = *places.even;

@@ -44,6 +44,7 @@ struct CfHeights {
   std::optional<CfVariable> array;  // of kMiddles and kFaces
   double scale = 1.0;               // of the array, to m
   bool above_ground = false;        // of the array
+  std::optional<double> ground_m;   // the height of flat ground, if the file gives it as a number
   // The term a of kLinear and kPressure at the faces, upwards, one more than layers.
   std::vector<double> a;                // in m or Pa
   std::vector<CfSurfaceTerm> surfaces;  // of kLinear: heights of the ground, or parts of them

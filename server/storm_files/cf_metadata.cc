@@ -1,6 +1,7 @@
 #include "storm_files/cf_metadata.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -9,6 +10,7 @@
 #include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
+#include "storm_files/cell_methods.h"
 #include "storm_files/cf_air.h"
 #include "storm_files/cf_cells.h"
 #include "storm_files/cf_checks.h"
@@ -77,6 +79,23 @@ void AddMixtures(const std::vector<CfField>& mixtures, CfMetadata* metadata) {
   }
 }
 
+// Leaves out variances and the like of hydrometeors whose amounts the file also has.
+void LeaveOutSpreads(const netcdf::NetcdfFile& file, std::vector<CfDescription>& candidates,
+                     std::vector<std::string>& assumptions) {
+  const std::vector<CfDescription> all = candidates;
+  std::erase_if(candidates, [&](const CfDescription& spread) {
+    if (!HoldsNoAmount(file, spread.name)) return false;
+    const bool has_amounts = std::ranges::any_of(all, [&](const CfDescription& other) {
+      return QuantityOf(other)->hydrometeor == QuantityOf(spread)->hydrometeor &&
+             !HoldsNoAmount(file, other.name);
+    });
+    if (!has_amounts) return false;
+    assumptions.push_back(absl::StrCat(spread.name, " is left out, because its cell_methods say ",
+                                       "that its values are no amounts."));
+    return true;
+  });
+}
+
 // Finds the hydrometeors, or the extinction alone if there is one, because it includes all of them.
 absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& variables,
                         CfMetadata* metadata) {
@@ -90,6 +109,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
     }
   }
   if (candidates.empty()) return absl::OkStatus();
+  LeaveOutSpreads(file, candidates, metadata->assumptions);
   THUNDERHEAD_RETURN_IF_ERROR(FindAxes(file, candidates, metadata));
   std::vector<CfField> mixtures;
   for (const CfDescription& variable : candidates) {
@@ -103,6 +123,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
           absl::StrCat(file.Path(), ": ", variable.name, " lies on the faces between the cells of ",
                        candidates.front().name, "; put all on one grid"));
     }
+    THUNDERHEAD_RETURN_IF_ERROR(CheckCellMethods(file, variable.name, metadata->assumptions));
     if (quantity.mixed != MixedWater::kNone) {
       mixtures.push_back({std::move(arranged), quantity});
       continue;
@@ -148,8 +169,8 @@ absl::Status ReadCells(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   return absl::OkStatus();
 }
 
-// Reads the horizontal axes. If the domain is only one cell wide along one axis, that width is
-// assumed to be the cell size along the other axis.
+// Reads the horizontal axes. The only cell of an axis is assumed to be as wide as the cells along
+// the other axis, if it has no bounds.
 absl::Status ReadColumns(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   if (metadata->dimensions.unstructured) return ReadCells(file, metadata);
   const auto& [x_on, y_on, z_on] = metadata->dimensions.axes;
@@ -159,11 +180,15 @@ absl::Status ReadColumns(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
     return absl::OkStatus();
   };
   double single = 0.0;
-  if (y_on.length == 1 && read(x_on, CfDirection::kX, 0.0, &metadata->x).ok()) {
+  if (y_on.length == 1 && x_on.length > 1 && read(x_on, CfDirection::kX, 0.0, &metadata->x).ok()) {
     single = metadata->x.Spacing();
   }
   THUNDERHEAD_RETURN_IF_ERROR(read(y_on, CfDirection::kY, single, &metadata->y));
-  THUNDERHEAD_RETURN_IF_ERROR(read(x_on, CfDirection::kX, metadata->y.Spacing(), &metadata->x));
+  THUNDERHEAD_RETURN_IF_ERROR(
+      read(x_on, CfDirection::kX, y_on.length > 1 ? metadata->y.Spacing() : 0.0, &metadata->x));
+  for (const CfAxis* axis : {&metadata->x, &metadata->y}) {
+    std::ranges::copy(axis->assumptions, std::back_inserter(metadata->assumptions));
+  }
   const std::string& field = metadata->fields.front().variable.name;
   THUNDERHEAD_ASSIGN_OR_RETURN(metadata->places, PlaceColumns(file, field, metadata->dimensions, {},
                                                               metadata->x, metadata->y));
@@ -228,7 +253,7 @@ void FindWind(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& 
   };
   for (const CfDescription& variable : variables) {
     const std::optional<CfWind> wind = WindVariableOf(variable);
-    if (!wind.has_value()) continue;
+    if (!wind.has_value() || HoldsNoAmount(file, variable.name)) continue;
     const auto shape = file.Shape(variable.name);
     if (!shape.ok() || shape->size() < RankOf(*metadata)) continue;
     absl::StatusOr<CfVariable> arranged = ArrangeWind(file, variable, *wind, *metadata);
@@ -258,7 +283,7 @@ void FindWind(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& 
 absl::Status CheckArrayAgainstTerrain(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   CfHeights& heights = metadata->heights;
   if (!heights.array.has_value() || heights.above_ground || !metadata->terrain.has_value() ||
-      (heights.name != "zhval" && heights.name != "height") ||
+      (heights.name != "zhval" && heights.name != "zh" && heights.name != "height") ||
       !file.TextOrEmpty(heights.name, "standard_name").empty()) {
     return absl::OkStatus();
   }
@@ -279,30 +304,6 @@ absl::Status CheckArrayAgainstTerrain(const netcdf::NetcdfFile& file, CfMetadata
     break;
   }
   return absl::OkStatus();
-}
-
-// Sets what variables mean by the model that wrote them, where their names do not say it.
-void ApplyModel(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
-  const bool icon = file.TextAttribute("", "uuidOfHGrid").has_value() ||
-                    file.NumberAttribute("", "number_of_grid_used").has_value();
-  const bool per_kg = std::ranges::any_of(metadata->fields, [](const CfField& field) {
-    return field.quantity.quantity == volume::Quantity::kMixingRatio;
-  });
-  if (icon && per_kg) {
-    for (CfField& field : metadata->fields) field.quantity.of_moist_air = true;
-    for (CfAirField& field : metadata->air) {
-      if (field.air.variable == AirVariable::kVapour) field.air.of_moist_air = true;
-    }
-    metadata->assumptions.push_back(
-        "Masses per kg are those per kg of the whole air, as in all files of ICON.");
-  }
-  if (IsMpas(file) && Has(*metadata, AirVariable::kDensity)) {
-    // Without humidity, the density counts as that of dry air.
-    std::erase_if(metadata->air, [](const CfAirField& field) {
-      return field.air.variable == AirVariable::kVapour;
-    });
-    metadata->assumptions.push_back("The air's density is that of dry air, as in MPAS.");
-  }
 }
 
 // Returns the only group with fields, or the root.
@@ -364,13 +365,14 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root) {
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckArrayAgainstTerrain(file, &metadata));
   THUNDERHEAD_RETURN_IF_ERROR(FindCfAir(file, variables, &metadata));
-  ApplyModel(file, &metadata);
+  ApplyModel(file, metadata);
   FindWind(file, variables, &metadata);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       CfTimes times,
       ReadCfTimes(file, metadata.fields.front().variable.name, metadata.dimensions.time));
   metadata.times = std::move(times.times);
   metadata.run_start = times.run_start;
+  metadata.calendar = times.calendar;
   THUNDERHEAD_RETURN_IF_ERROR(ReadMoves(file, &metadata));
   for (std::vector<std::string>* more : {&metadata.places.assumptions, &times.assumptions}) {
     metadata.assumptions.insert(metadata.assumptions.end(), more->begin(), more->end());

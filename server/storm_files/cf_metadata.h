@@ -11,6 +11,7 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "netcdf/netcdf_file.h"
+#include "storm_files/calendar.h"
 #include "storm_files/cf_arrange.h"
 #include "storm_files/cf_axes.h"
 #include "storm_files/cf_heights.h"
@@ -46,8 +47,9 @@ struct CfMetadata {
   std::vector<std::shared_ptr<const CfPlaces>> moved;
   CfHeights heights;
   CfOrder order;
-  std::vector<absl::Time> times;        // at least one; in year 1 if the file gives no dates
-  std::optional<absl::Time> run_start;  // when the model run began, if the file says so
+  std::vector<absl::Time> times;             // at least one; in year 1 if the file gives no dates
+  std::optional<absl::Time> run_start;       // when the model run began, if the file says so
+  Calendar calendar = Calendar::kGregorian;  // of the times
   std::vector<CfField> fields;  // the hydrometeors in the order of physics::kHydrometeors, or
                                 // only the extinction
   std::vector<CfAirField> air;  // only the variables that are needed to convert mixing ratios to

@@ -5,6 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
+#include "storm_files/cf_cells.h"
+#include "storm_files/cf_checks.h"
+
 namespace thunderhead::storm_files {
 namespace {
 
@@ -37,6 +41,41 @@ bool Shows(const netcdf::NetcdfFile& file, const Signs& signs) {
   });
 }
 
+// ICON's masses are shares of the whole air.
+void ApplyIcon(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
+  const bool icon = file.TextAttribute("", "uuidOfHGrid").has_value() ||
+                    file.NumberAttribute("", "number_of_grid_used").has_value();
+  const bool per_kg = std::ranges::any_of(metadata.fields, [](const CfField& field) {
+    return field.quantity.quantity == volume::Quantity::kMixingRatio;
+  });
+  if (!icon || !per_kg) return;
+  for (CfField& field : metadata.fields) field.quantity.of_moist_air = true;
+  for (CfAirField& field : metadata.air) {
+    if (field.air.variable == AirVariable::kVapour) field.air.of_moist_air = true;
+  }
+  metadata.assumptions.push_back(
+      "Masses per kg are those per kg of the whole air, as in all files of ICON.");
+}
+
+void ApplyMpas(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
+  if (!IsMpas(file) || !Has(metadata, AirVariable::kDensity)) return;
+  // Without humidity, the density counts as that of dry air.
+  std::erase_if(metadata.air,
+                [](const CfAirField& field) { return field.air.variable == AirVariable::kVapour; });
+  metadata.assumptions.push_back("The air's density is that of dry air, as in MPAS.");
+}
+
+// CAM names the air of its mixing ratios in an attribute, which older versions lack.
+void ApplyCam(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
+  for (CfField& field : metadata.fields) {
+    const std::string& name = field.variable.name;
+    if (!IsCamName(name) || field.quantity.quantity != volume::Quantity::kMixingRatio) continue;
+    field.quantity.of_moist_air = file.TextOrEmpty(name, "mixing_ratio") != "dry";
+    metadata.assumptions.push_back(absl::StrCat(
+        name, " is per kg of ", field.quantity.of_moist_air ? "moist" : "dry", " air, as in CAM."));
+  }
+}
+
 }  // namespace
 
 std::string AdviceOnAir(const netcdf::NetcdfFile& file) {
@@ -49,6 +88,12 @@ std::string AdviceOnUnits(const netcdf::NetcdfFile& file) {
   if (file.TextOrEmpty("time", "units") != "seconds since start") return "";
   return "MicroHH's 3d_to_nc.py writes no units: give the variable units of 'kg kg-1', and merge "
          "the other hydrometeors and the base state rhoref (kg m-3, on z) into the file";
+}
+
+void ApplyModel(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
+  ApplyIcon(file, metadata);
+  ApplyMpas(file, metadata);
+  ApplyCam(file, metadata);
 }
 
 }  // namespace thunderhead::storm_files

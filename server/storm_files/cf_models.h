@@ -1,10 +1,11 @@
-// Advice for output of models that lacks what is needed, by the names that a model uses. Files are
-// read by their meaning, and never by the model.
+// What is known of models' output beyond its attributes: advice if the output lacks what is needed,
+// and the air to which masses belong. Files are recognised by the names that a model uses.
 #pragma once
 
 #include <string>
 
 #include "netcdf/netcdf_file.h"
+#include "storm_files/cf_metadata.h"
 
 namespace thunderhead::storm_files {
 
@@ -14,5 +15,9 @@ std::string AdviceOnAir(const netcdf::NetcdfFile& file);
 
 // Returns what to add so that the units of the hydrometeors are known, or an empty text.
 std::string AdviceOnUnits(const netcdf::NetcdfFile& file);
+
+// Sets what variables mean by the model that wrote them, where their attributes do not say it. Adds
+// sentences to the assumptions.
+void ApplyModel(const netcdf::NetcdfFile& file, CfMetadata& metadata);
 
 }  // namespace thunderhead::storm_files

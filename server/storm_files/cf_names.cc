@@ -69,6 +69,12 @@ constexpr std::array kVariables = {
     Named{"clwmr", Hydrometeor::kCloud},
     Named{"q_liquid", Hydrometeor::kCloud},
     Named{"q_ice", Hydrometeor::kIce},
+    // CAM
+    Named{"cldliq", Hydrometeor::kCloud},
+    Named{"cldice", Hydrometeor::kIce},
+    Named{"rainqm", Hydrometeor::kRain},
+    Named{"snowqm", Hydrometeor::kSnow},
+    Named{"grauqm", Hydrometeor::kGraupel},
     // DALES
     Named{"plw", Hydrometeor::kRain, "precipitating liquid"},
     Named{"pli", Hydrometeor::kSnow, "precipitating ice"},
@@ -149,7 +155,8 @@ std::optional<CfQuantity> FromName(const CfDescription& variable) {
   const std::string long_name = absl::AsciiStrToLower(variable.long_name);
   CfQuantity quantity;
   // DALES and ECMWF write specific contents, and say so here.
-  quantity.of_moist_air = Says(long_name, "mass fraction") || Says(long_name, "specific");
+  quantity.of_moist_air =
+      Says(long_name, "mass fraction") || Says(long_name, "specific") || IsCamName(variable.name);
   for (const Named& each : kVariables) {
     if (each.name != name || !Says(long_name, each.long_name)) continue;
     quantity.hydrometeor = each.hydrometeor;
@@ -277,6 +284,10 @@ bool IsNorthwards(std::string_view units) {
 
 }  // namespace
 
+bool IsCamName(std::string_view variable) {
+  return IsOneOf(variable, {"CLDLIQ", "CLDICE", "RAINQM", "SNOWQM", "GRAUQM"});
+}
+
 bool HasNoUnits(std::string_view units) {
   return absl::StripAsciiWhitespace(absl::string_view(units.data(), units.size())).empty();
 }
@@ -303,7 +314,8 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
   CfAir air;
   air.variable = *kind;
   air.of_moist_air = variable.standard_name == "specific_humidity" ||
-                     (HasPlainName(variable) && IsOneOf(variable.name, {"q", "hus", "qv_s"}));
+                     (HasPlainName(variable) &&
+                      IsOneOf(absl::AsciiStrToLower(variable.name), {"q", "hus", "qv_s"}));
   const auto use = [&](std::string_view unit) {
     if (HasNoUnits(variable.units)) return true;
     const std::optional<UnitConversion> conversion = ConversionOf(variable.units, unit);

@@ -35,6 +35,9 @@ struct CfQuantity {
   MixedWater mixed = MixedWater::kNone;  // the hydrometeors that share the variable
 };
 
+// Returns whether CAM, the atmosphere of CESM, gives this name to a hydrometeor.
+bool IsCamName(std::string_view variable);
+
 // Returns nothing if the variable is neither a hydrometeor nor extinction.
 std::optional<CfQuantity> QuantityOf(const CfDescription& variable);
 

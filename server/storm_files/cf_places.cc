@@ -15,6 +15,7 @@
 #include "base/status.h"
 #include "glm/trigonometric.hpp"
 #include "glm/vec2.hpp"
+#include "storm_files/cf_origin.h"
 #include "storm_files/grid_mapping.h"
 #include "storm_files/model_columns.h"
 #include "volume/map_projection.h"
@@ -235,6 +236,14 @@ std::optional<double> Disagreement_m(const ColumnPlaces& on_map, const PlaceArra
 }
 
 absl::Status NoCoordinate(const netcdf::NetcdfFile& file, const CfAxis& axis) {
+  if (!axis.counted_by.empty()) {
+    const std::string units = file.TextOrEmpty(axis.counted_by, "units");
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.Path(), ": the coordinate ", axis.counted_by, " has ",
+        units.empty() ? "no units" : absl::StrCat("units '", units, "'"),
+        " and numbers the cells, so their size is not known; add its units (m, km or degrees), or "
+        "longitudes and latitudes of all columns"));
+  }
   return absl::InvalidArgumentError(
       absl::StrCat(file.Path(), ": the dimension ", axis.dimension, " has no coordinate variable ",
                    axis.dimension, ", so its cells have no size; add one, in metres"));
@@ -316,6 +325,63 @@ absl::Status PlaceNowhere(const netcdf::NetcdfFile& file, const CfAxis& x, const
   return absl::OkStatus();
 }
 
+// Returns the columns by the origin in the file's global attributes. Returns nothing if there is no
+// usable one. `on_map` are the columns by a grid mapping, which is better if it has the same
+// origin.
+std::optional<ColumnPlaces> PlacesByOrigin(const netcdf::NetcdfFile& file, const CfAxis& x,
+                                           const CfAxis& y,
+                                           const std::optional<ColumnPlaces>& on_map,
+                                           CfPlaces& places) {
+  const std::optional<CfOrigin> origin = ReadCfOrigin(file);
+  if (!origin.has_value() || x.unit != CfAxisUnit::kMetres) return std::nullopt;
+  if (origin->rotation_deg != 0.0) {
+    places.assumptions.push_back(absl::StrFormat(
+        "The origin (origin_lat, origin_lon) is not used, because the grid is turned by %g "
+        "degrees (rotation_angle).",
+        origin->rotation_deg));
+    return std::nullopt;
+  }
+  const ColumnPlaces from_origin = PlacesFromOrigin(*origin, x, y);
+  if (on_map.has_value()) {
+    const auto mapped = ModelColumns::Of(*on_map);
+    const auto local = ModelColumns::Of(from_origin);
+    const auto place = mapped.ok() ? mapped->Middle() : std::nullopt;
+    const auto expected = local.ok() ? local->Middle() : std::nullopt;
+    constexpr double kSame_m = 1000.0;
+    if (place.has_value() && expected.has_value() &&
+        GreatCircle_m(*place, *expected, kCfEarthRadius_m) < kSame_m) {
+      return std::nullopt;
+    }
+  }
+  places.assumptions.push_back(absl::StrFormat(
+      "The columns are placed by the origin of x and y at %g N %g E (origin_lat, origin_lon)%s.",
+      origin->place.latitude_deg, origin->place.longitude_deg,
+      on_map.has_value() ? ", which the grid mapping contradicts" : ""));
+  return from_origin;
+}
+
+// Adds an assumption if the field names a grid mapping that the file lacks, or names none although
+// the file has one and the place is not known otherwise.
+void NoteLostMapping(const netcdf::NetcdfFile& file, const std::string& field, CfPlaces& places) {
+  const char* const consequence = places.even == nullptr
+                                      ? "so the place on Earth is not known."
+                                      : "so the places are those of the coordinates.";
+  std::string name;
+  if (MappingOf(file, field, name).has_value()) return;
+  if (!name.empty()) {
+    places.assumptions.push_back(absl::StrCat("The grid mapping ", name, ", which ", field,
+                                              " names, is not in the file, ", consequence));
+    return;
+  }
+  if (places.even != nullptr) return;
+  for (const std::string& variable : file.Variables()) {
+    if (file.TextOrEmpty(variable, "grid_mapping_name").empty()) continue;
+    places.assumptions.push_back(absl::StrCat(field, " does not name the grid mapping ", variable,
+                                              " in its attribute grid_mapping, ", consequence));
+    return;
+  }
+}
+
 absl::Status CheckSameUnits(const netcdf::NetcdfFile& file, const CfAxis& x, const CfAxis& y) {
   if (x.unit == y.unit) return absl::OkStatus();
   if (x.unit == CfAxisUnit::kNone) return NoCoordinate(file, x);
@@ -334,6 +400,7 @@ absl::StatusOr<CfPlaces> PlaceColumns(const netcdf::NetcdfFile& file, const std:
   if (IsEarthDegrees(file, field, x, y)) {
     THUNDERHEAD_RETURN_IF_ERROR(
         MakeColumnsEven(file, PlacesInDegrees(file, field, x, y), at, places));
+    NoteLostMapping(file, field, places);
     return places;
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckSameUnits(file, x, y));
@@ -346,15 +413,20 @@ absl::StatusOr<CfPlaces> PlaceColumns(const netcdf::NetcdfFile& file, const std:
   if (arrays.has_value() && arrays->has_time) {
     places.listed = std::make_shared<const ColumnPlaces>(PlacesOfArrays(*arrays));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto on_map,
-                               PlacesByMapping(file, field, x, y, arrays, places));
-  if (on_map.has_value()) {
-    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, *on_map, at, places));
-  } else if (arrays.has_value() && std::min(x.cells, y.cells) > 1) {
-    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, PlacesOfArrays(*arrays), at, places));
+  THUNDERHEAD_ASSIGN_OR_RETURN(auto columns, PlacesByMapping(file, field, x, y, arrays, places));
+  if (!arrays.has_value()) {
+    if (auto local = PlacesByOrigin(file, x, y, columns, places); local.has_value()) {
+      columns = std::move(local);
+    }
+  } else if (!columns.has_value() && std::min(x.cells, y.cells) > 1) {
+    columns = PlacesOfArrays(*arrays);
+  }
+  if (columns.has_value()) {
+    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, *columns, at, places));
   } else {
     THUNDERHEAD_RETURN_IF_ERROR(PlaceNowhere(file, x, y, places));
   }
+  NoteLostMapping(file, field, places);
   return places;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -101,10 +102,7 @@ absl::StatusOr<std::vector<float>> CfSource::FacesOfArray(
     for (std::size_t i = 0; i < heights_m.size(); ++i) heights_m[i] += terrain_m[i % columns];
   }
   if (heights.kind == CfHeightKind::kMiddles) {
-    // A single layer begins at sea level if the ground is not known.
-    std::vector<float> ground_m = terrain_m;
-    if (ground_m.empty() && domain_.cells.z == 1) ground_m.assign(columns, 0.0F);
-    heights_m = InterfacesBetween(heights_m, ground_m, domain_.cells.z, columns);
+    heights_m = InterfacesBetween(heights_m, terrain_m, domain_.cells.z, columns);
   }
   // Layers below the ground get no thickness, so they count as missing.
   for (std::size_t i = 0; i < heights_m.size() && !terrain_m.empty(); ++i) {
@@ -253,7 +251,12 @@ absl::StatusOr<LayerAmounts> CfSource::Amounts(std::size_t field) {
 }
 
 absl::StatusOr<std::vector<float>> CfSource::Terrain_m() {
-  if (!metadata_.terrain.has_value()) return std::vector<float>();
+  if (!metadata_.terrain.has_value()) {
+    const std::optional<double>& ground_m = metadata_.heights.ground_m;
+    return ground_m.has_value()
+               ? std::vector<float>(domain_.Columns(), static_cast<float>(*ground_m))
+               : std::vector<float>();
+  }
   return ReadColumns(*metadata_.terrain);
 }
 

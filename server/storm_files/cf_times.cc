@@ -231,25 +231,46 @@ absl::StatusOr<std::vector<double>> ReadTimeValues(const netcdf::NetcdfFile& fil
       absl::StrCat(file.Path(), ": the coordinate ", name, " has missing values; fill them in"));
 }
 
+// Returns whether two calendars have the same days since 1582.
+bool HaveEqualDays(const std::string& one, const std::string& other) {
+  const auto days_of = [](const std::string& name) {
+    const std::optional<Calendar> calendar = CalendarOf(name);
+    return calendar == Calendar::kStandard ? Calendar::kGregorian : calendar;
+  };
+  return days_of(one) == days_of(other);
+}
+
 // Returns the forecast_reference_time of each time, or one for all of them. It is empty if the file
-// has none.
+// has none. It counts in `calendar` unless it names another, which is an error.
 absl::StatusOr<std::vector<absl::Time>> ReadReferenceTimes(const netcdf::NetcdfFile& file,
-                                                           const std::string& dimension) {
+                                                           const std::string& dimension,
+                                                           const std::string& calendar) {
   const auto reference = FindNamed(file, dimension, "forecast_reference_time");
   if (!reference.has_value()) return std::vector<absl::Time>();
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<double> values, file.ReadDoubles(*reference));
-  auto times = DecodeCfTimes(values, file.TextOrEmpty(*reference, "units"),
-                             file.TextOrEmpty(*reference, "calendar"));
+  const std::string own = file.TextOrEmpty(*reference, "calendar");
+  if (!own.empty() && !HaveEqualDays(own, calendar)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(file.Path(), ": the coordinate ", *reference, " counts in the calendar '", own,
+                     "', and the times in another; give both the same"));
+  }
+  auto times =
+      DecodeCfTimes(values, file.TextOrEmpty(*reference, "units"), own.empty() ? calendar : own);
   if (times.ok()) return times;
   return base::Annotate(times.status(), absl::StrCat(file.Path(), ": the coordinate ", *reference));
 }
 
 // Returns when the run began. A reference time that cannot be read is reported and left out,
 // because the storm can be shown without it.
-std::optional<absl::Time> RunStartOf(const netcdf::NetcdfFile& file, const std::string& dimension) {
-  const auto references = ReadReferenceTimes(file, dimension);
+std::optional<absl::Time> RunStartOf(const netcdf::NetcdfFile& file, const std::string& dimension,
+                                     const std::string& calendar,
+                                     std::vector<std::string>& assumptions) {
+  const auto references = ReadReferenceTimes(file, dimension, calendar);
   if (!references.ok()) {
     spdlog::warn("{}", std::string(references.status().message()));
+    assumptions.emplace_back(
+        "The start of the run is not known, because the forecast_reference_time cannot be read in "
+        "the calendar of the times.");
     return std::nullopt;
   }
   if (references->empty() ||
@@ -259,12 +280,29 @@ std::optional<absl::Time> RunStartOf(const netcdf::NetcdfFile& file, const std::
   return references->front();
 }
 
+// Returns the time `seconds` after another time of the calendar.
+absl::StatusOr<absl::Time> TimeAfter(Calendar calendar, absl::Time from, double seconds) {
+  const absl::CivilSecond civil = absl::ToCivilSecond(from, absl::UTCTimeZone());
+  const absl::CivilDay date(civil);
+  const auto day = DayNumber(calendar, {date.year(), date.month(), date.day()});
+  if (!day.has_value()) return from + absl::Seconds(seconds);
+  const absl::Time midnight = absl::FromCivil(absl::CivilSecond(date), absl::UTCTimeZone());
+  return TimeAfter(calendar, *day, absl::ToDoubleSeconds(from - midnight) + seconds);
+}
+
+void NoteCalendar(CfTimes& read) {
+  if (read.calendar == Calendar::kStandard || read.calendar == Calendar::kGregorian) return;
+  read.assumptions.push_back(absl::StrCat("The dates are those of the file's calendar ",
+                                          std::string(NameOf(read.calendar)), "."));
+}
+
 // Reads times that are the sum of a reference time and a period, as files made from GRIB have them.
 // Returns nothing if the file has no such pair.
-absl::StatusOr<std::optional<std::vector<absl::Time>>> ReadReferenceAndPeriod(
-    const netcdf::NetcdfFile& file, const std::string& dimension, std::size_t records) {
+absl::StatusOr<std::optional<CfTimes>> ReadReferenceAndPeriod(const netcdf::NetcdfFile& file,
+                                                              const std::string& dimension,
+                                                              std::size_t records) {
   const auto period = FindNamed(file, dimension, "forecast_period");
-  if (!period.has_value()) return std::optional<std::vector<absl::Time>>();
+  if (!period.has_value()) return std::optional<CfTimes>();
   const std::optional<UnitConversion> seconds =
       ConversionOf(file.TextOrEmpty(*period, "units"), "s");
   if (!seconds.has_value()) {
@@ -272,17 +310,24 @@ absl::StatusOr<std::optional<std::vector<absl::Time>>> ReadReferenceAndPeriod(
         absl::StrCat(file.Path(), ": the coordinate ", *period, " has units '",
                      file.TextOrEmpty(*period, "units"), "' where a unit of time is needed"));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<absl::Time> times, ReadReferenceTimes(file, dimension));
+  const auto reference = FindNamed(file, dimension, "forecast_reference_time");
+  const std::string name = reference.has_value() ? file.TextOrEmpty(*reference, "calendar") : "";
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<absl::Time> times,
+                               ReadReferenceTimes(file, dimension, name));
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<double> after, file.ReadDoubles(*period));
   if (times.size() == 1) times.resize(records, times[0]);
   if (after.size() == 1) after.resize(records, after[0]);
-  if (times.size() != records || after.size() != records) {
-    return std::optional<std::vector<absl::Time>>();
-  }
+  if (times.size() != records || after.size() != records) return std::optional<CfTimes>();
+  CfTimes read;
+  read.calendar = *CalendarOf(name);
   for (std::size_t i = 0; i < records; ++i) {
-    times[i] += absl::Milliseconds(std::llround((*seconds)(after[i]) / kMillisecond_s));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const absl::Time time,
+                                 TimeAfter(read.calendar, times[i], (*seconds)(after[i])));
+    read.times.push_back(time);
   }
-  return std::optional(std::move(times));
+  read.run_start = RunStartOf(file, dimension, name, read.assumptions);
+  NoteCalendar(read);
+  return std::optional(std::move(read));
 }
 
 // Reads times that are written as text, as MPAS writes them ("2013-05-20_18:00:00" in xtime).
@@ -378,9 +423,9 @@ absl::StatusOr<CfTimes> ReadCfTimes(const netcdf::NetcdfFile& file, const std::s
   const std::optional<std::string> name = FindTime(file, variable, dimension);
   if (!name.has_value()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(auto times, ReadReferenceAndPeriod(file, dimension, records));
-    if (times.has_value()) return CfTimes{*std::move(times), {}, RunStartOf(file, dimension)};
-    THUNDERHEAD_ASSIGN_OR_RETURN(times, ReadWrittenTimes(file, dimension, records));
-    if (times.has_value()) return CfTimes{*std::move(times), {}, {}};
+    if (times.has_value()) return *std::move(times);
+    THUNDERHEAD_ASSIGN_OR_RETURN(auto written, ReadWrittenTimes(file, dimension, records));
+    if (written.has_value()) return CfTimes{*std::move(written), {}, {}};
     if (records == 1) return CfTimes{{StartWithoutDate()}, {}, {}};
     return absl::InvalidArgumentError(absl::StrCat(
         file.Path(), ": the dimension ", dimension, " has no coordinate variable ", dimension,
@@ -418,12 +463,9 @@ absl::StatusOr<CfTimes> ReadCfTimes(const netcdf::NetcdfFile& file, const std::s
                                      std::string(times.status().message())));
   }
   read.times = *std::move(times);
-  read.run_start = RunStartOf(file, dimension);
-  const Calendar known = *CalendarOf(calendar);
-  if (known != Calendar::kStandard && known != Calendar::kGregorian) {
-    read.assumptions.push_back(absl::StrCat("The dates are those of the file's calendar ",
-                                            std::string(NameOf(known)), "."));
-  }
+  read.run_start = RunStartOf(file, dimension, calendar, read.assumptions);
+  read.calendar = *CalendarOf(calendar);
+  NoteCalendar(read);
   ReportOrder(*name, read);
   return read;
 }

@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
 #include "netcdf/netcdf_file.h"
+#include "storm_files/calendar.h"
 
 namespace thunderhead::storm_files {
 
@@ -18,6 +19,7 @@ struct CfTimes {
   // The forecast_reference_time, which is when the model run began. It is absent if the file has
   // none, or several.
   std::optional<absl::Time> run_start;
+  Calendar calendar = Calendar::kGregorian;  // of the dates of all these times
 };
 
 // Reads the times of a variable. `dimension` is the name of its time dimension, or empty if it has

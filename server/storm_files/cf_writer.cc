@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -13,22 +14,38 @@
 namespace thunderhead::storm_files {
 namespace {
 
-int Axis(netcdf::NetcdfWriter& file, const char* name, int cells, const char* direction,
-         const char* standard_name) {
-  const int variable =
-      file.Variable(name, NC_DOUBLE, {file.Dimension(name, static_cast<std::size_t>(cells))});
-  file.Text(variable, "axis", direction);
-  file.Text(variable, "standard_name", standard_name);
-  file.Text(variable, "units", "m");
-  if (direction[0] == 'Z') file.Text(variable, "positive", "up");
-  return variable;
+// The variables of an axis.
+struct AxisVariables {
+  int centres = 0;
+  int bounds = 0;
+};
+
+// Defines an axis. A single cell has no size without bounds. `two` is the dimension of the two
+// bounds of a cell.
+AxisVariables Axis(netcdf::NetcdfWriter& file, const char* name, int dimension, int two,
+                   const char* direction, const char* standard_name) {
+  const std::string bounds = absl::StrCat(name, "_bounds");
+  const AxisVariables axis{file.Variable(name, NC_DOUBLE, {dimension}),
+                           file.Variable(bounds.c_str(), NC_DOUBLE, {dimension, two})};
+  file.Text(axis.centres, "axis", direction);
+  file.Text(axis.centres, "standard_name", standard_name);
+  file.Text(axis.centres, "units", "m");
+  file.Text(axis.centres, "bounds", bounds);
+  if (direction[0] == 'Z') file.Text(axis.centres, "positive", "up");
+  return axis;
 }
 
-std::vector<double> Middles(double low_m, double spacing_m, int cells) {
-  std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(cells));
-  for (int i = 0; i < cells; ++i) values.push_back(low_m + (i + 0.5) * spacing_m);
-  return values;
+void WriteAxis(netcdf::NetcdfWriter& file, const AxisVariables& axis, double low_m,
+               double spacing_m, int cells) {
+  std::vector<double> centres_m;
+  std::vector<double> bounds_m;
+  for (int i = 0; i < cells; ++i) {
+    centres_m.push_back(low_m + (i + 0.5) * spacing_m);
+    bounds_m.push_back(low_m + i * spacing_m);
+    bounds_m.push_back(low_m + (i + 1) * spacing_m);
+  }
+  file.Values(axis.centres, centres_m);
+  file.Values(axis.bounds, bounds_m);
 }
 
 int Write(const CfCloud& cloud, const std::string& path) {
@@ -38,12 +55,18 @@ int Write(const CfCloud& cloud, const std::string& path) {
   file.Text(NC_GLOBAL, "title", cloud.title);
   file.Text(NC_GLOBAL, "source", cloud.source);
   file.Text(NC_GLOBAL, "comment", cloud.comment);
-  const std::array axes = {Axis(file, "x", grid.cells.x, "X", "projection_x_coordinate"),
-                           Axis(file, "y", grid.cells.y, "Y", "projection_y_coordinate"),
-                           Axis(file, "z", grid.cells.z, "Z", "altitude")};
+  const auto dimension = [&](const char* name, int length) {
+    return file.Dimension(name, static_cast<std::size_t>(length));
+  };
+  const int x = dimension("x", grid.cells.x);
+  const int y = dimension("y", grid.cells.y);
+  const int z = dimension("z", grid.cells.z);
+  const int two = dimension("bounds", 2);
+  const std::array axes = {Axis(file, "x", x, two, "X", "projection_x_coordinate"),
+                           Axis(file, "y", y, two, "Y", "projection_y_coordinate"),
+                           Axis(file, "z", z, two, "Z", "altitude")};
   const bool extinction = cloud.quantity == volume::Quantity::kExtinction;
-  // NetCDF numbers dimensions in the order of their definition: x, y, z.
-  const int field = file.Variable(extinction ? "extinction" : "lwc", NC_FLOAT, {2, 1, 0});
+  const int field = file.Variable(extinction ? "extinction" : "lwc", NC_FLOAT, {z, y, x});
   if (!extinction) {
     file.Text(field, "standard_name", "mass_concentration_of_cloud_liquid_water_in_air");
   }
@@ -51,8 +74,8 @@ int Write(const CfCloud& cloud, const std::string& path) {
   file.Text(field, "units", std::string(volume::UnitOf(cloud.quantity)));
   file.EndDefinitions();
   for (int axis = 0; axis < 3; ++axis) {
-    file.Values(axes[static_cast<std::size_t>(axis)],
-                Middles(grid.low_corner_m[axis], grid.spacing_m[axis], grid.cells[axis]));
+    WriteAxis(file, axes[static_cast<std::size_t>(axis)], grid.low_corner_m[axis],
+              grid.spacing_m[axis], grid.cells[axis]);
   }
   file.Values(field, cloud.values);
   file.Close();

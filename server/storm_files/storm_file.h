@@ -12,6 +12,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/time/time.h"
+#include "storm_files/calendar.h"
 #include "storm_files/record_part.h"
 #include "storm_files/vertical_remap.h"
 #include "volume/hydrometeor_fields.h"
@@ -78,7 +79,9 @@ struct StormFile {
   std::string run;                           // text that is the same for all files of one run, and
                                              // different for other runs
   std::optional<absl::Time> run_start;       // when the model run began, if the file says so
-  std::optional<double> latitude_deg;        // latitude of the middle of the domain
+  // The calendar of the dates of `times` and `run_start`. Times between them are counted in it.
+  Calendar calendar = Calendar::kGregorian;
+  std::optional<double> latitude_deg;  // latitude of the middle of the domain
   std::optional<double> longitude_deg;
   // The middle of the domain at each record, if the domain moves (a moving nest). Otherwise empty.
   std::vector<volume::EarthPlace> middles;

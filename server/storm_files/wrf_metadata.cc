@@ -1,4 +1,5 @@
 #include "storm_files/wrf_metadata.h"
+#include "storm_files/cell_methods.h"
 
 #include <algorithm>
 #include <array>
@@ -126,6 +127,12 @@ absl::Status FindHeights(const netcdf::NetcdfFile& file, WrfMetadata& metadata) 
                                {"geopotential_height", kWrfLength, 1.0, 0.0},
                                {levels.c_str(), kWrfLength, 1.0, 0.0},
                                {levels.c_str(), kKilometre, 1000.0, 0.0}});
+    if (!heights.middles.variable.empty() && layout.cells.z == 1) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          file.Path(), ": ", heights.middles.variable,
+          " has the height of one layer, so its thickness is not known; give at least two layers, "
+          "or PH and PHB"));
+    }
     if (!heights.middles.variable.empty()) {
       metadata.assumptions.push_back(absl::StrCat(
           heights.middles.variable,
@@ -234,6 +241,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
     if (!file.HasVariable(variable)) continue;
     THUNDERHEAD_RETURN_IF_ERROR(
         CheckVariable(file, layout, variable, layout.Layers(), kMixingRatio, Changes::kAtEachTime));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckCellMethods(file, variable, metadata.assumptions));
     metadata.variables[physics::IndexOf(hydrometeor)] = variable;
   }
   THUNDERHEAD_RETURN_IF_ERROR(FindMoreIce(file, metadata));

@@ -10,10 +10,6 @@
 namespace thunderhead::storm_store {
 namespace {
 
-absl::Time TimeOf(const CataloguedStorm& storm, std::size_t time) {
-  return FileOf(storm, time).times[storm.sources[time].record];
-}
-
 // Returns whether both storms are the same member of the same run.
 bool IsSameMember(const CataloguedStorm& one, const CataloguedStorm& other) {
   if (one.files.empty() || other.files.empty()) return false;
@@ -24,9 +20,9 @@ bool IsSameMember(const CataloguedStorm& one, const CataloguedStorm& other) {
 
 // Inserts time `time` of the storm `from`, whose file is gone, into `storm`, marked as deleted.
 void InsertDeleted(const CataloguedStorm& from, std::size_t time, CataloguedStorm& storm) {
-  const absl::Time valid = TimeOf(from, time);
+  const absl::Time valid = ValidTimeOf(from, time);
   std::size_t at = 0;
-  while (at < storm.sources.size() && TimeOf(storm, at) < valid) ++at;
+  while (at < storm.sources.size() && ValidTimeOf(storm, at) < valid) ++at;
   StormTime kept = from.info.times[time];
   kept.deleted = true;
   // The storm may now begin with another time, at another place.
@@ -74,7 +70,7 @@ bool IsSameTime(const CataloguedStorm& one, std::size_t one_time, const Catalogu
   const storm_files::StormFile& b = FileOf(other, other_time);
   return a.path == b.path && a.version == b.version &&
          one.sources[one_time].record == other.sources[other_time].record &&
-         TimeOf(one, one_time) == TimeOf(other, other_time);
+         ValidTimeOf(one, one_time) == ValidTimeOf(other, other_time);
 }
 
 std::optional<CataloguedStorm> Renewed(const CataloguedStorm& known,
@@ -96,10 +92,7 @@ std::optional<CataloguedStorm> Renewed(const CataloguedStorm& known,
     InsertDeleted(known, time, renewed);
   }
   if (renewed.sources.empty()) return std::nullopt;
-  const absl::Time first = TimeOf(renewed, 0);
-  for (std::size_t time = 0; time < renewed.sources.size(); ++time) {
-    renewed.info.times[time].elapsed_s = absl::ToDoubleSeconds(TimeOf(renewed, time) - first);
-  }
+  CountTimes(renewed);
   return renewed;
 }
 

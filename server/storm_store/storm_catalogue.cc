@@ -670,6 +670,19 @@ void SetProjections(CataloguedStorm& storm) {
 
 }  // namespace
 
+void CountTimes(CataloguedStorm& storm) {
+  const absl::Time first = ValidTimeOf(storm, 0);
+  for (std::size_t time = 0; time < storm.sources.size(); ++time) {
+    const storm_files::StormFile& file = FileOf(storm, time);
+    const absl::Time start =
+        storm.info.run_start.has_value() ? file.run_start.value_or(first) : first;
+    const absl::Time valid = ValidTimeOf(storm, time);
+    storm.info.times[time].elapsed_s = absl::ToDoubleSeconds(valid - first);
+    storm.info.times[time].lead_s =
+        absl::ToDoubleSeconds(storm_files::DurationIn(file.calendar, start, valid));
+  }
+}
+
 CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::StormFile> files) {
   THUNDERHEAD_CHECK(!files.empty(), name);
   std::ranges::sort(files, {}, &storm_files::StormFile::path);
@@ -691,10 +704,8 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
   info.id = IdFrom(name);
   for (const auto& [time, source] : sources) {
     const storm_files::StormFile& file = files[source.file];
-    info.times.push_back({.valid_time = FormatValidTime(time),
-                          .elapsed_s = absl::ToDoubleSeconds(time - sources.begin()->first),
-                          .file = file.path,
-                          .version = file.version});
+    info.times.push_back(
+        {.valid_time = FormatValidTime(time), .file = file.path, .version = file.version});
     info.times.back().middle = MiddleAt(file, source.record, files[sources.begin()->second.file]);
     storm.sources.push_back(source);
   }
@@ -721,6 +732,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
     }
   }
   storm.files = std::move(files);
+  CountTimes(storm);
   SetProjections(storm);
   AddNotes(storm.notes, storm.files, info.assumptions);
   return storm;

@@ -35,6 +35,14 @@ inline const storm_files::StormFile& FileOf(const CataloguedStorm& storm, std::s
   return storm.files[storm.sources[time].file];
 }
 
+// Returns the valid time of a time of the storm.
+inline absl::Time ValidTimeOf(const CataloguedStorm& storm, std::size_t time) {
+  return FileOf(storm, time).times[storm.sources[time].record];
+}
+
+// Sets StormTime::elapsed_s and StormTime::lead_s of all times, from the files.
+void CountTimes(CataloguedStorm& storm);
+
 // A storm's name and files, before it has an id.
 struct NamedFiles {
   std::string name;

@@ -30,6 +30,9 @@ namespace thunderhead::storm_store {
 struct StormTime {
   std::string valid_time;  // ISO 8601, UTC, e.g. "0001-01-01T00:40:00Z"
   double elapsed_s = 0.0;  // seconds since the storm's first time
+  // Seconds since the run's start, or since the storm's first time if that is unknown, in the
+  // calendar of the files.
+  double lead_s = 0.0;
   // True if the file is gone, but its fields in memory are still in use.
   bool deleted = false;
   std::string file = {};  // the path; empty for a storm without files

@@ -85,8 +85,8 @@ void WriteCf(const SyntheticCf& file, const std::string& path) {
     contents.emplace_back(variable, Values(file, content));
   }
   for (const auto& [name, attributes] : file.number_attributes) {
-    int variable = 0;
-    Must(nc_inq_varid(id, name.c_str(), &variable));
+    int variable = NC_GLOBAL;
+    if (!name.empty()) Must(nc_inq_varid(id, name.c_str(), &variable));
     for (const auto& [attribute, number] : attributes) {
       Must(nc_put_att_double(id, variable, attribute.c_str(), NC_DOUBLE, 1, &number));
     }
@@ -113,6 +113,8 @@ SyntheticCf ExtinctionFile(std::size_t nx, std::size_t ny, std::size_t nz, doubl
   file.coordinates = {{"x", Middles(nx, 0.0, dx_m), {{"units", "m"}}, {}},
                       {"y", Middles(ny, 0.0, dy_m), {{"units", "m"}}, {}},
                       {"z", Middles(nz, 0.0, dz_m), {{"units", "m"}}, {}}};
+  // A single layer has no thickness without bounds.
+  if (nz == 1) file.coordinates[2].faces = {0.0, dz_m};
   file.variables = {{"extinction",
                      {"z", "y", "x"},
                      {{"units", "m-1"}},

@@ -300,7 +300,9 @@ export class PageState {
     const time = this.shownTime.value;
     if (time === undefined) return 0;
     return (
-      secondsBetween(this.#describedStorm.value?.runStart ?? "", time.validTime) ?? time.elapsedS
+      time.leadS ??
+      secondsBetween(this.#describedStorm.value?.runStart ?? "", time.validTime) ??
+      time.elapsedS
     );
   });
   // A description of the picture for people who cannot see it.

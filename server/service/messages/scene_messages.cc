@@ -380,6 +380,7 @@ void ToMessage(const storm_store::StormInfo& storm, const volume::HydrometeorFie
     time.set_index(static_cast<std::uint32_t>(i));
     time.set_valid_time(storm.times[i].valid_time);
     time.set_elapsed_s(storm.times[i].elapsed_s);
+    time.set_lead_s(storm.times[i].lead_s);
     time.set_deleted(storm.times[i].deleted);
     if (v1::StormFile file; ToMessage(storm.times[i].file, file)) *time.mutable_file() = file;
   }

@@ -29,6 +29,10 @@ TEST(ProductName, FieldsAreFilledIn) {
   EXPECT_EQ(NameOf("out/{storm}_{run:%Y%m%d%H}_{valid:%Y%m%d_%H%M}_{lead:03d}_{view}.png"),
             "out/supercell_2013052012_20130520_1940_007_west.png");
   EXPECT_EQ(NameOf("{lead}-{lead_min:05d}-{time:02d}-{time}.png"), "7-00460-05-5.png");
+  // The model can count in a calendar without leap years.
+  ProductKey counted = Key();
+  counted.lead = absl::Hours(9);
+  EXPECT_EQ(NameOf("{lead}-{lead_min}.png", counted), "9-540.png");
   EXPECT_EQ(NameOf("{valid:%j}/{view}/plain.jpg"), "140/west/plain.jpg");
   ProductKey idealised = Key();
   idealised.valid = absl::FromCivil(absl::CivilSecond(1, 1, 1, 0, 10, 0), absl::UTCTimeZone());

@@ -136,6 +136,7 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   expected.domain = 7;
   expected.run = "run";
   expected.run_start = absl::FromUnixSeconds(16);
+  expected.calendar = storm_files::Calendar::k360Day;
   expected.grid = "grid";
   expected.latitude_deg = 8.0;
   expected.longitude_deg = 9.0;
@@ -154,9 +155,9 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   expected.modified_ns = 15;
   const storm_files::StormFile received = Sent(expected);
   const auto& [path, cells, dx_m, dy_m, grid, times, fields, about, domain, run, run_start,
-               latitude_deg, longitude_deg, middles, projection, projections, member, assumptions,
-               part, parts, reader, others, first_record, version, id, device, modified_ns] =
-      received;
+               calendar, latitude_deg, longitude_deg, middles, projection, projections, member,
+               assumptions, part, parts, reader, others, first_record, version, id, device,
+               modified_ns] = received;
   EXPECT_EQ(cells, expected.cells);
   EXPECT_EQ(dx_m, expected.dx_m);
   EXPECT_EQ(dy_m, expected.dy_m);
@@ -166,6 +167,7 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   EXPECT_EQ(domain, expected.domain);
   EXPECT_EQ(run, expected.run);
   EXPECT_EQ(run_start, expected.run_start);
+  EXPECT_EQ(calendar, expected.calendar);
   EXPECT_EQ(grid, expected.grid);
   EXPECT_EQ(latitude_deg, expected.latitude_deg);
   EXPECT_EQ(longitude_deg, expected.longitude_deg);

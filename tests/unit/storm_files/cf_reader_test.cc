@@ -455,12 +455,12 @@ TEST_F(CfReader, CoordinatesInOtherUnitsAreRefused) {
 TEST_F(CfReader, CoordinatesWithoutUnitsAreTakenToBeInMetres) {
   SyntheticCf file = Small();
   for (CfCoordinate& coordinate : file.coordinates) coordinate.attributes.clear();
-  const CapturedLog log;
   const auto fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_EQ((*fields)->grid.spacing_m, glm::dvec3(100.0, 200.0, 50.0));
   for (const char* name : {"x", "y", "z"}) {
-    EXPECT_THAT(log.Text(), HasSubstr(std::string(name) + " has no units; taken to be in m"));
+    EXPECT_THAT(info_.assumptions,
+                Contains(std::string(name) + " has no units; it is taken to be in m."));
   }
 }
 

@@ -132,6 +132,23 @@ TEST_F(WrfRelativesTest, TheLowestOfMiddlesIsAboveTheGround) {
   EXPECT_NEAR(ColumnPath(*fields, 0, 0, 0), 1e-3 * kDryDensity_kg_per_m3 * 3900.0, 1e-3);
 }
 
+TEST_F(WrfRelativesTest, ASingleMiddleHasNoThickness) {
+  SyntheticWrf file = OfWrfPython();
+  file.levels = 1;
+  EXPECT_THAT(Message(file), HasSubstr("height has the height of one layer"));
+}
+
+// Programs that average WRF output in time write cell_methods as CF files have them.
+TEST_F(WrfRelativesTest, VariancesAreNoAmountsOfWater) {
+  SyntheticWrf file = Cloud();
+  file.texts["QCLOUD"]["cell_methods"] = "Time: mean";
+  const auto described = Describe(file);
+  ASSERT_TRUE(described.ok()) << described.status();
+  EXPECT_THAT(Assumptions(*described), HasSubstr("statistic (cell_methods 'Time: mean')"));
+  file.texts["QCLOUD"]["cell_methods"] = "Time: variance";
+  EXPECT_THAT(Message(file), HasSubstr("QCLOUD has cell_methods 'Time: variance'"));
+}
+
 TEST_F(WrfRelativesTest, NamesLevelsThatRunDownwards) {
   SyntheticWrf file = OfWrfPython();
   file.mixing_ratios["height"] = [](const WrfCell& cell) { return 3750.0 - 500.0 * cell.level; };

@@ -1,0 +1,88 @@
+#include "storm_files/cell_methods.h"
+
+#include <algorithm>
+#include <array>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+
+namespace thunderhead::storm_files {
+namespace {
+
+// Returns the words of the text in small letters, without comments in parentheses.
+std::vector<std::string> WordsOf(std::string_view text) {
+  std::string plain;
+  int depth = 0;
+  for (const char c : text) {
+    if (c == '(') ++depth;
+    if (depth == 0) plain += c;
+    if (c == ')' && depth > 0) --depth;
+  }
+  return absl::StrSplit(absl::AsciiStrToLower(plain), absl::ByAnyChar(" \t\n"), absl::SkipEmpty());
+}
+
+template <std::size_t count>
+bool IsIn(const std::array<std::string_view, count>& list, const std::string& word) {
+  return std::ranges::find(list, word) != list.end();
+}
+
+// Dimensions of cells, over which a mean is the amount of a cell.
+bool IsInSpace(const std::string& name) {
+  constexpr std::array<std::string_view, 16> kNames = {
+      "area", "volume", "lat", "lon", "latitude", "longitude", "rlat",  "rlon",
+      "x",    "y",      "z",   "lev", "height",   "plev",      "level", "altitude"};
+  return IsIn(kNames, name) || name.starts_with("grid_") || name.starts_with("projection_");
+}
+
+// Methods whose results are no amounts. "standard" begins a misspelt standard_deviation.
+bool GivesNoAmount(const std::string& method) {
+  constexpr std::array<std::string_view, 8> kMethods = {
+      "variance", "standard_deviation", "standard",      "stddev", "range",
+      "sum",      "root_mean_square",   "sum_of_squares"};
+  return IsIn(kMethods, method);
+}
+
+}  // namespace
+
+CellMethod MeaningOfCellMethods(std::string_view cell_methods) {
+  CellMethod meaning = CellMethod::kValue;
+  const std::vector<std::string> words = WordsOf(cell_methods);
+  bool in_space = true;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const std::string& word = words[i];
+    const bool follows_name = i > 0 && words[i - 1].ends_with(':');
+    if (word.ends_with(':')) {
+      in_space = (!follows_name || in_space) && IsInSpace(word.substr(0, word.size() - 1));
+      continue;
+    }
+    if (follows_name && GivesNoAmount(word)) return CellMethod::kNoAmount;
+    const bool is_value = word == "point" || (in_space && word == "mean");
+    // The mean of a part of each cell, such as its clouds ("where"), is not that of the cell.
+    if (follows_name ? !is_value : word == "where") meaning = CellMethod::kStatistic;
+  }
+  return meaning;
+}
+
+bool HoldsNoAmount(const netcdf::NetcdfFile& file, const std::string& variable) {
+  return MeaningOfCellMethods(file.TextOrEmpty(variable, "cell_methods")) == CellMethod::kNoAmount;
+}
+
+absl::Status CheckCellMethods(const netcdf::NetcdfFile& file, const std::string& variable,
+                              std::vector<std::string>& assumptions) {
+  const std::string text = file.TextOrEmpty(variable, "cell_methods");
+  const CellMethod meaning = MeaningOfCellMethods(text);
+  if (meaning == CellMethod::kNoAmount) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.Path(), ": ", variable, " has cell_methods '", text,
+        "', so its values are no amounts of water; give values at single times, or means"));
+  }
+  if (meaning == CellMethod::kStatistic) {
+    assumptions.push_back(absl::StrCat(variable,
+                                       " is shown as the amount at each time, but it is a ",
+                                       "statistic (cell_methods '", text, "')."));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace thunderhead::storm_files

@@ -1,0 +1,32 @@
+// The attribute cell_methods (CF, section 7.3). It says how a variable's values represent their
+// cells and times. A mean, a maximum or a variance over a time is no value at that time.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "netcdf/netcdf_file.h"
+
+namespace thunderhead::storm_files {
+
+// What a text of cell_methods means for an amount of water in a cell.
+enum class CellMethod {
+  kValue,      // the cell's own amount, at one time
+  kStatistic,  // an amount that is not the cell's own at one time: a mean over a time, a maximum
+  kNoAmount,   // a variance, a standard deviation, a range or a sum
+};
+
+// Returns the meaning of the method that changes a value most. An empty text means a value.
+CellMethod MeaningOfCellMethods(std::string_view cell_methods);
+
+// Returns whether the variable's cell_methods say that its values are no amounts.
+bool HoldsNoAmount(const netcdf::NetcdfFile& file, const std::string& variable);
+
+// Returns INVALID_ARGUMENT, which names the variable, if HoldsNoAmount. Adds a sentence to
+// `assumptions` if the values are a statistic.
+absl::Status CheckCellMethods(const netcdf::NetcdfFile& file, const std::string& variable,
+                              std::vector<std::string>& assumptions);
+
+}  // namespace thunderhead::storm_files
