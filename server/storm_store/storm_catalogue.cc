@@ -156,12 +156,15 @@ struct Folder {
   std::vector<fs::path> folders;
 };
 
+absl::Status Stopped() { return absl::CancelledError("the search for storms was interrupted"); }
+
 absl::StatusOr<Folder> List(const fs::path& path, FolderWalk& walk) {
   const base::SlowCall call(path.string());
   Folder folder;
   std::error_code error;
   fs::directory_iterator entries(path, error);
   for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
+    if (walk.search.stop.stop_requested()) return Stopped();
     if (++walk.entries > kMostEntries || std::chrono::steady_clock::now() > walk.end) {
       return absl::ResourceExhaustedError(absl::StrCat(
           path.string(), ": the search stopped after ", walk.entries - 1,
@@ -364,6 +367,7 @@ absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
   if (depth == kDeepestFolder) return absl::OkStatus();
   for (const fs::path& below : folder.folders) {
     const absl::Status status = SearchFolder(below, depth + 1, walk, storms);
+    if (walk.search.stop.stop_requested()) return Stopped();
     if (!status.ok()) LeaveOut(walk, below, status);
   }
   return absl::OkStatus();
@@ -683,7 +687,8 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
     }
   }
   StormInfo& info = storm.info;
-  info.id = IdFrom(name);
+  storm.stem = IdFrom(name);
+  info.id = storm.stem;
   for (const auto& [time, source] : sources) {
     const storm_files::StormFile& file = files[source.file];
     info.times.push_back({.valid_time = FormatValidTime(time),
@@ -757,9 +762,10 @@ std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(
 
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const storm_files::StormFormats& formats,
-                                                        const LinkPolicy& links) {
+                                                        const LinkPolicy& links,
+                                                        const std::stop_token& stop) {
   const auto describe = [&](const std::vector<std::string>& files) {
-    return DescribeInBatches(files, formats, [] { return true; });
+    return DescribeInBatches(files, formats, [&stop] { return !stop.stop_requested(); });
   };
   const auto together = [&](const std::vector<std::string>& files) {
     return formats.DescribeTogether(files);
@@ -769,7 +775,8 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
                                    .on_unlisted = {},
                                    .on_folder = {},
                                    .examples = formats.Examples(),
-                                   .links = links});
+                                   .links = links,
+                                   .stop = stop});
   if (storms.ok()) LogNotes(*storms);
   return storms;
 }
@@ -785,7 +792,9 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
         named.push_back({storm.name, storm.files});
       }
     } else {
-      THUNDERHEAD_RETURN_IF_ERROR(Search(paths[path], {.search = search, .links = links}, named));
+      const absl::Status searched = Search(paths[path], {.search = search, .links = links}, named);
+      if (search.stop.stop_requested()) return Stopped();
+      THUNDERHEAD_RETURN_IF_ERROR(searched);
     }
     for (std::size_t i = before; i < named.size(); ++i) named[i].path = path;
     if (search.found == nullptr) continue;
@@ -809,17 +818,13 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
     storms.push_back(AssembleStorm(storm.name, std::move(storm.files)));
     StormInfo& info = storms.back().info;
     if (info.files.size() == 1) info.path = info.files.front() + in_file;
-    std::string& id = storms.back().info.id;
-    const std::string stem = id;
-    for (int copy = 2; !ids.insert(id).second; ++copy) id = absl::StrCat(stem, "-", copy);
+    storms.back().path = storm.path;
+    const std::string& stem = storms.back().stem;
+    for (int copy = 2; !ids.insert(info.id).second; ++copy) info.id = absl::StrCat(stem, "-", copy);
   }
-  for (std::size_t first = 0, last = 0; first < storms.size(); first = last) {
-    while (last < storms.size() && named[last].path == named[first].path) ++last;
-    const auto begin = storms.begin();
-    std::ranges::sort(begin + static_cast<std::ptrdiff_t>(first),
-                      begin + static_cast<std::ptrdiff_t>(last), {},
-                      [](const CataloguedStorm& storm) { return storm.info.id; });
-  }
+  std::ranges::sort(storms, {}, [](const CataloguedStorm& storm) {
+    return std::pair(storm.path, storm.info.id);
+  });
   return storms;
 }
 
