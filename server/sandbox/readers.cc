@@ -15,7 +15,6 @@
 #include "base/guarded.h"
 #include "base/program_folder.h"
 #include "base/status.h"
-#include "base/utf8.h"
 #include "base/version.h"
 #include "sandbox/process_state.h"
 #include "sandbox/reader_main.h"
@@ -73,15 +72,9 @@ absl::Status Nonsense(const std::string& path, const std::string& what) {
       absl::DataLossError(absl::StrCat("gave an impossible value for ", what, kWhatToDo)));
 }
 
-// Returns a text that the reader sent as one printable line of at most 2000 bytes.
-std::string OneLine(const std::string& text) {
-  constexpr std::size_t kLongest = 2000;
-  return base::Printable(text.substr(0, kLongest));
-}
-
 void Log(const Note& note) {
   const bool warning = note.code >= static_cast<int>(spdlog::level::warn);
-  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", OneLine(note.text));
+  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", NoteText(note.text));
 }
 
 // Without a limit, returns a value that is larger than the memory of any machine.
@@ -92,7 +85,7 @@ std::uint64_t MemoryOf(const ReaderLimits& limits) {
 // Returns the status for an error that the reader found in the file.
 absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
   const auto code = static_cast<absl::StatusCode>(note.code);
-  std::string text = OneLine(note.text);
+  std::string text = NoteText(note.text);
   switch (code) {
     case absl::StatusCode::kResourceExhausted:
       absl::StrAppend(&text, " (reading a storm file may take ", MemoryOf(limits) >> 20,

@@ -20,6 +20,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/stopwatch.h"
+#include "base/utf8.h"
 #include "sandbox/messages.h"
 #include "storm_store/storm_catalogue.h"
 #include "storm_store/storm_store.h"
@@ -348,6 +349,21 @@ TEST_F(ConfinedFilesTest, AReaderThatIsSilentIsEnded) {
     EXPECT_EQ(file->reader->Read(0, std::nullopt, {}).status().message(), status.message());
   }
   EXPECT_EQ(Failures("time"), before + 2);
+}
+
+TEST_F(ConfinedFilesTest, ALongTextCostsOnlyItsEnd) {
+  const std::string path = folder_.File("cloud.nc");
+  testing::SyntheticCf storm =
+      testing::ExtinctionFile(5, 4, 3, 100.0, 100.0, 50.0, [](auto, auto, auto) { return 1e-3; });
+  storm.attributes["source"] = std::string(100'000, 'x');
+  testing::WriteCf(storm, path);
+  const auto file = Files()->Describe(path);
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_EQ(file->about.substr(0, 100), std::string(100, 'x'));
+  EXPECT_LE(file->about.size(), base::kMaxTextBytes);
+  const auto together = Files()->DescribeEach({path, Bad("wordy")});
+  EXPECT_TRUE(together[0].ok()) << together[0].status();
+  EXPECT_EQ(together[1].status().code(), absl::StatusCode::kInvalidArgument);
 }
 
 TEST_F(ConfinedFilesTest, AReaderThatSaysNoMoreIsNotWaitedFor) {
