@@ -110,8 +110,9 @@ absl::Status ImportVdb(const ImportVdbFlags& flags) {
     bar.Set(kShareOfReading * share);
     return absl::OkStatus();
   };
-  THUNDERHEAD_ASSIGN_OR_RETURN(interchange::VdbVolume volume,
-                               interchange::ReadVdb(flags.file, flags.grid, checkpoint));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      interchange::VdbVolume volume,
+      interchange::ReadVdb(flags.file, flags.grid, checkpoint, "", interruption.Token()));
   if (!options.has_value()) {
     return absl::InternalError(absl::StrCat(flags.file, ": a grid without a name was read"));
   }

@@ -37,9 +37,9 @@ absl::StatusOr<std::string> ProgramOr(const std::string& given) {
 
 absl::StatusOr<VdbVolume> ReadVdb(const std::string& path, const std::string& grid,
                                   const storm_files::ReadCheckpoint& checkpoint,
-                                  const std::string& program) {
+                                  const std::string& program, const std::stop_token& stop) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::string reader, ProgramOr(program));
-  const sandbox::ReaderLimits limits;
+  const sandbox::ReaderLimits limits{.stop = stop};
   sandbox::Readers readers(limits, base::SteadyTime(), reader, {.start = CheckVdbStart});
   sandbox::Request request;
   request.wanted = sandbox::Wanted::kOther;

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "absl/status/status.h"
@@ -14,8 +15,10 @@
 
 namespace thunderhead::runs {
 
-// Opens the file or folder at `path`, which must contain exactly one storm.
-absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::string& path);
+// Opens the file or folder at `path`, which must contain exactly one storm. If `stop` is requested,
+// this function and reads of the store end with CANCELLED.
+absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(
+    const std::string& path, const std::stop_token& stop = {});
 
 // Returns the index of the time `wanted`, or of the last time if `wanted` is absent.
 // INVALID_ARGUMENT if the storm does not have that time; the error names the storm by `path`.

@@ -103,6 +103,10 @@ absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
   }
 }
 
+absl::Status Stopped(const std::string& path) {
+  return absl::CancelledError(absl::StrCat(path, ": interrupted before it was read"));
+}
+
 // Returns the error for a reader whose answer could not be received.
 absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& child,
                    const ReaderLimits& limits) {
@@ -111,6 +115,8 @@ absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& 
       return TookTooLong(path, limits.time);
     case Receiver::Failure::kSilent:
       return WasSilent(path, limits.silence);
+    case Receiver::Failure::kStopped:
+      return Stopped(path);
     case Receiver::Failure::kTooLarge:
       return Nonsense(path, "its size");
     default:
@@ -223,6 +229,7 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
   Receiver from_reader(reader->Replies(), patience, request.memory_bytes, time_,
                        reader->Arrays().Bytes());
   StorageWatch storage(reader->Process().Process());
+  from_reader.StopOn(limits.stop);
   from_reader.LimitSilence(limits.silence, [&storage] { return storage.ExplainsSilence(); });
   absl::Status status = base::Guarded(
       [&] { return Listen(request.path, from_reader, wanted, checkpoint, take, limits); });
@@ -242,6 +249,7 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
 
 absl::Status Readers::Run(Request request, Reply wanted, milliseconds patience,
                           const storm_files::ReadCheckpoint& checkpoint, const Take& take) {
+  if (limits_.stop.stop_requested()) return Stopped(request.path);
   request.version = base::Version();
   request.memory_bytes = MemoryOf(limits_);
   request.processor_s = static_cast<std::uint32_t>(

@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -33,6 +34,9 @@ struct ReaderLimits {
   std::chrono::milliseconds time{600'000};
   // The longest time that a reader may send nothing, unless it is waiting for its storage.
   std::chrono::milliseconds silence{60'000};
+  // A request to stop ends the reader in progress, and no further reader is started. The error is
+  // CANCELLED.
+  std::stop_token stop = {};
 };
 
 // Returns the path of thunderhead-reader, which is next to this program. Returns INTERNAL if it is

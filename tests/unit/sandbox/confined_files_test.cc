@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <fstream>
 #include <future>
+#include <stop_token>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -349,6 +350,24 @@ TEST_F(ConfinedFilesTest, AReaderThatIsSilentIsEnded) {
     EXPECT_EQ(file->reader->Read(0, std::nullopt, {}).status().message(), status.message());
   }
   EXPECT_EQ(Failures("time"), before + 2);
+}
+
+TEST_F(ConfinedFilesTest, ARequestToStopEndsTheReader) {
+  std::stop_source stop;
+  ConfinedOptions options;
+  options.limits = {.memory_bytes = kMemory, .time = kTime, .stop = stop.get_token()};
+  options.time = &time_;  // stands still, so that no limit of time ends the reader
+  options.program = "/proc/self/exe";
+  const auto files = std::make_shared<ConfinedFiles>(options);
+  const auto file = files->Describe(Bad("hang-reading"));
+  ASSERT_TRUE(file.ok()) << file.status();
+  auto reading = std::async(std::launch::async,
+                            [&] { return file->reader->Read(0, std::nullopt, {}).status(); });
+  EXPECT_EQ(reading.wait_for(milliseconds(300)), std::future_status::timeout);
+  stop.request_stop();
+  ASSERT_EQ(reading.wait_for(std::chrono::seconds(30)), std::future_status::ready);
+  EXPECT_EQ(reading.get().code(), absl::StatusCode::kCancelled);
+  EXPECT_EQ(files->Describe(Bad("sound")).status().code(), absl::StatusCode::kCancelled);
 }
 
 TEST_F(ConfinedFilesTest, ALongTextCostsOnlyItsEnd) {
