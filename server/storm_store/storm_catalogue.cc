@@ -106,6 +106,9 @@ struct FolderWalk {
   const LinkRules& links;
   std::chrono::steady_clock::time_point end = std::chrono::steady_clock::now() + kLongestWalk;
   std::set<std::pair<dev_t, ino_t>> visited = {};  // folders, by device and inode
+  // Links to folders, with their depth. They are followed at the end, so that a folder that is
+  // itself below the path is found there and not through a link.
+  std::vector<std::pair<fs::path, int>> links_left = {};
   std::size_t entries = 0;
   absl::Status first_failure = absl::OkStatus();
 };
@@ -154,6 +157,7 @@ absl::Status CheckLink(const LinkRules& rules, const fs::path& link) {
 struct Folder {
   std::vector<fs::path> files;
   std::vector<fs::path> folders;
+  std::vector<fs::path> links;  // to folders
 };
 
 absl::Status Stopped() { return absl::CancelledError("the search for storms was interrupted"); }
@@ -175,17 +179,19 @@ absl::StatusOr<Folder> List(const fs::path& path, FolderWalk& walk) {
     std::error_code ignored;
     const bool is_folder = fs::is_directory(entry, ignored);
     if (!is_folder && !fs::is_regular_file(entry, ignored)) continue;
-    if (entries->is_symlink(ignored)) {
+    const bool is_link = entries->is_symlink(ignored);
+    if (is_link) {
       if (const absl::Status allowed = CheckLink(walk.links, entry); !allowed.ok()) {
         LeaveOut(walk, entry, allowed);
         continue;
       }
     }
-    (is_folder ? folder.folders : folder.files).push_back(entry);
+    (!is_folder ? folder.files : is_link ? folder.links : folder.folders).push_back(entry);
   }
   if (error) return CannotBeListed(path.string(), error);
   std::ranges::sort(folder.files);
   std::ranges::sort(folder.folders);
+  std::ranges::sort(folder.links);
   return folder;
 }
 
@@ -365,6 +371,7 @@ absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
   }
   if (!files.empty()) std::ranges::move(GroupRuns(path, std::move(files)), back_inserter(storms));
   if (depth == kDeepestFolder) return absl::OkStatus();
+  for (const fs::path& link : folder.links) walk.links_left.emplace_back(link, depth + 1);
   for (const fs::path& below : folder.folders) {
     const absl::Status status = SearchFolder(below, depth + 1, walk, storms);
     if (walk.search.stop.stop_requested()) return Stopped();
@@ -438,6 +445,12 @@ absl::Status Search(const std::string& path, FolderWalk walk, std::vector<NamedS
   }
   const std::size_t before = storms.size();
   THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, 0, walk, storms));
+  // Following a link can find further links.
+  for (std::size_t i = 0; i < walk.links_left.size() && !search.stop.stop_requested(); ++i) {
+    const auto [link, depth] = walk.links_left[i];
+    const absl::Status status = SearchFolder(link, depth, walk, storms);
+    if (!status.ok()) LeaveOut(walk, link, status);
+  }
   if (storms.size() > before || search.may_find_nothing) return absl::OkStatus();
   if (!walk.first_failure.ok()) {
     return base::Annotate(walk.first_failure,
@@ -468,20 +481,49 @@ const std::string& ProjectionAt(const storm_files::StormFile& file, std::size_t 
   return file.projections.empty() ? file.projection : file.projections[record];
 }
 
-// Drops files that were found before under another path or through a link.
-void DropRepeated(std::vector<NamedStorm>& storms) {
-  std::set<std::string> seen;
-  for (NamedStorm& storm : storms) {
-    std::erase_if(storm.files, [&seen](const storm_files::StormFile& file) {
-      std::error_code error;
-      const fs::path canonical = fs::canonical(file.path, error);
-      std::string key = error ? file.path : canonical.string();
-      // Two times may share their first file, if it holds both. So may two storms.
-      if (!file.parts.empty()) absl::StrAppend(&key, " ", absl::FormatTime(file.times.front()));
-      absl::StrAppend(&key, " ", file.first_record);
-      return !seen.insert(key).second;
-    });
+// The place of a file that was found.
+struct FoundPlace {
+  std::string key;  // equal for the same storm of the same file
+  bool is_linked;   // whether a link below the searched path leads to it
+};
+
+// `searched` is the path below which the file was found, and `root` the same without links.
+FoundPlace PlaceOf(const storm_files::StormFile& file, const fs::path& searched,
+                   const fs::path& root) {
+  std::error_code error;
+  fs::path canonical = fs::canonical(file.path, error);
+  if (error) canonical = file.path;
+  const fs::path direct =
+      (root / fs::path(file.path).lexically_relative(searched)).lexically_normal();
+  FoundPlace place{canonical.string(), direct != canonical && direct != canonical / ""};
+  // Two times may share their first file, if it holds both. So may two storms.
+  if (!file.parts.empty()) absl::StrAppend(&place.key, " ", absl::FormatTime(file.times.front()));
+  absl::StrAppend(&place.key, " ", file.first_record);
+  return place;
+}
+
+// Drops files that were found before under another path, and links to files that were found
+// themselves. If the link stayed instead, its owner could later exchange the storm for another.
+void DropRepeated(const std::vector<std::string>& paths, std::vector<NamedStorm>& storms) {
+  std::vector<fs::path> roots;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    const fs::path root = fs::weakly_canonical(path, error);
+    roots.push_back(error ? fs::path(path) : root);
   }
+  std::set<std::string> seen;
+  bool any_linked = false;
+  const auto drop = [&](bool linked) {
+    for (NamedStorm& storm : storms) {
+      std::erase_if(storm.files, [&](const storm_files::StormFile& file) {
+        const FoundPlace place = PlaceOf(file, paths[storm.path], roots[storm.path]);
+        any_linked |= place.is_linked;
+        return place.is_linked == linked && !seen.insert(place.key).second;
+      });
+    }
+  };
+  drop(false);
+  if (any_linked) drop(true);
   std::erase_if(storms, [](const NamedStorm& storm) { return storm.files.empty(); });
 }
 
@@ -808,7 +850,7 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
     return absl::InvalidArgumentError(absl::StrCat(
         "no storm to show; name a file or folder of model output (", search.examples, ")"));
   }
-  DropRepeated(named);
+  DropRepeated(paths, named);
   std::vector<CataloguedStorm> storms;
   std::set<std::string> ids;
   for (NamedStorm& storm : named) {
