@@ -114,7 +114,8 @@ absl::Status ImportVdb(const ImportVdbFlags& flags) {
   };
   const interchange::VdbReaderOptions reader = {
       .memory_bytes = static_cast<std::uint64_t>(flags.memory_mib) << 20,
-      .memory_flag = "--memory"};
+      .memory_flag = "--memory",
+      .stop = interruption.Token()};
   THUNDERHEAD_ASSIGN_OR_RETURN(interchange::VdbVolume volume,
                                interchange::ReadVdb(flags.file, flags.grid, checkpoint, reader));
   if (!options.has_value()) {

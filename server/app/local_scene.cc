@@ -10,12 +10,13 @@
 
 namespace thunderhead::app {
 
-absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& flags) {
+absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& flags,
+                                     const std::stop_token& stop) {
   LocalScene local;
   THUNDERHEAD_ASSIGN_OR_RETURN(local.message, ReadScene(flags));
   THUNDERHEAD_RETURN_IF_ERROR(service::CheckLimits(local.message));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
-                               runs::OpenStorm(path));
+                               runs::OpenStorm(path, stop));
   THUNDERHEAD_RETURN_IF_ERROR(service::PrepareScene(
       *store, renderers::TechniqueRegistry::BuiltIn().Infos(), local.message));
   const auto time_index = static_cast<int>(local.message.time_index());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -22,7 +23,9 @@ struct LocalScene {
 };
 
 // Opens the storm at `path`, completes the scene from `flags` as the service does, and reads the
-// fields of its time with a progress bar. INVALID_ARGUMENT names the wrong value.
-absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& flags);
+// fields of its time with a progress bar. INVALID_ARGUMENT names the wrong value. CANCELLED if
+// `stop` is requested.
+absl::StatusOr<LocalScene> OpenScene(const std::string& path, const SceneFlags& flags,
+                                     const std::stop_token& stop = {});
 
 }  // namespace thunderhead::app

@@ -17,7 +17,8 @@ class PrintableMessage final : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm& /*time*/,
               spdlog::memory_buf_t& line) override {
-    const std::string text = base::Printable({message.payload.data(), message.payload.size()});
+    const std::string text = base::Printable({message.payload.data(), message.payload.size()},
+                                             {.max_bytes = base::kMaxLineBytes});
     line.append(text.data(), text.data() + text.size());
   }
   std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {
@@ -35,7 +36,7 @@ std::unique_ptr<spdlog::formatter> TextFormatter() {
 
 std::string JsonString(const std::string& text) {
   google::protobuf::Value value;
-  value.set_string_value(base::Printable(text));
+  value.set_string_value(base::Printable(text, {.max_bytes = base::kMaxLineBytes}));
   std::string json;
   (void)google::protobuf::util::MessageToJsonString(value, &json);
   return json;

@@ -171,7 +171,8 @@ absl::Status MeasureTransport(const Compared& compared,
 absl::Status MeasureLight(const LightFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   const Interruption interruption;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(flags.storm, flags.scene));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local,
+                               OpenScene(flags.storm, flags.scene, interruption.Token()));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
   renderers::SceneRenderer renderer;

@@ -126,7 +126,8 @@ absl::Status MeasureTrade(const TradeFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_RETURN_IF_ERROR(CheckFlags(flags));
   const Interruption interruption;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(flags.storm, flags.scene));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local,
+                               OpenScene(flags.storm, flags.scene, interruption.Token()));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
   THUNDERHEAD_ASSIGN_OR_RETURN(picture::LinearPicture traced,

@@ -64,6 +64,7 @@ absl::StatusOr<v1::RenderImageResponse> CallServer(const RenderFlags& flags,
                                                    const Interruption& interruption) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<runs::ServerLink> server,
                                OpenServer(flags.server));
+  server->StopOn(interruption.Token());
   request.mutable_scene()->set_storm_id(flags.storm);
   return Call(server->Channel(), request, interruption, server->Token());
 }
@@ -72,7 +73,7 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const RenderFlags& flags,
                                                  const v1::RenderImageRequest& request,
                                                  const Interruption& interruption) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<storm_store::StormStore> store,
-                               runs::OpenStorm(flags.storm));
+                               runs::OpenStorm(flags.storm, interruption.Token()));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<service::Server> server,
                                runs::StartLocalService(store, flags.device));
   const std::size_t times = store->Storms().front()->times.size();

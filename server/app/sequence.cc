@@ -47,6 +47,7 @@ absl::Status Sequence(const SequenceFlags& flags) {
   std::unique_ptr<runs::ServerLink> server;
   if (!flags.pipeline.server.address.empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(server, OpenServer(flags.pipeline.server));
+    server->StopOn(interruption.Token());
   }
   return runs::RunSequence(std::move(options), server.get(), interruption.Token());
 }

@@ -181,6 +181,8 @@ absl::Status Serve(ServeFlags flags) {
   // first. Only then is it known that its storage hangs.
   store_options.read_deadline = read_deadline + std::chrono::seconds(5);
   store_options.live = LiveCatalogueOf(flags.catalogue);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const State state, OpenState(flags.state));
+  KeepStormIds(state, *store_options.live);
   THUNDERHEAD_RETURN_IF_ERROR(ProbeReaders(reader_limits));
   store_options.borders = storm_store::BorderData::Find(storm_store::kBorderFolder);
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudsFolder clouds, CloudsFolder::Open(flags.clouds));
@@ -201,7 +203,6 @@ absl::Status Serve(ServeFlags flags) {
     }
   }
   service::ServerOptions server_options;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const State state, OpenState(flags.state));
   server_options.session_store = state.sessions;
   server_options.jobs = JobsOptionsOf(flags.jobs, state);
   server_options.clouds_folder = clouds.Path();

@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/slow_calls.h"
 #include "base/status.h"
+#include "base/whole_file.h"
 #include "spdlog/spdlog.h"
 #include "store/patient_stores.h"
 #include "store/sqlite_job_store.h"
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr char kNone[] = "none";
 constexpr char kFile[] = "sessions.db";
+constexpr char kStormIds[] = "storm_ids";
 // Timeout after which the folder's storage counts as hanging. Less would be too short, because a
 // disk may be busy with other data for some seconds.
 constexpr std::chrono::seconds kPatience{10};
@@ -90,6 +92,24 @@ absl::StatusOr<State> OpenState(const std::string& folder) {
       store::WithPatience(std::shared_ptr<jobs::JobStore>(std::move(jobs)), state.calls, path);
   state.folder = path;
   return state;
+}
+
+void KeepStormIds(const State& state, storm_store::LiveCatalogueOptions& catalogue) {
+  if (state.folder.empty()) return;
+  const std::string path = state.folder + "/" + kStormIds;
+  auto ids = state.calls->Ask(state.folder, [path] { return base::ReadWholeFile(path); });
+  if (ids.ok()) {
+    catalogue.ids = *std::move(ids);
+  } else if (!absl::IsNotFound(ids.status())) {
+    spdlog::warn("the ids of storms are given anew: {}", std::string(ids.status().message()));
+  }
+  catalogue.keep_ids = [path, folder = state.folder, calls = state.calls](const std::string& text) {
+    const absl::Status kept =
+        calls->Ask(folder, [path, text] { return base::WriteWholeFile(path, text); });
+    if (kept.ok()) return;
+    spdlog::warn("the ids of new storms are not kept for a restart: {}",
+                 std::string(kept.message()));
+  };
 }
 
 }  // namespace thunderhead::app

@@ -8,6 +8,7 @@
 #include "base/patient_calls.h"
 #include "jobs/job_store.h"
 #include "session/session_store.h"
+#include "storm_store/storm_store.h"
 
 namespace thunderhead::app {
 
@@ -26,5 +27,9 @@ struct State {
 // user is used. If such a default folder cannot be created, no state is kept, and a warning is
 // logged.
 absl::StatusOr<State> OpenState(const std::string& folder);
+
+// Makes the catalogue of storms read their ids from the state, and keep them there. If the folder's
+// storage fails or hangs, a warning is logged, and the ids depend on the files' names only.
+void KeepStormIds(const State& state, storm_store::LiveCatalogueOptions& catalogue);
 
 }  // namespace thunderhead::app

@@ -78,6 +78,7 @@ absl::Status Watch(const WatchFlags& flags) {
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<runs::ServerLink> server,
                                OpenServer(flags.pipeline.server));
+  server->StopOn(interruption.Token());
   return runs::RunWatchAtServer(std::move(options), *server, interruption.Token());
 }
 

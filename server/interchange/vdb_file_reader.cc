@@ -39,6 +39,7 @@ absl::StatusOr<std::string> ProgramOr(const std::string& given) {
 sandbox::ReaderLimits LimitsFor(const std::string& path, const VdbReaderOptions& options) {
   sandbox::ReaderLimits limits;
   limits.memory_flag = options.memory_flag;
+  limits.stop = options.stop;
   limits.memory_bytes = options.memory_bytes;
   if (limits.memory_bytes > 0) return limits;
   std::error_code error;

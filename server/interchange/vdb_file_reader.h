@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stop_token>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -20,7 +21,8 @@ std::uint64_t DefaultVdbMemory_bytes(std::uint64_t file_bytes);
 struct VdbReaderOptions {
   std::uint64_t memory_bytes = 0;  // limit for the reader; 0 for DefaultVdbMemory_bytes
   std::string memory_flag = {};    // the flag by which users set the limit, for errors
-  std::string program = {};  // the reader; if empty, thunderhead-vdb-reader next to this program
+  std::string program = {};   // the reader; if empty, thunderhead-vdb-reader next to this program
+  std::stop_token stop = {};  // a request to stop ends the reader, and the error is CANCELLED
 };
 
 // Reads the grid named `grid` of the file at `path` by a confined process. `checkpoint` may be

@@ -46,11 +46,12 @@ std::string Sha256(std::string_view bytes) {
   return digest.Hexadecimal();
 }
 
-absl::StatusOr<std::string> Sha256OfFile(const std::string& path) {
+absl::StatusOr<std::string> Sha256OfFile(const std::string& path, const std::stop_token& stop) {
   std::ifstream file(path, std::ios::binary);
   Digest digest;
   std::vector<char> piece(kPieceBytes);
   while (file) {
+    if (stop.stop_requested()) return absl::CancelledError(absl::StrCat(path, ": interrupted"));
     file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     digest.Add(piece.data(), static_cast<std::size_t>(file.gcount()));
   }

@@ -1,6 +1,7 @@
 // SHA-256, in lower-case hexadecimal as sha256sum prints it.
 #pragma once
 
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -10,7 +11,7 @@ namespace thunderhead::pipeline {
 
 std::string Sha256(std::string_view bytes);
 
-// UNAVAILABLE if the file cannot be read.
-absl::StatusOr<std::string> Sha256OfFile(const std::string& path);
+// UNAVAILABLE if the file cannot be read. CANCELLED if `stop` is requested meanwhile.
+absl::StatusOr<std::string> Sha256OfFile(const std::string& path, const std::stop_token& stop = {});
 
 }  // namespace thunderhead::pipeline

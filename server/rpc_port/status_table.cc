@@ -69,7 +69,7 @@ const Row& RowOf(absl::StatusCode code) {
 // `max_bytes`. The size is counted in the encoding of grpc-message, which uses three bytes for each
 // byte outside ASCII.
 std::string Sendable(std::string_view text, std::size_t max_bytes) {
-  std::string printable = base::Printable(text);
+  std::string printable = base::Printable(text, {.max_bytes = max_bytes + 3});
   std::size_t bytes = 0;
   for (std::size_t end = 0; end < printable.size();) {
     const std::size_t size = base::Utf8CharacterBytes(std::string_view(printable).substr(end));

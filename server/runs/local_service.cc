@@ -50,9 +50,11 @@ absl::Status AsFileProblem(const std::string& path, const absl::Status& status) 
       "; it changed just now, so it may still be being written: try again when it is complete"));
 }
 
-absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::string& path) {
+absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::string& path,
+                                                                   const std::stop_token& stop) {
   storm_store::StormStoreOptions options;
-  options.formats = sandbox::ConfinedFormats();
+  options.formats = sandbox::ConfinedFormats({.limits = {.stop = stop}});
+  options.stop = stop;
   options.links = storm_store::EveryLink();
   options.read_ahead = 0;
   options.read_deadline = LocalReadDeadline();

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "absl/status/status.h"
@@ -19,8 +20,10 @@ namespace thunderhead::runs {
 // than a reader may be silent, so that a reader that hangs is ended first, and the error names it.
 std::chrono::milliseconds LocalReadDeadline();
 
-// Opens the file or folder at `path`, which must contain exactly one storm.
-absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(const std::string& path);
+// Opens the file or folder at `path`, which must contain exactly one storm. If `stop` is requested,
+// this function and reads of the store end with CANCELLED.
+absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(
+    const std::string& path, const std::stop_token& stop = {});
 
 // Returns the index of the time `wanted`, or of the last time if `wanted` is absent.
 // INVALID_ARGUMENT if the storm does not have that time; the error names the storm by `path`.

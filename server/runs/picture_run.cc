@@ -137,16 +137,17 @@ absl::StatusOr<std::unique_ptr<PictureRun>> PictureRun::Open(PictureRunOptions o
   return std::unique_ptr<PictureRun>(new PictureRun(std::move(options), std::move(manifest)));
 }
 
-std::string PictureRun::HashOf(const pipeline::InputFile& input) {
+std::string PictureRun::HashOf(const pipeline::InputFile& input, const std::stop_token& stop) {
   {
     const std::lock_guard lock(mutex_);
     const auto known = hashed_.find(input.path);
     if (known != hashed_.end() && SameStamp(known->second, input)) return known->second.sha256;
   }
+  const absl::StatusOr<std::string> sha256 = pipeline::Sha256OfFile(input.path, stop);
+  if (absl::IsCancelled(sha256.status())) return "";
   pipeline::InputFile hashed = input;
-  // A file that cannot be read gets an empty hash, which equals no other. Drawing the file will
-  // report the error.
-  hashed.sha256 = pipeline::Sha256OfFile(input.path).value_or("");
+  // If the file cannot be read, drawing it will report the error.
+  hashed.sha256 = sha256.value_or("");
   const std::lock_guard lock(mutex_);
   return hashed_.insert_or_assign(input.path, std::move(hashed)).first->second.sha256;
 }
@@ -194,9 +195,10 @@ absl::StatusOr<bool> PictureRun::IsMade(const std::string& path, const std::stri
   return true;
 }
 
-absl::StatusOr<bool> PictureRun::IsMade(const PlannedPicture& picture) {
+absl::StatusOr<bool> PictureRun::IsMade(const PlannedPicture& picture,
+                                        const std::stop_token& stop) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::InputFile input, StampOf(picture.input));
-  return IsMade(picture, input, [this, &input] { return HashOf(input); });
+  return IsMade(picture, input, [&] { return HashOf(input, stop); });
 }
 
 absl::StatusOr<bool> PictureRun::IsMade(const PlannedPicture& picture,
@@ -273,7 +275,8 @@ absl::Status PictureRun::MakeOne(const PlannedPicture& picture, storm_store::Sto
                                CallForPicture(channel, request, "", stop, {}));
   AddStages(response, times);
   const base::Stopwatch writing;
-  input.sha256 = HashOf(input);
+  input.sha256 = HashOf(input, stop);
+  if (stop.stop_requested()) return absl::CancelledError("interrupted");
   THUNDERHEAD_ASSIGN_OR_RETURN(const pipeline::InputFile after, StampOf(picture.input));
   if (!SameStamp(input, after)) return ChangedMeanwhile(picture.input);
   pipeline::ManifestEntry entry = EntryOf(picture.key, view);
@@ -297,7 +300,7 @@ absl::Status PictureRun::Make(const std::vector<storm_store::CataloguedStorm>& s
   std::vector<PlannedPicture*> missing;
   for (PlannedPicture& picture : pictures) {
     if (stop.stop_requested()) return absl::CancelledError("interrupted");
-    const absl::StatusOr<bool> made = IsMade(picture);
+    const absl::StatusOr<bool> made = IsMade(picture, stop);
     if (made.ok() && *made) {
       picture.outcome = absl::OkStatus();
       progress.Kept(picture.path);

@@ -97,14 +97,16 @@ class PictureRun {
   PictureRun(PictureRunOptions options, pipeline::Manifest manifest)
       : options_(std::move(options)), manifest_(std::move(manifest)) {}
 
-  absl::StatusOr<bool> IsMade(const PlannedPicture& picture);
+  absl::StatusOr<bool> IsMade(const PlannedPicture& picture, const std::stop_token& stop);
   absl::Status MakeOne(const PlannedPicture& picture, storm_store::StormStore& store,
                        const std::shared_ptr<grpc::Channel>& channel, const std::string& device,
                        const std::string& storm_id, const std::stop_token& stop,
                        double& milliseconds, PictureTimes& times);
   absl::Status PublishFile(const std::string& path, const std::string& bytes,
                            pipeline::ManifestEntry entry);
-  std::string HashOf(const pipeline::InputFile& input);
+  // Returns the hash of the file. It is empty, which equals no other, if the file cannot be read,
+  // or if `stop` is requested meanwhile.
+  std::string HashOf(const pipeline::InputFile& input, const std::stop_token& stop);
   // Returns false if the file has changed since its first picture was begun. The fields that the
   // storm store keeps for the following views then belong to the old file.
   bool IsAsBegun(const pipeline::InputFile& input);

@@ -59,9 +59,9 @@ absl::Status WorstOf(const std::map<std::string, absl::Status>& problems) {
 }
 
 // Searches each path for storms. A file that cannot be read does not affect the others.
-absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
+absl::StatusOr<Found> Find(const std::vector<std::string>& paths, const std::stop_token& stop) {
   Found found;
-  const storm_files::StormFormats formats = sandbox::ConfinedFormats();
+  const storm_files::StormFormats formats = sandbox::ConfinedFormats({.limits = {.stop = stop}});
   // Keeps the place of a file and, if it cannot be read, the reason, which is told at the end.
   const auto note = [&](const std::string& path, absl::StatusOr<storm_files::StormFile>& file) {
     // A folder may also contain files that are not storms.
@@ -75,7 +75,8 @@ absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
   const storm_store::StormSearch search{.describe =
                                             [&](const std::vector<std::string>& files) {
                                               auto described = storm_store::DescribeInBatches(
-                                                  files, formats, [] { return true; });
+                                                  files, formats,
+                                                  [&stop] { return !stop.stop_requested(); });
                                               for (std::size_t i = 0; i < files.size(); ++i)
                                                 note(files[i], described[i]);
                                               return described;
@@ -90,8 +91,13 @@ absl::StatusOr<Found> Find(const std::vector<std::string>& paths) {
                                         .on_unlisted = {},
                                         .on_folder = {},
                                         .examples = formats.Examples(),
-                                        .links = storm_store::EveryLink()};
+                                        .links = storm_store::EveryLink(),
+                                        .stop = stop};
   auto storms = storm_store::FindStorms(paths, search);
+  if (absl::IsCancelled(storms.status())) {
+    return absl::CancelledError(
+        "interrupted while the storms were searched: nothing is drawn; run the same command again");
+  }
   if (!storms.ok()) return AsFileProblem(storms.status());
   found.storms = *std::move(storms);
   for (const std::string& path : paths) {
@@ -222,7 +228,7 @@ absl::Status RunSequence(SequenceOptions options, ServerLink* server, const std:
   Found found;
   std::vector<PlannedPicture> all;
   if (server == nullptr) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(found, Find(options.storms));
+    THUNDERHEAD_ASSIGN_OR_RETURN(found, Find(options.storms, stop));
     THUNDERHEAD_RETURN_IF_ERROR(CheckCounts(found, options.times, options.pictures, options.movie));
     THUNDERHEAD_ASSIGN_OR_RETURN(
         all, PlanSequence(options.pictures, found.storms, options.times, found.problems.empty()));

@@ -44,6 +44,9 @@ absl::Status ServerLink::StatusOf(const grpc::Status& status) const {
                      " is older than this program and has no render jobs: run both in the same "
                      "version"));
   }
+  if (!status.ok() && stop_.stop_requested()) {
+    return absl::CancelledError("interrupted; run the same command again to continue");
+  }
   absl::Status same = FromGrpc(status);
   if (!absl::IsUnavailable(same) && !absl::IsDeadlineExceeded(same)) return same;
   return base::Annotate(same, absl::StrCat("the server at ", address_, " cannot be reached"));

@@ -3,7 +3,9 @@
 
 #include <chrono>
 #include <memory>
+#include <stop_token>
 #include <string>
+#include <utility>
 
 #include "absl/status/status.h"
 #include "grpcpp/channel.h"
@@ -31,13 +33,18 @@ class ServerLink {
   const std::string& Token() const { return token_; }
   const std::string& Address() const { return address_; }
 
+  // Cancels calls in progress, and later ones, when `stop` is requested.
+  void StopOn(std::stop_token stop) { stop_ = std::move(stop); }
+
   // Calls a unary rpc with the token, for example Call(Service(), &Stub::ListStorms, ...). Returns
-  // UNAVAILABLE after a timeout if the server does not respond.
+  // UNAVAILABLE after a timeout if the server does not respond, and CANCELLED if a stop is
+  // requested.
   template <typename Stub, typename Method, typename Request, typename Response>
   absl::Status Call(Stub& stub, Method method, const Request& request, Response* response) {
     grpc::ClientContext context;
     Prepare(context);
     context.set_deadline(std::chrono::system_clock::now() + kPatience);
+    const std::stop_callback cancel(stop_, [&context] { context.TryCancel(); });
     return StatusOf((stub.*method)(&context, request, response));
   }
 
@@ -52,6 +59,7 @@ class ServerLink {
   // The timeout is long because a server may have to read a storm first.
   static constexpr std::chrono::seconds kPatience{120};
 
+  std::stop_token stop_;
   const std::string address_;
   const std::string token_;
   const std::shared_ptr<grpc::Channel> channel_;

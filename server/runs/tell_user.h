@@ -11,7 +11,8 @@ namespace thunderhead::runs {
 // Writes one line to standard error. The line is made printable because it may contain names of
 // files.
 inline void TellUser(std::string_view what) {
-  std::cerr << "thunderhead: " << base::Printable(what) << std::endl;
+  std::cerr << "thunderhead: " << base::Printable(what, {.max_bytes = base::kMaxLineBytes})
+            << std::endl;
 }
 
 }  // namespace thunderhead::runs

@@ -201,11 +201,13 @@ absl::Status RunWatch(WatchOptions options, const std::stop_token& stop) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<PictureRun> run,
                                PictureRun::Open(std::move(options.pictures)));
   RunProgress progress(options.progress, absl::StrCat("watching ", options.folder));
-  WatchedFolder folder(options.folder, options.files, options.ready);
+  WatchedFolder folder(options.folder, options.files, options.ready, stop);
   RememberDone(*run, folder);
   std::set<std::string> told;
   while (!stop.stop_requested()) {
-    THUNDERHEAD_RETURN_IF_ERROR(folder.Look(progress));
+    const absl::Status looked = folder.Look(progress);
+    if (stop.stop_requested()) break;
+    THUNDERHEAD_RETURN_IF_ERROR(looked);
     absl::Status drawn = DrawReady(options.movie, folder, *run, progress, told, stop);
     if (!drawn.ok() && !absl::IsCancelled(drawn)) return drawn;
     if (stop.stop_requested()) break;

@@ -73,6 +73,7 @@ absl::Status WatchedFolder::Look(RunProgress& progress) {
   looked_ = now;
   std::set<std::string> there;
   for (const pipeline::SeenFile& seen : files) {
+    if (stop_.stop_requested()) return absl::CancelledError("interrupted");
     const std::string path = (fs::path(folder_) / seen.name).string();
     there.insert(path);
     File& file = known_.at(path);
@@ -112,7 +113,7 @@ void WatchedFolder::Open(const std::string& path, File& file, RunProgress& progr
   }
   // The file may be open in another program. It may become readable without a change, so it is not
   // marked as refused.
-  if (absl::IsUnavailable(storm.status())) return;
+  if (absl::IsUnavailable(storm.status()) || absl::IsCancelled(storm.status())) return;
   file.refused = true;
   const char* what = "waits until it changes: ";
   if (absl::IsInvalidArgument(storm.status())) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -28,12 +29,17 @@ struct FolderStorm {
 
 class WatchedFolder {
  public:
-  // `files` is a pattern for the names of data files, as in fnmatch(3).
-  WatchedFolder(std::string folder, std::string files, pipeline::ReadinessPolicy policy)
-      : folder_(std::move(folder)), files_(std::move(files)), policy_(std::move(policy)) {}
+  // `files` is a pattern for the names of data files, as in fnmatch(3). A request to stop ends a
+  // file's reader.
+  WatchedFolder(std::string folder, std::string files, pipeline::ReadinessPolicy policy,
+                std::stop_token stop)
+      : folder_(std::move(folder)),
+        files_(std::move(files)),
+        policy_(std::move(policy)),
+        stop_(std::move(stop)) {}
 
   // Scans the folder and opens the files that have become ready. A file that has changed is treated
-  // as new. UNAVAILABLE if the folder cannot be listed.
+  // as new. UNAVAILABLE if the folder cannot be listed. CANCELLED if a stop is requested.
   absl::Status Look(RunProgress& progress);
 
   // Returns the storms of all files that are ready.
@@ -84,7 +90,8 @@ class WatchedFolder {
   const std::string folder_;
   const std::string files_;
   const pipeline::ReadinessPolicy policy_;
-  const storm_files::StormFormats formats_ = sandbox::ConfinedFormats();
+  const std::stop_token stop_;
+  const storm_files::StormFormats formats_ = sandbox::ConfinedFormats({.limits = {.stop = stop_}});
   Time looked_ = Time::min();          // time of the last check
   std::map<std::string, File> known_;  // by path
 };

@@ -64,13 +64,19 @@ bool Receiver::Read(void* bytes, std::size_t count) {
 
 bool Receiver::AwaitBytes() {
   using std::chrono::milliseconds;
+  // The longest pause between two checks of stop_.
+  const std::int64_t most_ms = stop_.stop_possible() ? 100 : 60'000;
   while (true) {
+    if (stop_.stop_requested()) {
+      failure_ = Failure::kStopped;
+      return false;
+    }
     const auto start = time_.Now();
     pollfd ready{pipe_, POLLIN, 0};
     const auto longest = std::min(patience_, longest_silence_ - silence_);
     const auto look_again_after = time_.LookAgainAt(start + longest) - base::SteadyTime().Now();
     const auto wait = std::chrono::ceil<milliseconds>(look_again_after).count();
-    const int found = poll(&ready, 1, static_cast<int>(std::clamp<std::int64_t>(wait, 0, 60'000)));
+    const int found = poll(&ready, 1, static_cast<int>(std::clamp<std::int64_t>(wait, 0, most_ms)));
     const auto waited = time_.Now() - start;
     patience_ -= waited;
     silence_ += waited;

@@ -11,6 +11,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -90,7 +91,7 @@ class Sender {
 // The receiving end of the pipe. After a failure every received value is the zero of its type.
 class Receiver {
  public:
-  enum class Failure { kNone, kEnded, kTooLarge, kTooLate, kSilent };
+  enum class Failure { kNone, kEnded, kTooLarge, kTooLate, kSilent, kStopped };
 
   // Creates a receiver that waits for at most `patience` in total, measured by `time`, and accepts
   // arrays of at most `allowance` bytes in total.
@@ -111,6 +112,9 @@ class Receiver {
     longest_silence_ = longest;
     is_excused_ = std::move(is_excused);
   }
+
+  // Makes the receiver fail with kStopped within a tenth of a second after `stop` is requested.
+  void StopOn(std::stop_token stop) { stop_ = std::move(stop); }
 
   template <Plain Value>
   void operator()(Value& value) {
@@ -167,6 +171,7 @@ class Receiver {
   std::chrono::nanoseconds longest_silence_ = std::chrono::nanoseconds::max();
   std::chrono::nanoseconds silence_{0};
   std::function<bool()> is_excused_;
+  std::stop_token stop_;
   std::uint64_t allowance_;
   const std::span<const std::byte> shared_;
   SharedPlaces places_;

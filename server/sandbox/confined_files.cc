@@ -147,7 +147,7 @@ std::vector<absl::StatusOr<storm_files::StormFile>> ConfinedFiles::DescribeEach(
       files.push_back(Describe(paths[i]));
     } else if (descriptions[i].code != 0) {
       files.emplace_back(absl::Status(static_cast<absl::StatusCode>(descriptions[i].code),
-                                      descriptions[i].message));
+                                      NoteText(descriptions[i].message)));
     } else {
       Own(paths[i], {}, descriptions[i].file);
       files.emplace_back(std::move(descriptions[i].file));

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "absl/time/time.h"
+#include "base/utf8.h"
 #include "storm_files/storm_file.h"
 #include "volume/hydrometeor_fields.h"
 
@@ -65,6 +67,14 @@ struct Note {
   std::int32_t code = 0;  // spdlog's level, or absl's status code
   std::string text;
 };
+
+// Returns the text of a note as one printable line that is short enough to be sent. The reader
+// calls it because its library may quote a long text of the file. The server calls it again because
+// a reader can be hostile.
+inline std::string NoteText(std::string_view text) {
+  constexpr std::size_t kMaxNoteBytes = 2000;
+  return base::Printable(text, {.max_bytes = kMaxNoteBytes});
+}
 
 template <typename Archive, typename Value>
 void VisitOptional(Archive& archive, std::optional<Value>& value) {

@@ -129,7 +129,8 @@ absl::Status StormReader::AnswerDescriptions(Replies& replies) {
       each.file = *std::move(file);
     } else {
       each.code = static_cast<int>(file.status().code());
-      each.message = std::string(file.status().message());
+      const absl::string_view message = file.status().message();
+      each.message = NoteText({message.data(), message.size()});
     }
   }
   replies.Send(Reply::kDescriptions, descriptions);

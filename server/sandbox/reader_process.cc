@@ -41,7 +41,7 @@ class Replies::KeptLog final : public spdlog::sinks::base_sink<std::mutex> {
     constexpr std::size_t kMaxNotes = 20;
     if (notes_.size() >= kMaxNotes) return;
     notes_.push_back({static_cast<int>(message.level),
-                      std::string(message.payload.data(), message.payload.size())});
+                      NoteText({message.payload.data(), message.payload.size()})});
   }
   void flush_() override {}
 
@@ -132,7 +132,8 @@ Replies::Replies(std::span<std::byte> shared) : shared_(shared), log_(std::make_
 std::vector<Note> Replies::TakeLog() { return log_->Take(); }
 
 void Replies::SendError(const absl::Status& error) {
-  Note note{static_cast<int>(error.code()), std::string(error.message())};
+  Note note{static_cast<int>(error.code()),
+            NoteText({error.message().data(), error.message().size()})};
   Send(Reply::kError, note);
 }
 

@@ -15,7 +15,6 @@
 #include "base/guarded.h"
 #include "base/program_folder.h"
 #include "base/status.h"
-#include "base/utf8.h"
 #include "base/version.h"
 #include "sandbox/process_state.h"
 #include "sandbox/reader_main.h"
@@ -78,15 +77,9 @@ absl::Status Nonsense(const std::string& path, const std::string& what) {
       absl::DataLossError(absl::StrCat("gave an impossible value for ", what, kWhatToDo)));
 }
 
-// Returns a text that the reader sent as one printable line of at most 2000 bytes.
-std::string OneLine(const std::string& text) {
-  constexpr std::size_t kLongest = 2000;
-  return base::Printable(text.substr(0, kLongest));
-}
-
 void Log(const Note& note) {
   const bool warning = note.code >= static_cast<int>(spdlog::level::warn);
-  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", OneLine(note.text));
+  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, "{}", NoteText(note.text));
 }
 
 // Without a limit, returns a value that is larger than the memory of any machine.
@@ -106,7 +99,7 @@ absl::Status TooLarge(std::string text, const ReaderLimits& limits) {
 // Returns the status for an error that the reader found in the file.
 absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
   const auto code = static_cast<absl::StatusCode>(note.code);
-  std::string text = OneLine(note.text);
+  std::string text = NoteText(note.text);
   switch (code) {
     case absl::StatusCode::kResourceExhausted:
       return TooLarge(std::move(text), limits);
@@ -121,6 +114,10 @@ absl::Status StatusOf(const Note& note, const ReaderLimits& limits) {
   }
 }
 
+absl::Status Stopped(const std::string& path) {
+  return absl::CancelledError(absl::StrCat(path, ": interrupted before it was read"));
+}
+
 // Returns the error for a reader whose answer could not be received.
 absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& child,
                    const ReaderLimits& limits) {
@@ -129,6 +126,8 @@ absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& 
       return TookTooLong(path, limits);
     case Receiver::Failure::kSilent:
       return WasSilent(path, limits);
+    case Receiver::Failure::kStopped:
+      return Stopped(path);
     case Receiver::Failure::kTooLarge:
       return Nonsense(path, "its size");
     default:
@@ -243,6 +242,7 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
   Receiver from_reader(reader->Replies(), patience, request.memory_bytes, time_,
                        reader->Arrays().Bytes());
   StorageWatch storage(reader->Process().Process());
+  from_reader.StopOn(limits.stop);
   from_reader.LimitSilence(limits.silence, [&storage] { return storage.ExplainsSilence(); });
   absl::Status status = base::Guarded(
       [&] { return Listen(request.path, from_reader, wanted, checkpoint, take, limits); });
@@ -262,6 +262,7 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
 
 absl::Status Readers::Run(Request request, Reply wanted, milliseconds patience,
                           const storm_files::ReadCheckpoint& checkpoint, const Take& take) {
+  if (limits_.stop.stop_requested()) return Stopped(request.path);
   request.version = base::Version();
   request.memory_bytes = MemoryOf(limits_);
   request.processor_s = static_cast<std::uint32_t>(

@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 
@@ -38,6 +39,9 @@ struct ReaderLimits {
   std::string memory_flag = {};
   std::string time_flag = {};
   std::string silence_flag = {};
+  // A request to stop ends the reader in progress, and no further reader is started. The error is
+  // CANCELLED.
+  std::stop_token stop = {};
 };
 
 // Returns the path of thunderhead-reader, which is next to this program. Returns INTERNAL if it is

@@ -19,7 +19,7 @@ namespace thunderhead::storm_files {
 namespace {
 
 // Checks conditions on files of every format that other libraries rely on.
-absl::Status CheckDescribed(StormFile& file) {
+absl::Status CheckDescribed(const StormFile& file) {
   const auto& cells = file.cells;
   THUNDERHEAD_RETURN_IF_ERROR(
       base::CountThatFits(absl::StrCat(file.path, ": one time of a field"),
@@ -43,17 +43,27 @@ absl::Status CheckDescribed(StormFile& file) {
         absl::StrCat(file.path, ": has a time outside the years 0 to 9999 (",
                      absl::FormatTime(time, absl::UTCTimeZone()), "); check its units"));
   }
-  file.about = base::Printable(file.about);
-  file.member = base::Printable(file.member);
   return absl::OkStatus();
 }
 
-// Checks the storms of a file. Parts of a time say nothing that can be checked.
+// Makes the texts that the file contains printable, and shortens them. A long text would otherwise
+// exceed what a reader may send, and the storm would be lost.
+void CleanTexts(StormFile& file) {
+  for (std::string* text : {&file.grid, &file.about, &file.run, &file.member, &file.part.of}) {
+    *text = base::Printable(*text);
+  }
+  for (std::string& assumption : file.assumptions) assumption = base::Printable(assumption);
+}
+
+// Checks the storms of a file and cleans their texts. Parts of a time say nothing that can be
+// checked.
 absl::Status CheckStorms(StormFile& file) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckStormCount(file.path, file.others.size() + 1));
   if (file.part.of.empty()) THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(file));
+  CleanTexts(file);
   for (StormFile& other : file.others) {
     if (other.part.of.empty()) THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(other));
+    CleanTexts(other);
   }
   return absl::OkStatus();
 }

@@ -1,7 +1,6 @@
 #include "storm_store/cached_storm_store.h"
 
 #include <algorithm>
-#include <iterator>
 #include <string>
 #include <utility>
 
@@ -52,7 +51,10 @@ std::unique_ptr<StormStore> CachedStormStore::Owned(std::shared_ptr<CachedStormS
 
 CachedStormStore::CachedStormStore(const std::vector<CataloguedStorm>& storms,
                                    const StormStoreOptions& options)
-    : options_(options), cache_(options.byte_budget) {
+    : options_(options),
+      earlier_ids_(options.live.has_value() ? options.live->ids : ""),
+      cache_(options.byte_budget),
+      kept_ids_(earlier_ids_) {
   Renew(storms);
 }
 
@@ -99,9 +101,9 @@ absl::StatusOr<StormInfoPtr> CachedStormStore::Add(const std::string& path) {
                                FindStorms({path}, options_.formats));
   CataloguedStorm& storm = found.front();
   const Lock lock(mutex_);
-  if (PlaceOf(storm.info.id).has_value()) {
-    return absl::AlreadyExistsError(absl::StrCat("cannot add ", path, ": there is a storm '",
-                                                 storm.info.id, "' already; rename the file"));
+  if (owners_.contains(storm.info.id)) {
+    return absl::AlreadyExistsError(absl::StrCat(
+        "cannot add ", path, ": another storm has the id '", storm.info.id, "'; rename the file"));
   }
   order_.push_back(storms_.size());
   Held& held = storms_.emplace_back();
@@ -115,6 +117,7 @@ absl::Status CachedStormStore::Remove(std::string_view id) {
     const std::optional<std::size_t> place = PlaceOf(id);
     if (!place.has_value()) return NoSuchStorm(id);
     storms_[*place].storm.reset();
+    ReleaseIds(*place);
     std::erase(order_, *place);
     cache_.RemoveStorm(*place);
     std::erase_if(wanted_, [&](const TimeKey& key) { return key.storm == *place; });
@@ -124,11 +127,9 @@ absl::Status CachedStormStore::Remove(std::string_view id) {
 }
 
 std::optional<std::size_t> CachedStormStore::PlaceOf(std::string_view id) const {
-  const auto at = std::ranges::find_if(storms_, [&](const Held& held) {
-    return held.storm != nullptr && held.storm->info.id == id;
-  });
-  if (at == storms_.end()) return std::nullopt;
-  return static_cast<std::size_t>(at - storms_.begin());
+  const auto owner = owners_.find(id);
+  if (owner == owners_.end() || storms_[owner->second].storm->info.id != id) return std::nullopt;
+  return owner->second;
 }
 
 absl::Status CachedStormStore::NoSuchStorm(std::string_view id) const {

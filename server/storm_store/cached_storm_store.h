@@ -13,6 +13,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -26,6 +27,7 @@
 #include "storm_store/fields_cache.h"
 #include "storm_store/live_catalogue.h"
 #include "storm_store/storm_catalogue.h"
+#include "storm_store/storm_ids.h"
 #include "storm_store/storm_store.h"
 
 namespace thunderhead::storm_store {
@@ -108,7 +110,10 @@ class CachedStormStore final : public StormStore,
     std::vector<int> numbers;                      // TimeKey::time of each time; a number is never
                                                    // reused
     int next_number = 0;
-    bool added = false;              // added by Add, so not found under the paths
+    bool added = false;  // added by Add, so not found under the paths
+    // The storm's id, and those that it had before its name changed. No other storm gets one of
+    // them, so that a client that still uses it is not shown another storm.
+    std::vector<std::string> ids;
     std::optional<ChosenGrid> grid;  // height grid for all times of the storm
 
     StormInfoPtr Info() const { return {storm, &storm->info}; }
@@ -174,7 +179,12 @@ class CachedStormStore final : public StormStore,
   bool IsWanted(const TimeKey& key) const;
   void TakeFound(const CatalogueScan::Result& found);
   StormChange Replace(std::size_t place, std::optional<CataloguedStorm> found);
-  std::string FreeId(const std::string& wanted, std::size_t place) const;
+  // Returns the id for the storm at `place`, which is new or has another name. It uses `copies_`,
+  // so that many storms of one name are numbered fast.
+  std::string NewId(const CataloguedStorm& found, std::size_t place);
+  void KeepIds();                      // passes changed ids to LiveCatalogueOptions::keep_ids
+  void TakeId(std::size_t place);      // records the id of the storm at `place` as its own
+  void ReleaseIds(std::size_t place);  // lets other storms take the ids of that place
 
   // Returns the delay after which a file that has just been replaced may be described.
   std::chrono::milliseconds ReplacedRetryAfter() const;
@@ -192,13 +202,18 @@ class CachedStormStore final : public StormStore,
   void DropOldestUnused() override;
 
   const StormStoreOptions options_;
+  const StormIds earlier_ids_;  // ids that an earlier store gave to its storms
 
   mutable std::mutex mutex_;
-  std::deque<Held> storms_;          // elements are never removed, so an index identifies a storm
-                                     // permanently
-  std::vector<std::size_t> order_;   // indices into storms_ of the listed storms, in the listed
-                                     // order
-  std::condition_variable changed_;  // notified when a read ends, a time is to be read ahead, a
+  std::deque<Held> storms_;         // elements are never removed, so an index identifies a storm
+                                    // permanently
+  std::vector<std::size_t> order_;  // indices into storms_ of the listed storms, in the listed
+                                    // order
+  // The place of the storm that has or had an id (Held::ids).
+  std::map<std::string, std::size_t, std::less<>> owners_;
+  // The last number that was appended to each stem. It is valid during one Renew.
+  std::map<std::string, int> copies_;
+  std::condition_variable changed_;    // notified when a read ends, a time is to be read ahead, a
                                      // caller begins to wait, or the first search or the store ends
   FieldsCache cache_;
   std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;
@@ -212,6 +227,7 @@ class CachedStormStore final : public StormStore,
 
   std::mutex listening_;  // held while the listener is called; locked before mutex_
   CatalogueListener listener_;
+  StormIds kept_ids_;       // the ids that were kept last; used by the searching thread only
   bool following_ = false;  // true if changes are reported to listener_
 
   // These exist from Start to End.

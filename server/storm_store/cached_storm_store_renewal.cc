@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -28,6 +29,22 @@ void Log(const StormChange& change) {
   }
 }
 
+// Returns the indices of the storms that are not known and were not added. Those that an earlier
+// store knew come first.
+std::vector<std::size_t> NewStorms(const std::vector<CataloguedStorm>& found,
+                                   const std::vector<std::optional<std::size_t>>& place_of,
+                                   const std::set<std::string>& added, const StormIds& earlier) {
+  std::vector<std::size_t> fresh;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const bool is_added = std::ranges::all_of(
+        found[i].info.files, [&](const std::string& file) { return added.contains(file); });
+    if (!place_of[i].has_value() && !is_added) fresh.push_back(i);
+  }
+  std::ranges::stable_partition(fresh,
+                                [&](std::size_t i) { return earlier.Of(found[i]).has_value(); });
+  return fresh;
+}
+
 }  // namespace
 
 void CachedStormStore::Listen(CatalogueListener listener) {
@@ -50,6 +67,7 @@ void CachedStormStore::TakeFound(const CatalogueScan::Result& found) {
     const std::lock_guard lock(listening_);
     following_ = true;
   }
+  KeepIds();
   // The only storm may be a file that is still being written, so the search continues.
   if (found.storms.empty() && found.look_again_at.has_value()) return;
   {
@@ -81,6 +99,7 @@ void CachedStormStore::Renew(const std::vector<CataloguedStorm>& found) {
   CatalogueChange changes;
   {
     const Lock lock(mutex_);
+    copies_.clear();
     std::vector<const CataloguedStorm*> known;
     std::set<std::string> added;
     for (const Held& held : storms_) {
@@ -95,23 +114,30 @@ void CachedStormStore::Renew(const std::vector<CataloguedStorm>& found) {
       const StormChange change = Replace(place, std::move(storm));
       if (change.before != change.after) changes.push_back(change);
     };
-    // Storms that are gone are removed first, so that other storms can take their ids.
+    // Ids are given to known storms first, and then to new ones. Otherwise a new file with the name
+    // of a known storm's file could get its id, and clients would be shown another storm. Storms
+    // that are gone are removed before, so that other storms can take their ids.
     for (std::size_t place = 0; place < known.size(); ++place) {
-      if (match[place].has_value()) place_of[*match[place]] = place;
       if (known[place] != nullptr && !match[place].has_value()) take(place, std::nullopt);
     }
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      const bool is_added = std::ranges::all_of(
-          found[i].info.files, [&](const std::string& file) { return added.contains(file); });
-      if (is_added) continue;
-      if (!place_of[i].has_value()) {
-        place_of[i] = storms_.size();
-        storms_.emplace_back();
-      }
-      take(*place_of[i], found[i]);
-      order.push_back(*place_of[i]);
+    for (std::size_t place = 0; place < known.size(); ++place) {
+      if (!match[place].has_value()) continue;
+      place_of[*match[place]] = place;
+      take(place, found[*match[place]]);
     }
+    for (const std::size_t i : NewStorms(found, place_of, added, earlier_ids_)) {
+      place_of[i] = storms_.size();
+      storms_.emplace_back();
+      take(*place_of[i], found[i]);
+    }
+    std::vector<std::tuple<std::size_t, std::string, std::size_t>> listed;  // by path and id
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (!place_of[i].has_value()) continue;
+      listed.emplace_back(found[i].path, storms_[*place_of[i]].storm->info.id, *place_of[i]);
+    }
+    std::ranges::sort(listed);
+    std::vector<std::size_t> order;
+    for (const auto& [path, id, place] : listed) order.push_back(place);
     // Storms that are only in memory, and storms that were added, come last.
     for (const std::size_t place : order_) {
       const bool stays = storms_[place].storm != nullptr;
@@ -135,12 +161,13 @@ StormChange CachedStormStore::Replace(std::size_t place, std::optional<Catalogue
   if (held.storm != nullptr) {
     change.before = held.Info();
     const auto in_use = [&](std::size_t time) { return cache_.InUse({place, held.numbers[time]}); };
-    if (found.has_value() && found->info.id != held.storm->info.id) {
-      found->info.id = FreeId(found->info.id, place);
+    if (found.has_value()) {
+      const bool same_name = found->stem == held.storm->stem;
+      found->info.id = same_name ? held.storm->info.id : NewId(*found, place);
     }
     found = Renewed(*held.storm, std::move(found), in_use);
   } else if (found.has_value()) {
-    found->info.id = FreeId(found->info.id, place);
+    found->info.id = NewId(*found, place);
   }
   const bool unchanged =
       held.storm != nullptr && found.has_value() && IsUnchanged(*held.storm, *found);
@@ -173,21 +200,52 @@ StormChange CachedStormStore::Replace(std::size_t place, std::optional<Catalogue
   held.numbers = std::move(numbers);
   held.storm =
       found.has_value() ? std::make_shared<const CataloguedStorm>(*std::move(found)) : nullptr;
-  if (held.storm != nullptr) change.after = held.Info();
+  if (held.storm == nullptr) {
+    ReleaseIds(place);
+    return change;
+  }
+  TakeId(place);
+  change.after = held.Info();
   return change;
 }
 
-// Returns the id for the storm at `place`. A number is appended if another storm has the id.
-std::string CachedStormStore::FreeId(const std::string& wanted, std::size_t place) const {
-  std::string id = wanted;
+std::string CachedStormStore::NewId(const CataloguedStorm& found, std::size_t place) {
+  std::string id = earlier_ids_.Of(found).value_or(found.info.id);
   const auto is_taken = [&] {
-    const std::optional<std::size_t> holder = PlaceOf(id);
-    return holder.has_value() && *holder != place;
+    const auto owner = owners_.find(id);
+    return owner != owners_.end() && owner->second != place;
   };
-  for (int copy = 2; is_taken(); ++copy) {
-    id = absl::StrCat(wanted, "-", copy);
+  while (is_taken()) {
+    const int copy = ++copies_[found.stem];
+    id = copy == 1 ? found.stem : absl::StrCat(found.stem, "-", copy);
   }
   return id;
+}
+
+void CachedStormStore::KeepIds() {
+  if (options_.live->keep_ids == nullptr) return;
+  StormIds ids;
+  {
+    const Lock lock(mutex_);
+    for (const std::size_t place : order_) {
+      const Held& held = storms_[place];
+      if (!held.added) ids.Set(*held.storm, held.storm->info.id);
+    }
+    ids.AddEarlier(earlier_ids_, [this](const std::string& id) { return !owners_.contains(id); });
+  }
+  if (ids == kept_ids_) return;
+  options_.live->keep_ids(ids.ToText());
+  kept_ids_ = std::move(ids);
+}
+
+void CachedStormStore::TakeId(std::size_t place) {
+  const std::string& id = storms_[place].storm->info.id;
+  if (owners_.emplace(id, place).second) storms_[place].ids.push_back(id);
+}
+
+void CachedStormStore::ReleaseIds(std::size_t place) {
+  for (const std::string& id : storms_[place].ids) owners_.erase(id);
+  storms_[place].ids.clear();
 }
 
 }  // namespace thunderhead::storm_store

@@ -85,6 +85,7 @@ std::optional<CataloguedStorm> Renewed(const CataloguedStorm& known,
     renewed = *std::move(found);
   } else {
     renewed.info = known.info;
+    renewed.stem = known.stem;
     renewed.info.times.clear();
   }
   for (std::size_t time = 0; time < known.info.times.size(); ++time) {

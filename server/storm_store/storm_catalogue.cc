@@ -106,6 +106,9 @@ struct FolderWalk {
   const LinkRules& links;
   std::chrono::steady_clock::time_point end = std::chrono::steady_clock::now() + kLongestWalk;
   std::set<std::pair<dev_t, ino_t>> visited = {};  // folders, by device and inode
+  // Links to folders, with their depth. They are followed at the end, so that a folder that is
+  // itself below the path is found there and not through a link.
+  std::vector<std::pair<fs::path, int>> links_left = {};
   std::size_t entries = 0;
   absl::Status first_failure = absl::OkStatus();
 };
@@ -154,7 +157,10 @@ absl::Status CheckLink(const LinkRules& rules, const fs::path& link) {
 struct Folder {
   std::vector<fs::path> files;
   std::vector<fs::path> folders;
+  std::vector<fs::path> links;  // to folders
 };
+
+absl::Status Stopped() { return absl::CancelledError("the search for storms was interrupted"); }
 
 absl::StatusOr<Folder> List(const fs::path& path, FolderWalk& walk) {
   const base::SlowCall call(path.string());
@@ -162,6 +168,7 @@ absl::StatusOr<Folder> List(const fs::path& path, FolderWalk& walk) {
   std::error_code error;
   fs::directory_iterator entries(path, error);
   for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
+    if (walk.search.stop.stop_requested()) return Stopped();
     if (++walk.entries > kMostEntries || std::chrono::steady_clock::now() > walk.end) {
       return absl::ResourceExhaustedError(absl::StrCat(
           path.string(), ": the search stopped after ", walk.entries - 1,
@@ -172,17 +179,19 @@ absl::StatusOr<Folder> List(const fs::path& path, FolderWalk& walk) {
     std::error_code ignored;
     const bool is_folder = fs::is_directory(entry, ignored);
     if (!is_folder && !fs::is_regular_file(entry, ignored)) continue;
-    if (entries->is_symlink(ignored)) {
+    const bool is_link = entries->is_symlink(ignored);
+    if (is_link) {
       if (const absl::Status allowed = CheckLink(walk.links, entry); !allowed.ok()) {
         LeaveOut(walk, entry, allowed);
         continue;
       }
     }
-    (is_folder ? folder.folders : folder.files).push_back(entry);
+    (!is_folder ? folder.files : is_link ? folder.links : folder.folders).push_back(entry);
   }
   if (error) return CannotBeListed(path.string(), error);
   std::ranges::sort(folder.files);
   std::ranges::sort(folder.folders);
+  std::ranges::sort(folder.links);
   return folder;
 }
 
@@ -362,8 +371,10 @@ absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
   }
   if (!files.empty()) std::ranges::move(GroupRuns(path, std::move(files)), back_inserter(storms));
   if (depth == kDeepestFolder) return absl::OkStatus();
+  for (const fs::path& link : folder.links) walk.links_left.emplace_back(link, depth + 1);
   for (const fs::path& below : folder.folders) {
     const absl::Status status = SearchFolder(below, depth + 1, walk, storms);
+    if (walk.search.stop.stop_requested()) return Stopped();
     if (!status.ok()) LeaveOut(walk, below, status);
   }
   return absl::OkStatus();
@@ -438,6 +449,12 @@ absl::Status Search(const std::string& path, FolderWalk walk, std::vector<NamedS
   }
   const std::size_t before = storms.size();
   THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, 0, walk, storms));
+  // Following a link can find further links.
+  for (std::size_t i = 0; i < walk.links_left.size() && !search.stop.stop_requested(); ++i) {
+    const auto [link, depth] = walk.links_left[i];
+    const absl::Status status = SearchFolder(link, depth, walk, storms);
+    if (!status.ok()) LeaveOut(walk, link, status);
+  }
   if (storms.size() > before || search.may_find_nothing) return absl::OkStatus();
   if (!walk.first_failure.ok()) {
     return base::Annotate(walk.first_failure,
@@ -468,20 +485,49 @@ const std::string& ProjectionAt(const storm_files::StormFile& file, std::size_t 
   return file.projections.empty() ? file.projection : file.projections[record];
 }
 
-// Drops files that were found before under another path or through a link.
-void DropRepeated(std::vector<NamedStorm>& storms) {
-  std::set<std::string> seen;
-  for (NamedStorm& storm : storms) {
-    std::erase_if(storm.files, [&seen](const storm_files::StormFile& file) {
-      std::error_code error;
-      const fs::path canonical = fs::canonical(file.path, error);
-      std::string key = error ? file.path : canonical.string();
-      // Two times may share their first file, if it holds both. So may two storms.
-      if (!file.parts.empty()) absl::StrAppend(&key, " ", absl::FormatTime(file.times.front()));
-      absl::StrAppend(&key, " ", file.first_record);
-      return !seen.insert(key).second;
-    });
+// The place of a file that was found.
+struct FoundPlace {
+  std::string key;  // equal for the same storm of the same file
+  bool is_linked;   // whether a link below the searched path leads to it
+};
+
+// `searched` is the path below which the file was found, and `root` the same without links.
+FoundPlace PlaceOf(const storm_files::StormFile& file, const fs::path& searched,
+                   const fs::path& root) {
+  std::error_code error;
+  fs::path canonical = fs::canonical(file.path, error);
+  if (error) canonical = file.path;
+  const fs::path direct =
+      (root / fs::path(file.path).lexically_relative(searched)).lexically_normal();
+  FoundPlace place{canonical.string(), direct != canonical && direct != canonical / ""};
+  // Two times may share their first file, if it holds both. So may two storms.
+  if (!file.parts.empty()) absl::StrAppend(&place.key, " ", absl::FormatTime(file.times.front()));
+  absl::StrAppend(&place.key, " ", file.first_record);
+  return place;
+}
+
+// Drops files that were found before under another path, and links to files that were found
+// themselves. If the link stayed instead, its owner could later exchange the storm for another.
+void DropRepeated(const std::vector<std::string>& paths, std::vector<NamedStorm>& storms) {
+  std::vector<fs::path> roots;
+  for (const std::string& path : paths) {
+    std::error_code error;
+    const fs::path root = fs::weakly_canonical(path, error);
+    roots.push_back(error ? fs::path(path) : root);
   }
+  std::set<std::string> seen;
+  bool any_linked = false;
+  const auto drop = [&](bool linked) {
+    for (NamedStorm& storm : storms) {
+      std::erase_if(storm.files, [&](const storm_files::StormFile& file) {
+        const FoundPlace place = PlaceOf(file, paths[storm.path], roots[storm.path]);
+        any_linked |= place.is_linked;
+        return place.is_linked == linked && !seen.insert(place.key).second;
+      });
+    }
+  };
+  drop(false);
+  if (any_linked) drop(true);
   std::erase_if(storms, [](const NamedStorm& storm) { return storm.files.empty(); });
 }
 
@@ -701,7 +747,8 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
     }
   }
   StormInfo& info = storm.info;
-  info.id = IdFrom(name);
+  storm.stem = IdFrom(name);
+  info.id = storm.stem;
   for (const auto& [time, source] : sources) {
     const storm_files::StormFile& file = files[source.file];
     info.times.push_back(
@@ -785,9 +832,10 @@ std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(
 
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const storm_files::StormFormats& formats,
-                                                        const LinkPolicy& links) {
+                                                        const LinkPolicy& links,
+                                                        const std::stop_token& stop) {
   const auto describe = [&](const std::vector<std::string>& files) {
-    return DescribeInBatches(files, formats, [] { return true; });
+    return DescribeInBatches(files, formats, [&stop] { return !stop.stop_requested(); });
   };
   const auto together = [&](const std::vector<std::string>& files) {
     return formats.DescribeTogether(files);
@@ -797,7 +845,8 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
                                    .on_unlisted = {},
                                    .on_folder = {},
                                    .examples = formats.Examples(),
-                                   .links = links});
+                                   .links = links,
+                                   .stop = stop});
   if (storms.ok()) LogNotes(*storms);
   return storms;
 }
@@ -813,7 +862,9 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
         named.push_back({storm.name, storm.files});
       }
     } else {
-      THUNDERHEAD_RETURN_IF_ERROR(Search(paths[path], {.search = search, .links = links}, named));
+      const absl::Status searched = Search(paths[path], {.search = search, .links = links}, named);
+      if (search.stop.stop_requested()) return Stopped();
+      THUNDERHEAD_RETURN_IF_ERROR(searched);
     }
     for (std::size_t i = before; i < named.size(); ++i) named[i].path = path;
     if (search.found == nullptr) continue;
@@ -827,7 +878,7 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
     return absl::InvalidArgumentError(absl::StrCat(
         "no storm to show; name a file or folder of model output (", search.examples, ")"));
   }
-  DropRepeated(named);
+  DropRepeated(paths, named);
   std::vector<CataloguedStorm> storms;
   std::set<std::string> ids;
   for (NamedStorm& storm : named) {
@@ -837,17 +888,13 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
     storms.push_back(AssembleStorm(storm.name, std::move(storm.files)));
     StormInfo& info = storms.back().info;
     if (info.files.size() == 1) info.path = info.files.front() + in_file;
-    std::string& id = storms.back().info.id;
-    const std::string stem = id;
-    for (int copy = 2; !ids.insert(id).second; ++copy) id = absl::StrCat(stem, "-", copy);
+    storms.back().path = storm.path;
+    const std::string& stem = storms.back().stem;
+    for (int copy = 2; !ids.insert(info.id).second; ++copy) info.id = absl::StrCat(stem, "-", copy);
   }
-  for (std::size_t first = 0, last = 0; first < storms.size(); first = last) {
-    while (last < storms.size() && named[last].path == named[first].path) ++last;
-    const auto begin = storms.begin();
-    std::ranges::sort(begin + static_cast<std::ptrdiff_t>(first),
-                      begin + static_cast<std::ptrdiff_t>(last), {},
-                      [](const CataloguedStorm& storm) { return storm.info.id; });
-  }
+  std::ranges::sort(storms, {}, [](const CataloguedStorm& storm) {
+    return std::pair(storm.path, storm.info.id);
+  });
   return storms;
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -25,6 +26,10 @@ struct TimeSource {
 
 struct CataloguedStorm {
   StormInfo info;
+  // The id that the storm's name asks for. If storms have the same, a number makes their ids
+  // different.
+  std::string stem;
+  std::size_t path = 0;  // index of the searched path
   std::vector<storm_files::StormFile> files;
   std::vector<TimeSource> sources;  // one for each of info.times
   std::vector<std::string> notes;   // messages for the log about what is odd in the files
@@ -77,6 +82,8 @@ struct StormSearch {
   // caller owns the map, and each search updates it. It may be null.
   FoundByPath* found = nullptr;
   LinkPolicy links = {};
+  // A request to stop ends the search between two files, with CANCELLED.
+  std::stop_token stop = {};
 };
 
 // Returns PERMISSION_DENIED for a folder that exists but cannot be listed.
@@ -102,10 +109,11 @@ std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(
     const std::function<bool()>& before);
 
 // Returns the storms under `paths`, in the order of the paths and by id within a path. The rules
-// and errors are those of StormStore::Open.
+// and errors are those of StormStore::Open. Returns CANCELLED if `stop` is requested.
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const storm_files::StormFormats& formats,
-                                                        const LinkPolicy& links = {});
+                                                        const LinkPolicy& links = {},
+                                                        const std::stop_token& stop = {});
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
                                                         const StormSearch& search);
 

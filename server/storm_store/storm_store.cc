@@ -98,7 +98,7 @@ absl::StatusOr<std::unique_ptr<StormStore>> StormStore::Open(const std::vector<s
                                                              const StormStoreOptions& options) {
   if (options.live.has_value()) return OpenLive(paths, options);
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> storms,
-                               FindStorms(paths, options.formats, options.links));
+                               FindStorms(paths, options.formats, options.links, options.stop));
   return CachedStormStore::Owned(std::make_shared<CachedStormStore>(std::move(storms), options));
 }
 

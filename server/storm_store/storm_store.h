@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -132,6 +133,11 @@ struct LiveCatalogueOptions {
   // The longest time for which Open waits for the first search. If the search takes longer, it
   // continues in the background, and the storms appear at its end.
   std::chrono::milliseconds first_search{std::chrono::minutes(10)};
+  // The ids that an earlier store gave to its storms, as `keep_ids` got them. May be empty.
+  std::string ids = {};
+  // A function that keeps the storms' ids for the next store. It is called on the searching thread
+  // when they have changed. It may be empty.
+  std::function<void(const std::string& ids)> keep_ids = {};
 };
 
 // Rules for the symbolic links that a search for storms follows. Links into the searched paths are
@@ -158,6 +164,8 @@ struct StormStoreOptions {
   std::chrono::milliseconds read_deadline{60'000};
   storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
   LinkPolicy links = {};
+  // A request to stop ends Open with CANCELLED, unless the store follows changes.
+  std::stop_token stop = {};
   // Coasts and borders for storms with a place on Earth, or null.
   std::shared_ptr<BorderData> borders;
   // If present, the store follows changes in the folders, and a folder without storms is not an

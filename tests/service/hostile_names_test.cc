@@ -63,10 +63,11 @@ class HostileNamesTest : public ::testing::Test {
   HostileNamesTest() { fs::create_directories(data_ / "sub"); }
 
   // Writes a storm, with the title if it is not empty.
+  // Both attributes that a client is told are the title.
   static void WriteStorm(const fs::path& path, const std::string& title = "") {
     SyntheticCf storm =
         ExtinctionFile(6, 6, 6, 500.0, 500.0, 500.0, [](auto, auto, auto) { return 1e-3; });
-    if (!title.empty()) storm.attributes["title"] = title;
+    if (!title.empty()) storm.attributes["title"] = storm.attributes["source"] = title;
     WriteCf(storm, path.string());
   }
 
@@ -114,10 +115,12 @@ TEST_F(HostileNamesTest, WhatClientsAreToldIsPrintable) {
              "Gewitter \xfc"
              "ber M\xfcnchen");
   WriteStorm(data_ / "\xe2\x80\xaegpj.nc", "a\x1b[31m\nb");
+  WriteStorm(data_ / "\u200fpng.\u061c1\U000e0041.nc", "a\u200eb\u3164");
   WriteStorm(data_ / std::string(240, 'x'), std::string(600, '\xc3'));
+  WriteStorm(data_ / "long.nc", std::string(100'000, 'x'));
   Serve();
   const v1::ListStormsResponse storms = Storms();
-  EXPECT_EQ(storms.storms_size(), 4);
+  EXPECT_EQ(storms.storms_size(), 6);
   std::vector<std::string> unprintable;
   FindUnprintable(storms, &unprintable);
   for (const v1::StormSummary& storm : storms.storms()) {

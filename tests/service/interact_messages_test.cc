@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "gtest/gtest.h"
+#include "service/engine/frame_messages.h"
 
 namespace thunderhead::service {
 namespace {
@@ -45,6 +46,16 @@ TEST(InteractMessagesTest, FramesOfAllViewersAreTheSameBytes) {
     EXPECT_EQ(parsed.jpeg(), frame->jpeg);
   }
   EXPECT_TRUE(Parsed(FrameResponse(frame, /*own_view=*/true)).frame().own_view());
+}
+
+// Errors name files, and a file's name may have any bytes.
+TEST(InteractMessagesTest, ErrorsArePrintable) {
+  const std::string hostile = "/data/M\xfcnchen\u200f.nc: damaged";
+  v1::Problem problem;
+  ToMessage(delivery::Problem{.message = hostile}, problem);
+  EXPECT_EQ(problem.message(), "/data/M?nchen?.nc: damaged");
+  EXPECT_EQ(EndResponse(absl::DataLossError(hostile)).end().message(),
+            "/data/M?nchen?.nc: damaged");
 }
 
 TEST(InteractMessagesTest, ScenesOfAllViewersAreTheSameBytes) {

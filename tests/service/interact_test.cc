@@ -1349,11 +1349,13 @@ TEST(InteractTest, NamesArePlainText) {
     return presence.people_size() == 1 && presence.people(0).name() == std::string(38, 'a');
   }));
   v1::InteractRequest rename;
-  // Names lose right-to-left overrides and zero-width spaces, which could make one name look like
-  // another.
+  // Names lose characters that change the direction of text, and invisible ones, which could make
+  // one name look like another (base::Printable).
   for (const auto& [name, shown] :
        {std::pair("Zoë", "Zoë"),
         {"A\u202Enna\u200B", "A nna"},
+        {"A\u200Fn\u061Cna\u200D", "A n na"},
+        {"A\U000E0042nna\u3164", "A nna"},
         {"\u0646\u200C\u0627 \U0001F329", "\u0646\u200C\u0627 \U0001F329"}}) {
     rename.mutable_set_name()->set_name(name);
     person.Send(rename);

@@ -200,6 +200,17 @@ class RenderJobTest : public ::testing::Test {
   const TemporaryFolder folder_;
 };
 
+TEST_F(RenderJobTest, TextsOfClientsArePrintable) {
+  FakeService service(Options());
+  Jobs jobs(service.server());
+  v1::RenderJob job;
+  v1::RenderJobPicture picture = Picture(0, "seen\u200ffrom\u061cbelow");
+  ASSERT_TRUE(jobs.Create({picture}, &job, "night\u202e\nrun").ok());
+  const v1::GetRenderJobResponse got = jobs.Get(job.id());
+  EXPECT_EQ(got.job().label(), "night??run");
+  EXPECT_EQ(got.pictures(0).name(), "seen?from?below");
+}
+
 TEST_F(RenderJobTest, DrawsEveryPictureOnceAndKeepsItUntilItIsFetched) {
   FakeService service(Options());
   Jobs jobs(service.server());

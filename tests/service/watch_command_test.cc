@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
 #include "absl/time/clock.h"
 #include "absl/time/time.h"
 #include "gmock/gmock.h"
@@ -125,6 +126,20 @@ class WatchCommand : public ::testing::Test {
   const std::string out_ = folder_.File("stdout");
   const std::string err_ = folder_.File("stderr");
 };
+
+// A stop takes effect between two files. Each of these files needs a reader.
+TEST_F(WatchCommand, ASignalEndsTheCheckOfManyOddFiles) {
+  constexpr std::size_t kFiles = 1000;
+  for (std::size_t i = 0; i < kFiles; ++i) {
+    std::ofstream(fs::path(inbox_) / absl::StrCat("odd", i)) << "CDF\x01 cut short";
+  }
+  RunningProgram program(PROGRAM, Arguments({"--progress", "lines"}), out_, err_);
+  Await([this] { return Lines() > 2; }, program);
+  program.Signal(SIGTERM);
+  EXPECT_EQ(program.Wait().code, 75);
+  EXPECT_LT(Lines(), kFiles) << Contents(err_);
+  EXPECT_THAT(Contents(err_), HasSubstr("interrupted"));
+}
 
 // Files are written slowly and in pieces. One is truncated and one is written twice, and the
 // program is killed repeatedly meanwhile.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "base/utf8.h"
 #include "service/messages/camera_messages.h"
 #include "service/messages/enum_tables.h"
 #include "service/messages/scene_messages.h"
@@ -72,7 +73,7 @@ void ToMessage(const delivery::Modelled& modelled, v1::Modelled& message) {
   for (const scene::NotShown& not_shown : content.not_shown) {
     v1::NotShown& entry = *message.add_not_shown();
     entry.set_code(MessageOf(kNotShownCodes, not_shown.code));
-    entry.set_message(not_shown.message);
+    entry.set_message(base::Printable(not_shown.message));
   }
 }
 
@@ -111,7 +112,7 @@ void ToMessage(const accuracy::AccuracyReport& report, v1::AccuracyReport& messa
   }
   if (report.unmet.has_value()) {
     message.mutable_unmet()->set_code(MessageOf(kUnmetCodes, report.unmet->code));
-    message.mutable_unmet()->set_message(report.unmet->message);
+    message.mutable_unmet()->set_message(base::Printable(report.unmet->message));
   }
 }
 
@@ -139,7 +140,7 @@ void ToMessage(const delivery::EncodedFrame& frame, v1::Frame& message) {
 
 void ToMessage(const delivery::Problem& problem, v1::Problem& message) {
   message.set_scene_revision(problem.scene_revision);
-  message.set_message(problem.message);
+  message.set_message(base::Printable(problem.message));
   message.set_code(MessageOf(kProblemCodes, problem.code));
 }
 

@@ -127,7 +127,7 @@ v1::InteractResponse EndResponse(const absl::Status& why) {
   v1::InteractResponse response;
   v1::End& end = *response.mutable_end();
   end.set_reason(EndReason(why));
-  end.set_message(std::string(why.message()));
+  end.set_message(rpc_port::SendableMessage(why));
   if (end.reason() == v1::End::REASON_SERVER_STOPS) {
     const auto after = base::DetailsOf(why).retry_after.value_or(kComeBackAfter);
     end.set_retry_after_ms(static_cast<std::uint32_t>(after.count()));

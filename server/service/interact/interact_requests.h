@@ -21,8 +21,9 @@ absl::StatusOr<session::Ray> RayOf(const v1::Ray& message, const std::string& pa
 // INVALID_ARGUMENT, which names the field `path`, for a key that no server can have issued.
 absl::StatusOr<std::string> ParticipantKeyOf(const std::string& key, const std::string& path);
 
-// Returns the name as others see it: without control characters and surrounding white space, and
-// cut to 40 characters. Returns INVALID_ARGUMENT, which names the field `path`, if it is not UTF-8.
+// Returns the name as others see it: without characters that are not printable
+// (base::Printable) and surrounding white space, and cut to 40 characters. Returns
+// INVALID_ARGUMENT, which names the field `path`, if it is not UTF-8.
 absl::StatusOr<std::string> NameOf(const std::string& name, const std::string& path);
 
 }  // namespace thunderhead::service

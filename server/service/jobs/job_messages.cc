@@ -9,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/time/time.h"
+#include "base/utf8.h"
 #include "rpc_port/status_table.h"
 #include "service/messages/enum_tables.h"
 #include "service/messages/prepare_scene.h"
@@ -62,8 +63,8 @@ std::optional<ResultPath> ParseResultPath(std::string_view path) {
 
 void ToMessage(const jobs::JobView& job, v1::RenderJob& message) {
   message.set_id(job.id);
-  message.set_label(job.label);
-  message.set_owner(job.owner);
+  message.set_label(base::Printable(job.label));
+  message.set_owner(base::Printable(job.owner));
   message.set_state(!job.ended_at.has_value() ? v1::RenderJob::STATE_RUNNING
                     : job.cancelled           ? v1::RenderJob::STATE_CANCELLED
                                               : v1::RenderJob::STATE_DONE);
@@ -84,7 +85,7 @@ void ToMessage(const jobs::JobView& job, v1::RenderJob& message) {
 
 void ToMessage(const jobs::PictureView& picture, v1::RenderJobPictureState& message) {
   message.set_index(static_cast<std::uint32_t>(picture.place));
-  message.set_name(picture.name);
+  message.set_name(base::Printable(picture.name));
   message.set_state(MessageOf(kStates, picture.state));
   message.set_bytes(picture.bytes);
   message.set_sha256(picture.sha256);

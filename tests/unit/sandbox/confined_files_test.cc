@@ -15,11 +15,13 @@
 #include <filesystem>
 #include <fstream>
 #include <future>
+#include <stop_token>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/stopwatch.h"
+#include "base/utf8.h"
 #include "sandbox/messages.h"
 #include "storm_store/storm_catalogue.h"
 #include "storm_store/storm_store.h"
@@ -358,6 +360,39 @@ TEST_F(ConfinedFilesTest, AReaderThatIsSilentIsEnded) {
     EXPECT_EQ(file->reader->Read(0, std::nullopt, {}).status().message(), status.message());
   }
   EXPECT_EQ(Failures("time"), before + 2);
+}
+
+TEST_F(ConfinedFilesTest, ARequestToStopEndsTheReader) {
+  std::stop_source stop;
+  ConfinedOptions options;
+  options.limits = {.memory_bytes = kMemory, .time = kTime, .stop = stop.get_token()};
+  options.time = &time_;  // stands still, so that no limit of time ends the reader
+  options.program = "/proc/self/exe";
+  const auto files = std::make_shared<ConfinedFiles>(options);
+  const auto file = files->Describe(Bad("hang-reading"));
+  ASSERT_TRUE(file.ok()) << file.status();
+  auto reading = std::async(std::launch::async,
+                            [&] { return file->reader->Read(0, std::nullopt, {}).status(); });
+  EXPECT_EQ(reading.wait_for(milliseconds(300)), std::future_status::timeout);
+  stop.request_stop();
+  ASSERT_EQ(reading.wait_for(std::chrono::seconds(30)), std::future_status::ready);
+  EXPECT_EQ(reading.get().code(), absl::StatusCode::kCancelled);
+  EXPECT_EQ(files->Describe(Bad("sound")).status().code(), absl::StatusCode::kCancelled);
+}
+
+TEST_F(ConfinedFilesTest, ALongTextCostsOnlyItsEnd) {
+  const std::string path = folder_.File("cloud.nc");
+  testing::SyntheticCf storm =
+      testing::ExtinctionFile(5, 4, 3, 100.0, 100.0, 50.0, [](auto, auto, auto) { return 1e-3; });
+  storm.attributes["source"] = std::string(100'000, 'x');
+  testing::WriteCf(storm, path);
+  const auto file = Files()->Describe(path);
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_EQ(file->about.substr(0, 100), std::string(100, 'x'));
+  EXPECT_LE(file->about.size(), base::kMaxTextBytes);
+  const auto together = Files()->DescribeEach({path, Bad("wordy")});
+  EXPECT_TRUE(together[0].ok()) << together[0].status();
+  EXPECT_EQ(together[1].status().code(), absl::StatusCode::kInvalidArgument);
 }
 
 TEST_F(ConfinedFilesTest, AReaderThatSaysNoMoreIsNotWaitedFor) {

@@ -89,6 +89,7 @@ absl::Status MisbehaveWhenDescribed(const std::string& name) {
   if (name == "everything")
     return absl::InvalidArgumentError(absl::StrCat("[", TryEverything(), "]"));
   if (name == "rude") return absl::InvalidArgumentError("\x1b[2Jforged\nline \xff");
+  if (name == "wordy") return absl::InvalidArgumentError(std::string(100'000, 'x'));
   return absl::OkStatus();
 }
 

@@ -121,6 +121,33 @@ TEST_F(FolderLinks, LinksWithinTheDataFoldersAreFollowed) {
   EXPECT_THAT(left_out_, IsEmpty());
 }
 
+// If the link stayed and the file were dropped, the link's owner could exchange the storm.
+TEST_F(FolderLinks, AFileIsFoundWhereItIsAndNotThroughALinkThatComesBefore) {
+  fs::create_directories(data_ / "a");
+  fs::create_directories(data_ / "z");
+  Write(data_ / "z" / "run.nc", "QSNOW");
+  fs::create_symlink(data_ / "z" / "run.nc", data_ / "a" / "run.nc");
+  fs::create_directory_symlink(data_ / "z", data_ / "b");
+  for (const std::string& data : {data_.string(), data_.string() + "/"}) {
+    const auto storms = FindStorms({data}, storm_files::StormFormats::BuiltIn());
+    ASSERT_TRUE(storms.ok()) << storms.status();
+    ASSERT_EQ(storms->size(), 2U);
+    EXPECT_EQ(storms->back().info.id, "run");
+    EXPECT_EQ(fs::path(storms->back().info.files.front()), data_ / "z" / "run.nc");
+  }
+  // The searched path itself may be a link, and a file may be found through a link only.
+  fs::create_directory_symlink(data_, folder_.Path() / "link");
+  const auto linked =
+      FindStorms({(folder_.Path() / "link").string()}, storm_files::StormFormats::BuiltIn());
+  ASSERT_TRUE(linked.ok()) << linked.status();
+  ASSERT_EQ(linked->size(), 2U);
+  EXPECT_EQ(fs::path(linked->back().info.files.front()), folder_.Path() / "link" / "z" / "run.nc");
+  fs::rename(data_ / "z", data_ / ".z");
+  fs::remove(data_ / "a" / "run.nc");
+  fs::create_symlink(data_ / ".z" / "run.nc", data_ / "a" / "run.nc");
+  EXPECT_THAT(Find(), UnorderedElementsAre("own", "run"));
+}
+
 TEST_F(FolderLinks, UntrustedFoldersHaveNone) {
   fs::create_symlink(outside_ / "secret.nc", data_ / "sub" / "linked.nc");
   fs::create_symlink(data_ / "own.nc", data_ / "sub" / "same.nc");

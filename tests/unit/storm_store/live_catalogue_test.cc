@@ -15,6 +15,7 @@
 #include "base/error_details.h"
 #include "netcdf/netcdf_lock.h"
 #include "storm_store/catalogue_scan.h"
+#include "storm_store/storm_ids.h"
 #include "storm_store/storm_store.h"
 #include "tests/support/captured_log.h"
 #include "tests/support/manual_time.h"
@@ -362,6 +363,86 @@ TEST_F(LiveFolder, TwelveFilesCopiedOneByOneAreOneSeriesThatGrows) {
   ASSERT_EQ(told.size(), 12U);
   EXPECT_EQ(told[0], std::pair(std::string("wrfout_d01_00-00-00"), std::size_t{1}));
   EXPECT_EQ(told[11], std::pair(std::string("series"), std::size_t{12}));
+}
+
+// A newcomer whose folder is before that of the known storm must not get its id.
+TEST_F(LiveFolder, AKnownStormKeepsItsIdWhenAnotherFileHasItsName) {
+  for (const char* folder : {"/a", "/b", "/z"}) fs::create_directory(data_ + folder);
+  PutOld(data_ + "/z/run.nc", WrfBytes({0}));
+  const auto store = Open(milliseconds(100));
+  ASSERT_EQ(TimesOf(*store), 1U);
+  for (const char* folder : {"/a", "/b"}) {
+    const std::size_t before = TimesOf(*store);
+    MoveInto(data_ + folder + "/run.nc", WrfBytes({5}));
+    ASSERT_TRUE(Eventually([&] { return TimesOf(*store) == before + 1; }));
+    ASSERT_NE(store->Find("run"), nullptr);
+    EXPECT_THAT(store->Find("run")->files, ElementsAre(data_ + "/z/run.nc"));
+  }
+  std::vector<std::string> ids;
+  for (const StormInfoPtr& storm : store->Storms()) ids.push_back(storm->id);
+  EXPECT_THAT(ids, ElementsAre("run", "run-2", "run-3"));
+  EXPECT_THAT(store->Find("run-2")->files, ElementsAre(data_ + "/a/run.nc"));
+}
+
+// The id of a storm that became a series stays its own, although the series has another id.
+TEST_F(LiveFolder, ANewStormDoesNotGetAnIdThatAnotherStormHad) {
+  for (const char* folder : {"/a", "/z"}) fs::create_directory(data_ + folder);
+  PutOld(data_ + "/z/run.nc", WrfBytes({0}));
+  const auto store = Open(milliseconds(100));
+  MoveInto(data_ + "/z/more.nc", WrfBytes({1}));
+  ASSERT_TRUE(Eventually([&] { return store->Find("z") != nullptr; }));
+  MoveInto(data_ + "/a/run.nc", WrfBytes({5}));
+  ASSERT_TRUE(Eventually([&] { return store->Storms().size() == 2; }));
+  EXPECT_EQ(store->Find("run"), nullptr);
+  fs::remove(data_ + "/z/more.nc");
+  ASSERT_TRUE(Eventually([&] { return store->Find("run") != nullptr; }));
+  EXPECT_THAT(store->Find("run")->files, ElementsAre(data_ + "/z/run.nc"));
+}
+
+// The server restarts, and meanwhile a file of the same name was put before the known one.
+TEST_F(LiveFolder, AStormKeepsItsIdAcrossARestart) {
+  for (const char* folder : {"/a", "/z"}) fs::create_directory(data_ + folder);
+  PutOld(data_ + "/z/run.nc", WrfBytes({0}));
+  const auto files_of_run = [this](std::string& ids) {
+    StormStoreOptions options;
+    options.read_ahead = 0;
+    options.live = LiveCatalogueOptions{
+        .ids = ids, .keep_ids = [&ids](const std::string& kept) { ids = kept; }};
+    options.time = &time_;
+    const auto store = StormStore::Open({data_}, options);
+    EXPECT_TRUE(store.ok()) << store.status();
+    return (*store)->Find("run")->files;
+  };
+  std::string kept;
+  EXPECT_THAT(files_of_run(kept), ElementsAre(data_ + "/z/run.nc"));
+  PutOld(data_ + "/a/run.nc", WrfBytes({5}));
+  EXPECT_THAT(files_of_run(kept), ElementsAre(data_ + "/z/run.nc"));
+  // The storm is away for one run of the server.
+  fs::rename(data_ + "/z", data_ + "/.z");
+  fs::rename(data_ + "/a/run.nc", data_ + "/a/other.nc");
+  PutOld(data_ + "/run.nc", WrfBytes({7}));
+  std::string without;
+  EXPECT_THAT(files_of_run(without), ElementsAre(data_ + "/run.nc"));
+  EXPECT_THAT(files_of_run(kept), ElementsAre(data_ + "/run.nc")) << "the id is free";
+  fs::rename(data_ + "/.z", data_ + "/z");
+  EXPECT_THAT(files_of_run(kept), ElementsAre(data_ + "/run.nc")) << "it belongs to this one now";
+}
+
+TEST(StormIds, TextThatIsCutShortOrForgedGivesNoWrongId) {
+  CataloguedStorm storm;
+  storm.stem = "run";
+  storm.info.files = {"/d/a\nb", "/d/c"};
+  StormIds ids;
+  ids.Set(storm, "run-2");
+  const std::string text = ids.ToText();
+  EXPECT_EQ(StormIds(text), ids);
+  EXPECT_EQ(StormIds(text).Of(storm), "run-2");
+  EXPECT_EQ(StormIds(text.substr(0, 9)).Of(storm), std::nullopt);
+  for (const char* id : {"other", "run-", "run-x", "runs"}) {
+    StormIds forged;
+    forged.Set(storm, id);
+    EXPECT_EQ(StormIds(forged.ToText()).Of(storm), std::nullopt) << id;
+  }
 }
 
 TEST_F(LiveFolder, ANewSubfolderIsWatchedToo) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <stop_token>
 
 #include "tests/support/synthetic_cf.h"
 #include "tests/support/synthetic_wrf.h"
@@ -155,6 +156,31 @@ TEST_F(StormCatalogue, LooksIntoSubfoldersAndLeavesOutWhatIsNoStorm) {
   std::ofstream(storms_ / "README.md") << "about these storms";
   std::ofstream(storms_ / "broken.nc") << "CDF\x01";
   EXPECT_THAT(Ids(Find()), ElementsAre("one", "one-2", "two"));
+}
+
+TEST_F(StormCatalogue, ARequestToStopEndsTheSearchBetweenFiles) {
+  for (const char* name : {"a/one", "b/two", "c/three"}) Write(name, {"00"});
+  std::stop_source stop;
+  int opened = 0;
+  const StormSearch search{.describe =
+                               [&](const std::vector<std::string>& paths) {
+                                 opened += static_cast<int>(paths.size());
+                                 if (!paths.empty()) stop.request_stop();
+                                 return DescribeInBatches(paths,
+                                                          storm_files::StormFormats::BuiltIn(),
+                                                          [] { return true; });
+                               },
+                           .describe_together = {},
+                           .on_unlisted = {},
+                           .on_folder = {},
+                           .examples = {},
+                           .stop = stop.get_token()};
+  const auto found = FindStorms({storms_.string()}, search);
+  EXPECT_EQ(found.status().code(), absl::StatusCode::kCancelled);
+  EXPECT_EQ(opened, 1);
+  const auto at_once =
+      FindStorms({storms_.string()}, storm_files::StormFormats::BuiltIn(), {}, stop.get_token());
+  EXPECT_EQ(at_once.status().code(), absl::StatusCode::kCancelled);
 }
 
 TEST_F(StormCatalogue, TakesAFileGivenTwiceOnce) {
