@@ -304,9 +304,10 @@ TEST_F(CommandLineTest, FailedRenderNamesTheCauseAndLeavesNoFile) {
 }
 
 TEST_F(CommandLineTest, RenderWaitsForTracedLightAndPrintsTheErrorReached) {
-  // This error needs a tenth of the paths that `--quality true` alone traces. All of them would
+  // This error needs a tenth of the paths that `--quality accurate` alone traces. All of them would
   // take minutes.
-  const Outcome outcome = Run(render_ + " --time 1 --size 48x27 --quality true --max-error 0.09");
+  const Outcome outcome =
+      Run(render_ + " --time 1 --size 48x27 --quality accurate --max-error 0.09");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out,
@@ -320,6 +321,7 @@ TEST_F(CommandLineTest, HelpSaysWhatQualityMeans) {
   const Outcome outcome = Run("render --help");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("fast (half the samples, no detail)"));
+  EXPECT_THAT(outcome.out, HasSubstr("{fast,balanced,accurate}"));
   EXPECT_THAT(outcome.out, HasSubstr("waits for the path-traced"));
 }
 
@@ -338,12 +340,29 @@ TEST_F(CommandLineTest, QualityFastAndBalancedDoNotWait) {
   EXPECT_EQ(rendering("balanced").traced_light(), v1::TRACED_LIGHT_AT_REST);
 }
 
+TEST_F(CommandLineTest, TheEarlierNameOfAccurateIsStillAccepted) {
+  const auto traced_light = [&](const std::string& flags) {
+    // This error needs few paths.
+    const Outcome outcome = Run(render_ + " --time 1 --size 16x9 --json --max-error 0.3 " + flags);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    v1::RenderImageResponse said;
+    EXPECT_TRUE(google::protobuf::util::JsonStringToMessage(outcome.out, &said).ok());
+    return said.scene().rendering().light_volume().traced_light();
+  };
+  EXPECT_EQ(traced_light("--quality balanced"), v1::TRACED_LIGHT_AT_REST);
+  EXPECT_EQ(traced_light("--quality accurate"), v1::TRACED_LIGHT_AWAITED);
+  EXPECT_EQ(traced_light("--quality true"), v1::TRACED_LIGHT_AWAITED);
+  EXPECT_EQ(traced_light("--preset true"), v1::TRACED_LIGHT_AWAITED);
+  EXPECT_EQ(traced_light("--scene " + Scene(R"({"rendering": {"preset": "PRESET_TRUE"}})")),
+            v1::TRACED_LIGHT_AWAITED);
+}
+
 TEST_F(CommandLineTest, AnInterruptedRenderLeavesNoFile) {
   Terminal terminal;
   const std::string out = folder_.File("out");
   RunningProgram program(PROGRAM,
                          {"render", kSample, "--device", "software", "--error-seconds", "0", "-o",
-                          picture_, "--time", "1", "--size", "48x27", "--quality", "true"},
+                          picture_, "--time", "1", "--size", "48x27", "--quality", "accurate"},
                          out, terminal.Name());
   // The progress bar reports the paths traced, because the command waits for them.
   WaitFor([&] {
