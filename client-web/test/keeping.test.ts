@@ -16,7 +16,13 @@ import { crc32, pngText, withPngText } from "../src/core/png_text";
 import { withDisplay, withField, withSun, withSunClock, withTime } from "../src/core/scene";
 import { sceneOfFile, sceneToText, withScene } from "../src/core/scene_file";
 import { RenderJobPictureState_State, RenderJobService } from "../src/gen/thunderhead/v1/job_pb";
-import { Hydrometeor, Preset, type Scene, SceneSchema, ToneMap } from "../src/gen/thunderhead/v1/scene_pb";
+import {
+  Hydrometeor,
+  Preset,
+  type Scene,
+  SceneSchema,
+  ToneMap,
+} from "../src/gen/thunderhead/v1/scene_pb";
 import { StormDescriptionSchema, StormTimeSchema } from "../src/gen/thunderhead/v1/storm_pb";
 import { type DrawnPicture, RenderCalls } from "../src/transport/render_calls";
 

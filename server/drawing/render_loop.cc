@@ -149,8 +149,8 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, storm_store::StormStore
       encoder_(std::make_unique<FrameEncoder>(
           options.encoder_threads, options.serialize_frame, options_.memory,
           [&wake] { wake.Notify(); }, time_)),
-      tracer_(std::make_unique<TruthTracer>(
-          options.make_truth_source, options.max_traced_sessions, options_.memory,
+      tracer_(std::make_unique<ReferenceTracer>(
+          options.make_reference_source, options.max_traced_sessions, options_.memory,
           [&wake] { wake.Notify(); }, time_)) {}
 
 RenderLoop::~RenderLoop() { Stop(); }

@@ -27,8 +27,8 @@
 #include "drawing/frame_source.h"
 #include "drawing/image_drawer.h"
 #include "drawing/image_queue.h"
-#include "drawing/truth_source.h"
-#include "drawing/truth_tracer.h"
+#include "drawing/reference_source.h"
+#include "drawing/reference_tracer.h"
 #include "session/sessions.h"
 
 namespace thunderhead::drawing {
@@ -51,7 +51,7 @@ struct RenderLoopOptions {
   // per pixel, plus the memory of its storm's fields.
   std::size_t max_traced_sessions = 8;
   std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
-  TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
+  ReferenceSourceFactory make_reference_source = [] { return MakeReferenceSource(); };
   // The memory budget for pictures; null means no limit.
   std::shared_ptr<base::MemoryBudget> memory;
   // The budgets for GL objects. When a budget refuses a reservation, the sources free their caches.
@@ -135,7 +135,7 @@ class RenderLoop {
   ImageQueue images_;
   std::unique_ptr<FieldsReader> reader_;
   std::unique_ptr<FrameEncoder> encoder_;
-  std::unique_ptr<TruthTracer> tracer_;
+  std::unique_ptr<ReferenceTracer> tracer_;
   std::thread thread_;
 };
 

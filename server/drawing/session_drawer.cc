@@ -87,7 +87,7 @@ std::optional<session::Clock::time_point> TryAgainAt(const absl::Status& why,
 }  // namespace
 
 SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields,
-                             MeasuredSource& source, FrameEncoder& encoder, TruthTracer& tracer,
+                             MeasuredSource& source, FrameEncoder& encoder, ReferenceTracer& tracer,
                              LightTracer& light_tracer, SessionLane& lane, const Share& share,
                              const base::TimeSource& time)
     : targets_(targets),
@@ -455,7 +455,7 @@ void SessionDrawer::Do(const Turn& turn, const ShowReference& work) {
 
 absl::Status SessionDrawer::ShowTraced(const Turn& turn, const session::NewestScene& shown) {
   const auto& fields = turn.kept.fields.Fields();
-  const TruthPicture& traced = turn.kept.reference.TakePicture();
+  const ReferencePicture& traced = turn.kept.reference.TakePicture();
   THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame picture, source_.Tone(traced.picture, *shown.scene));
   picture.stages.insert(picture.stages.begin(), {scene::FrameStage::kTrace, traced.trace_ms});
   picture.modelled.technique = scene::Reference::kName;

@@ -36,7 +36,7 @@ class SessionDrawer {
 
   // All references must outlive it.
   SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields, MeasuredSource& source,
-                FrameEncoder& encoder, TruthTracer& tracer, LightTracer& light_tracer,
+                FrameEncoder& encoder, ReferenceTracer& tracer, LightTracer& light_tracer,
                 SessionLane& lane, const Share& share,
                 const base::TimeSource& time = base::SteadyTime());
 
@@ -154,7 +154,7 @@ class SessionDrawer {
   const FieldsAccess fields_;
   MeasuredSource& source_;
   FrameEncoder& encoder_;
-  TruthTracer& tracer_;
+  ReferenceTracer& tracer_;
   LightTracer& light_tracer_;
   SessionLane& lane_;
   const Share share_;

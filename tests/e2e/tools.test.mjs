@@ -290,7 +290,7 @@ test("a view is kept with a name, and comes back", async () => {
 test("how wrong is this picture: it says so over it", async () => {
   await timed("how wrong is this picture, at a glance", () =>
     until("an error in the line over the picture", async () =>
-      /This picture is [\d.]+ % off/.test((await text("truth")).replaceAll("\n", " ")),
+      /This picture is [\d.]+ % off/.test((await text("error-line")).replaceAll("\n", " ")),
     ),
   );
   const source = page.getByTestId("error-source");
@@ -302,7 +302,7 @@ test("how wrong is this picture: it says so over it", async () => {
     await tabTo(page, "accuracy-section");
     await key("Enter");
     await until("the same error in the report", async () => {
-      const [line, report] = [await text("truth"), await text("accuracy-report")];
+      const [line, report] = [await text("error-line"), await text("accuracy-report")];
       return /([\d.]+) %/.exec(line)[1] === /Measured error ([\d.]+) %/.exec(report)?.[1];
     });
   });

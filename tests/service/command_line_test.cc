@@ -470,10 +470,10 @@ TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {
 TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {
   const std::string reference =
       "render " + kSample + " --renderer reference --device software --size 24x16 --spp 4 -o ";
-  const Outcome exr = Run(reference + folder_.File("truth.exr"));
+  const Outcome exr = Run(reference + folder_.File("reference.exr"));
   ASSERT_EQ(exr.code, 0) << exr.err;
   EXPECT_THAT(exr.out, StartsWith("4 samples a pixel"));
-  EXPECT_THAT(Contents(folder_.File("truth.exr")), HasSubstr("stderr.R"));
+  EXPECT_THAT(Contents(folder_.File("reference.exr")), HasSubstr("stderr.R"));
   ASSERT_EQ(Run(reference + picture_).code, 0);
   const auto png = frame::DecodePng(Contents(picture_));
   ASSERT_TRUE(png.ok());
@@ -481,7 +481,7 @@ TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {
   ExpectError(render_ + " --spp 4", 64, "for --renderer reference");
   ExpectError(render_ + " --no-air", 64, "for --renderer reference");
   ExpectError(reference + picture_ + " --max-scatterings -2", 64, "--max-scatterings is -2");
-  ExpectError(reference + "truth.txt", 64, "must end in");
+  ExpectError(reference + "reference.txt", 64, "must end in");
   ExpectError(reference + picture_ + " --seconds -1", 64, "--seconds is -1");
 }
 

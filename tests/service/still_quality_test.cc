@@ -83,13 +83,13 @@ class StillQuality : public ::testing::Test {
     ASSERT_TRUE(fine.ok()) << fine.status();
     drawn_ = new drawing::DisplayFrame(*std::move(drawn));
     fine_ = new frame::FineImage(*std::move(fine));
-    truth_ = new Pixels(LevelsOf(fine_->rgb));
+    exact_ = new Pixels(LevelsOf(fine_->rgb));
   }
 
   static void TearDownTestSuite() {
     delete drawn_;
     delete fine_;
-    delete truth_;
+    delete exact_;
   }
 
   // Returns whether a block is of blue that hardly varies.
@@ -117,7 +117,7 @@ class StillQuality : public ::testing::Test {
         if (!IsSky(x, y)) continue;
         for (int channel = 0; channel < 3; ++channel) {
           const double difference = BlockMean(pixels, fine_->width_px, x, y, channel) -
-                                    BlockMean(*truth_, fine_->width_px, x, y, channel);
+                                    BlockMean(*exact_, fine_->width_px, x, y, channel);
           sum += difference * difference;
           ++count;
         }
@@ -130,7 +130,7 @@ class StillQuality : public ::testing::Test {
   // Returns the root mean square of all pixels' differences, in levels of 255.
   static double Rmse(const Pixels& pixels) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < pixels.size(); ++i) sum += std::pow(pixels[i] - (*truth_)[i], 2);
+    for (std::size_t i = 0; i < pixels.size(); ++i) sum += std::pow(pixels[i] - (*exact_)[i], 2);
     return std::sqrt(sum / static_cast<double>(pixels.size()));
   }
 
@@ -165,12 +165,12 @@ class StillQuality : public ::testing::Test {
 
   static drawing::DisplayFrame* drawn_;
   static frame::FineImage* fine_;
-  static Pixels* truth_;
+  static Pixels* exact_;
 };
 
 drawing::DisplayFrame* StillQuality::drawn_ = nullptr;
 frame::FineImage* StillQuality::fine_ = nullptr;
-Pixels* StillQuality::truth_ = nullptr;
+Pixels* StillQuality::exact_ = nullptr;
 
 // The 8-bit picture equals the picture with 16 bits a channel, plus rounding noise of up to half a
 // step.
@@ -178,11 +178,11 @@ TEST_F(StillQuality, TheFinePictureIsTheOneDrawn) {
   const Pixels drawn = LevelsOf(drawn_->rgb);
   double most = 0.0;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
-    most = std::max(most, std::abs(drawn[i] - (*truth_)[i]));
+    most = std::max(most, std::abs(drawn[i] - (*exact_)[i]));
   }
   EXPECT_LT(most, 1.01);
   Tell("8 bits with noise, as drawn", drawn.size(), 0.0, drawn);
-  Tell("8 bits without noise", drawn.size(), 0.0, Rounded(*truth_));
+  Tell("8 bits without noise", drawn.size(), 0.0, Rounded(*exact_));
 }
 
 TEST_F(StillQuality, AvifBandsLessThanJpegInFewerBytes) {

@@ -12,7 +12,7 @@ import { SessionBar } from "./session_bar";
 import { TimeLine } from "./time_line";
 import { ToolPanel, ToolRail } from "./tool_rail";
 import { TopBar } from "./top_bar";
-import { Truth } from "./truth";
+import { ErrorLine } from "./error_line";
 
 export function App({ page }: { page: Page }) {
   const { state } = page;
@@ -38,7 +38,7 @@ export function App({ page }: { page: Page }) {
       <TopBar page={page} />
       <ToolRail page={page} />
       <ToolPanel page={page} />
-      <Truth state={state} />
+      <ErrorLine state={state} />
       <ExpertDrawer page={page} />
       <div class="bottom">
         <SessionBar page={page} />
