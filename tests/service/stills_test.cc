@@ -197,7 +197,7 @@ TEST(StillsTest, HundredsAtOnceWaitAndAllAreDrawn) {
 TEST(StillsTest, ThoseThatWaitHoldNoFields) {
   FakeService service;
   service.machine->ms_per_mega_sample = 0.01;
-  // The server expects each picture to take 9 s, so all of them wait for the same lane (drawing
+  // The server expects each picture to take 9 s, so all of them wait for the same worker (drawing
   // thread). In fact they take 43 ms.
   const auto long_still = [](std::uint32_t time) { return Still(1024, 1024, 4096, time); };
   service.machine->next_piece.Close();

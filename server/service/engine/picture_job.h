@@ -30,7 +30,7 @@ class PictureListener {
 // Whether a call waits for the picture. Pictures with a waiting call are drawn first.
 enum class Awaited { kByACall, kByNobody };
 
-// Reads, draws and encodes a picture in a lane of the render loop. All arguments must live until
+// Reads, draws and encodes a picture by a worker of the render loop. All arguments must live until
 // PictureListener::Ended is called. `owner` is the identity to whose share of drawing time the
 // picture counts.
 class PictureJob {
