@@ -469,8 +469,8 @@ absl::Status SessionDrawer::ShowTraced(const Turn& turn, const session::NewestSc
 }
 
 bool SessionDrawer::WantsFine(session::Session& session, int width_px) {
-  const auto still_tiers = session.hub().StillTiers({width_px, width_px});
-  return std::ranges::find(still_tiers, true) != still_tiers.end();
+  const auto resting_tiers = session.hub().RestingTiers({width_px, width_px});
+  return std::ranges::find(resting_tiers, true) != resting_tiers.end();
 }
 
 std::optional<frame::FineImage> SessionDrawer::FineOf(const Turn& turn,

@@ -139,8 +139,8 @@ class SessionDrawer {
   void SendLight(const Turn& turn, const session::NewestScene& shown, DisplayFrame picture,
                  std::optional<frame::FineImage> fine);
   absl::Status ShowTraced(const Turn& turn, const session::NewestScene& shown);
-  // Returns true if a viewer takes stills of a refined frame of that width, which need more than 8
-  // bits per channel.
+  // Returns true if a viewer takes resting frames of that width, which need more than 8 bits per
+  // channel.
   static bool WantsFine(session::Session& session, int width_px);
   // Returns the last picture of the render loop's source with more than 8 bits per channel, if
   // viewers need it.

@@ -118,6 +118,15 @@ TEST_F(CommandLineTest, ServeReadsItsSettingsFromAFile) {
               HasSubstr("max-sessions=3\n"));
 }
 
+TEST_F(CommandLineTest, ServeAcceptsTheEarlierNamesOfTheLimitsOfImages) {
+  const std::string file = folder_.File("serve.conf");
+  std::ofstream(file) << "max-stills = 77\n";
+  const std::string printed =
+      Run("serve --config " + file + " --max-stills-each 55 --print-config").out;
+  EXPECT_THAT(printed, HasSubstr("max-images=77\n"));
+  EXPECT_THAT(printed, HasSubstr("max-images-each=55\n"));
+}
+
 TEST_F(CommandLineTest, WrongSettingsAreRefusedWithTheirFile) {
   const std::string file = folder_.File("serve.conf");
   const auto refuse = [&](const std::string& setting, const std::string& text) {

@@ -1,5 +1,5 @@
-// Tests of the still images that are sent at rest, compared with the picture before its rounding to
-// 8 bits. They measure the error of the default spotter's sky in blocks of 8 x 8 pixels, where
+// Tests of the resting frames that viewers are sent, compared with the picture before its rounding
+// to 8 bits. They measure the error of the default spotter's sky in blocks of 8 x 8 pixels, where
 // steps show as bands. Prints a table; with THUNDERHEAD_SIZE=1280x720 it is the table of decision
 // 28.
 #include <cmath>
@@ -52,8 +52,8 @@ double BlockMean(const Pixels& pixels, int width_px, int x, int y, int channel) 
   return sum / (kBlock_px * kBlock_px);
 }
 
-// A fixture with the still of the sample storm's default spotter, drawn once.
-class StillQuality : public ::testing::Test {
+// A fixture with the resting frame of the sample storm's default spotter, drawn once.
+class RestingFrameTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     int width = 640;
@@ -168,13 +168,13 @@ class StillQuality : public ::testing::Test {
   static Pixels* exact_;
 };
 
-drawing::DisplayFrame* StillQuality::drawn_ = nullptr;
-frame::FineImage* StillQuality::fine_ = nullptr;
-Pixels* StillQuality::exact_ = nullptr;
+drawing::DisplayFrame* RestingFrameTest::drawn_ = nullptr;
+frame::FineImage* RestingFrameTest::fine_ = nullptr;
+Pixels* RestingFrameTest::exact_ = nullptr;
 
 // The 8-bit picture equals the picture with 16 bits a channel, plus rounding noise of up to half a
 // step.
-TEST_F(StillQuality, TheFinePictureIsTheOneDrawn) {
+TEST_F(RestingFrameTest, TheFinePictureIsTheOneDrawn) {
   const Pixels drawn = LevelsOf(drawn_->rgb);
   double most = 0.0;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
@@ -185,7 +185,7 @@ TEST_F(StillQuality, TheFinePictureIsTheOneDrawn) {
   Tell("8 bits without noise", drawn.size(), 0.0, Rounded(*exact_));
 }
 
-TEST_F(StillQuality, AvifBandsLessThanJpegInFewerBytes) {
+TEST_F(RestingFrameTest, AvifBandsLessThanJpegInFewerBytes) {
   const Sent jpeg = Jpeg(scene::Output().jpeg_quality);
   Jpeg(95);
   const Sent avif = Avif({});
