@@ -4,6 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { Annotations } from "./annotations";
 import { CompareView } from "./compare/compare_view";
 import { ExpertDrawer } from "./drawer";
+import { ErrorLine } from "./error_line";
 import { Messages } from "./messages";
 import { Overlay } from "./overlay";
 import type { Page } from "./page";
@@ -12,7 +13,6 @@ import { SessionBar } from "./session_bar";
 import { TimeLine } from "./time_line";
 import { ToolPanel, ToolRail } from "./tool_rail";
 import { TopBar } from "./top_bar";
-import { ErrorLine } from "./error_line";
 
 export function App({ page }: { page: Page }) {
   const { state } = page;
