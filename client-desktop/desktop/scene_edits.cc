@@ -47,7 +47,8 @@ void ChooseGoal(v1::Scene& scene, v1::Accuracy::LimitCase goal) {
 }
 
 bool IsQuality(v1::Preset preset) {
-  return preset == v1::PRESET_FAST || preset == v1::PRESET_BALANCED || preset == v1::PRESET_TRUE;
+  return preset == v1::PRESET_FAST || preset == v1::PRESET_BALANCED ||
+         preset == v1::PRESET_ACCURATE;
 }
 
 v1::Preset PresetOf(const v1::Scene& scene, const v1::GetServerInfoResponse& server) {

@@ -201,8 +201,8 @@ std::string NameOf(v1::Preset preset) {
       return "Fast";
     case v1::PRESET_BALANCED:
       return "Balanced";
-    case v1::PRESET_TRUE:
-      return "True";
+    case v1::PRESET_ACCURATE:
+      return "Accurate";
     case v1::PRESET_UNIFORM_PHASE_LOW_ALBEDO:
       return "Uniform phase, low albedo";
     case v1::PRESET_UNIFORM_PHASE_TRANSLUCENT:

@@ -50,8 +50,8 @@ TEST(ChoosePreset, AlsoSaysWhereSizesComeFrom) {
   v1::Scene scene;
   scene.set_particle_sizes(v1::PARTICLE_SIZES_PAPERS);
   scene.mutable_accuracy()->set_max_error(0.1F);
-  ChoosePreset(scene, v1::PRESET_TRUE);
-  EXPECT_EQ(scene.rendering().preset(), v1::PRESET_TRUE);
+  ChoosePreset(scene, v1::PRESET_ACCURATE);
+  EXPECT_EQ(scene.rendering().preset(), v1::PRESET_ACCURATE);
   EXPECT_EQ(scene.particle_sizes(), v1::PARTICLE_SIZES_MODEL);
   EXPECT_FALSE(scene.has_accuracy());
   ChoosePreset(scene, v1::PRESET_UNIFORM_PHASE_TRANSLUCENT);
@@ -78,8 +78,8 @@ TEST(PresetOf, IsFoundByItsSettingsUnlessAGoalOverridesIt) {
   papers.set_preset(v1::PRESET_UNIFORM_PHASE_LOW_ALBEDO);
   papers.mutable_rendering()->mutable_half_angle();
   v1::Scene scene;
-  scene.mutable_rendering()->set_preset(v1::PRESET_TRUE);
-  EXPECT_EQ(PresetOf(scene, server), v1::PRESET_TRUE);
+  scene.mutable_rendering()->set_preset(v1::PRESET_ACCURATE);
+  EXPECT_EQ(PresetOf(scene, server), v1::PRESET_ACCURATE);
   *scene.mutable_rendering() = papers.rendering();
   EXPECT_EQ(PresetOf(scene, server), v1::PRESET_UNIFORM_PHASE_LOW_ALBEDO);
   ChooseGoal(scene, v1::Accuracy::kMaxError);

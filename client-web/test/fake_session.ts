@@ -37,7 +37,7 @@ const COLORS = [
 type Outgoing = MessageInitShape<typeof InteractResponseSchema>["message"];
 
 // The frames of one view for one person.
-class FrameLane {
+class FrameStream {
   sent: bigint[] = [];
   waiting: Frame | undefined;
   sequence = 0n;
@@ -53,8 +53,8 @@ export interface FakePerson {
   asks: boolean;
   ownCamera: Camera | undefined;
   pointer: Position | undefined;
-  readonly shared: FrameLane;
-  own: FrameLane;
+  readonly shared: FrameStream;
+  own: FrameStream;
   readonly heard: InteractRequest[];
 }
 
@@ -113,8 +113,8 @@ export class FakeSession {
       asks: false,
       ownCamera: undefined,
       pointer: undefined,
-      shared: new FrameLane(),
-      own: new FrameLane(),
+      shared: new FrameStream(),
+      own: new FrameStream(),
       heard: [request],
     };
     this.people.push(person);
@@ -195,9 +195,9 @@ export class FakeSession {
         else this.#update(person, requestId, message.value, refuse);
         break;
       case "acknowledge": {
-        const lane = message.value.ownView ? person.own : person.shared;
-        lane.sent = lane.sent.filter((sequence) => sequence > message.value.sequence);
-        this.#pump(person, lane);
+        const stream = message.value.ownView ? person.own : person.shared;
+        stream.sent = stream.sent.filter((sequence) => sequence > message.value.sequence);
+        this.#pump(person, stream);
         break;
       }
       case "window":
@@ -211,7 +211,7 @@ export class FakeSession {
         if (this.rules.followingLocked && !presents)
           refuse(Code.PermissionDenied, "following is locked");
         else {
-          person.own = new FrameLane();
+          person.own = new FrameStream();
           this.#showOwn(person, message.value.camera ?? this.scene.camera);
           this.#tellPresence();
         }
@@ -428,12 +428,12 @@ export class FakeSession {
     this.#pump(person, person.shared);
   }
 
-  #pump(person: FakePerson, lane: FrameLane): void {
-    const { waiting } = lane;
-    if (person.hidden || waiting === undefined || lane.sent.length >= MAX_IN_FLIGHT) return;
-    lane.waiting = undefined;
-    lane.sent.push(waiting.sequence);
-    this.mostUnacknowledged = Math.max(this.mostUnacknowledged, lane.sent.length);
+  #pump(person: FakePerson, stream: FrameStream): void {
+    const { waiting } = stream;
+    if (person.hidden || waiting === undefined || stream.sent.length >= MAX_IN_FLIGHT) return;
+    stream.waiting = undefined;
+    stream.sent.push(waiting.sequence);
+    this.mostUnacknowledged = Math.max(this.mostUnacknowledged, stream.sent.length);
     this.#tell(person, { case: "frame", value: waiting });
   }
 

@@ -107,7 +107,7 @@ const PAPER = { transport: Transport.CONSISTENT, tracedLight: TracedLight.OFF } 
 export const FAKE_PRESETS = [
   preset(Preset.FAST, { detail: false, slices: 64, tracedLight: TracedLight.OFF }),
   preset(Preset.BALANCED, {}),
-  preset(Preset.TRUE, { tracedLight: TracedLight.AWAITED }),
+  preset(Preset.ACCURATE, { tracedLight: TracedLight.AWAITED }),
   preset(Preset.UNIFORM_PHASE_LOW_ALBEDO, {
     ...PAPER,
     transport: Transport.LOW_ALBEDO,

@@ -16,7 +16,13 @@ import { crc32, pngText, withPngText } from "../src/core/png_text";
 import { withDisplay, withField, withSun, withSunClock, withTime } from "../src/core/scene";
 import { sceneOfFile, sceneToText, withScene } from "../src/core/scene_file";
 import { RenderJobPictureState_State, RenderJobService } from "../src/gen/thunderhead/v1/job_pb";
-import { Hydrometeor, type Scene, SceneSchema, ToneMap } from "../src/gen/thunderhead/v1/scene_pb";
+import {
+  Hydrometeor,
+  Preset,
+  type Scene,
+  SceneSchema,
+  ToneMap,
+} from "../src/gen/thunderhead/v1/scene_pb";
 import { StormDescriptionSchema, StormTimeSchema } from "../src/gen/thunderhead/v1/storm_pb";
 import { type DrawnPicture, RenderCalls } from "../src/transport/render_calls";
 
@@ -89,6 +95,12 @@ test("a scene comes back from a picture and from JSON", () => {
   expect(equals(SceneSchema, sceneOfFile(file), scene)).toBe(true);
   const json = new TextEncoder().encode(sceneToText(scene));
   expect(equals(SceneSchema, sceneOfFile(json), scene)).toBe(true);
+});
+
+test("a file may name the accurate preset by its earlier name", () => {
+  const json = '{"rendering": {"preset": "PRESET_TRUE"}}';
+  const scene = sceneOfFile(new TextEncoder().encode(json));
+  expect(scene.rendering?.technique).toEqual({ case: "preset", value: Preset.ACCURATE });
 });
 
 test("a file without a scene says so", () => {

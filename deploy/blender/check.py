@@ -101,12 +101,12 @@ def render_both(number, case, arguments):
             "--step", str(case.step), "--sun-diameter-deg", "0")
         halves.append(exr.read_rgb(half).mean(axis=-1))
     middle = time.monotonic()
-    truth = base + ".reference.exr"
+    reference = base + ".reference.exr"
     run(arguments.program, "render", *common, "--renderer", "reference", "--no-air", "--peak-cut", "0",
-        "--max-scatterings", str(case.scatterings), "--spp", str(arguments.reference_samples), "-o", truth)
+        "--max-scatterings", str(case.scatterings), "--spp", str(arguments.reference_samples), "-o", reference)
     # The medium is grey, so the three colours of a path have the same value.
-    error = exr.read_rgb(truth, "stderr.")[..., 0]
-    return halves, exr.read_rgb(truth)[..., 0], error, middle - began, time.monotonic() - middle
+    error = exr.read_rgb(reference, "stderr.")[..., 0]
+    return halves, exr.read_rgb(reference)[..., 0], error, middle - began, time.monotonic() - middle
 
 
 def blocks(picture):
@@ -114,29 +114,29 @@ def blocks(picture):
     return picture[:height, :width].reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK).mean(axis=(1, 3))
 
 
-def excess(halves, truth, variance):
+def excess(halves, reference, variance):
     """Returns the relative RMSE of the difference, the part of it that noise explains, and the rest.
 
     The rest is negative if the difference is smaller than the noise explains.
     """
     cycles = 0.5 * (halves[0] + halves[1])
     of_cycles = np.mean((halves[0] - halves[1]) ** 2) / 4
-    of_truth = np.mean(variance)
-    squared = np.mean((cycles - truth) ** 2)
-    left = squared - of_cycles - of_truth
-    return [value / truth.mean() for value in (np.sqrt(squared), np.sqrt(of_cycles + of_truth),
+    of_reference = np.mean(variance)
+    squared = np.mean((cycles - reference) ** 2)
+    left = squared - of_cycles - of_reference
+    return [value / reference.mean() for value in (np.sqrt(squared), np.sqrt(of_cycles + of_reference),
                                                np.copysign(np.sqrt(abs(left)), left))]
 
 
-def row_of(case, samples, halves, truth, error, seconds):
-    mean = truth.mean()
+def row_of(case, samples, halves, reference, error, seconds):
+    mean = reference.mean()
     cycles = 0.5 * (halves[0] + halves[1])
-    of_cycles = np.sqrt(np.sum((halves[0] - halves[1]) ** 2) / 4) / truth.size
-    of_truth = np.sqrt(np.sum(error ** 2)) / truth.size
+    of_cycles = np.sqrt(np.sum((halves[0] - halves[1]) ** 2) / 4) / reference.size
+    of_reference = np.sqrt(np.sum(error ** 2)) / reference.size
     bias = cycles.mean() / mean - 1
-    of_bias = np.hypot(of_cycles, of_truth) / mean
-    pixel = excess(halves, truth, error ** 2)
-    block = excess([blocks(half) for half in halves], blocks(truth), blocks(error ** 2) / BLOCK ** 2)
+    of_bias = np.hypot(of_cycles, of_reference) / mean
+    pixel = excess(halves, reference, error ** 2)
+    block = excess([blocks(half) for half in halves], blocks(reference), blocks(error ** 2) / BLOCK ** 2)
     light = "all" if case.scatterings == WITHOUT_LIMIT else str(case.scatterings)
     return (f"| {case.name} | {case.camera} | {light} | {case.asymmetry:g} | {case.step:g} | "
             f"{samples[0]}, {samples[1]} | {100 * bias:+.2f} ± {100 * of_bias:.2f} % | {pixel[0]:.3f} | {pixel[1]:.3f} | {pixel[2]:+.3f} | "
@@ -148,15 +148,15 @@ HEADER = ("| case | camera | scatterings | g | step | samples | mean, Cycles ove
           "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|")
 
 
-def write_picture(path, halves, truth):
+def write_picture(path, halves, reference):
     """Writes three pictures side by side: Cycles, the reference, and their difference.
 
     The difference is shown as half grey plus a quarter of it, relative to the reference's mean.
     """
     cycles = 0.5 * (halves[0] + halves[1])
-    white = np.percentile(truth, 99.5)
-    panes = [np.clip(picture / white, 0, 1) ** (1 / 2.2) for picture in (cycles, truth)]
-    panes.append(np.clip(0.5 + 0.25 * (cycles - truth) / truth.mean(), 0, 1))
+    white = np.percentile(reference, 99.5)
+    panes = [np.clip(picture / white, 0, 1) ** (1 / 2.2) for picture in (cycles, reference)]
+    panes.append(np.clip(0.5 + 0.25 * (cycles - reference) / reference.mean(), 0, 1))
     grey = (255 * np.concatenate(panes, axis=1) + 0.5).astype(np.uint8)
     Image.fromarray(grey).save(path, quality=82)
 
@@ -187,12 +187,12 @@ def main():
     for number, case in enumerate(CASES):
         if arguments.only and number not in arguments.only:
             continue
-        halves, truth, error, *seconds = render_both(number, case, arguments)
-        rows.append(row_of(case, (arguments.cycles_samples, arguments.reference_samples), halves, truth, error, seconds))
+        halves, reference, error, *seconds = render_both(number, case, arguments)
+        rows.append(row_of(case, (arguments.cycles_samples, arguments.reference_samples), halves, reference, error, seconds))
         print(rows[-1], flush=True)
         if case.picture:
             storm = case.storm.removesuffix(".nc")
-            write_picture(os.path.join(arguments.output, f"blender-{storm}-{case.camera}.jpg"), halves, truth)
+            write_picture(os.path.join(arguments.output, f"blender-{storm}-{case.camera}.jpg"), halves, reference)
     if not arguments.only:
         write_table(os.path.join(arguments.output, "blender.md"), "\n".join(rows))
 

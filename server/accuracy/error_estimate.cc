@@ -39,7 +39,7 @@ double MeanOf(const glm::dvec3& color) { return (color.x + color.y + color.z) / 
 
 }  // namespace
 
-void PixelTruth::Add(const glm::dvec3& estimate) {
+void PixelReference::Add(const glm::dvec3& estimate) {
   ++paths_;
   const double brightness = MeanOf(estimate) / usual_;
   for (std::size_t i = 0; i < kClamps.size(); ++i) {
@@ -51,14 +51,14 @@ void PixelTruth::Add(const glm::dvec3& estimate) {
 }
 
 ErrorEstimate::Sums ErrorEstimate::Sums::operator-(const Sums& other) const {
-  return {truth - other.truth, drawn_truth - other.drawn_truth,
-          squared_truth - other.squared_truth};
+  return {reference - other.reference, drawn_reference - other.drawn_reference,
+          squared_reference - other.squared_reference};
 }
 
 void ErrorEstimate::Sums::operator+=(const Sums& other) {
-  truth += other.truth;
-  drawn_truth += other.drawn_truth;
-  squared_truth += other.squared_truth;
+  reference += other.reference;
+  drawn_reference += other.drawn_reference;
+  squared_reference += other.squared_reference;
 }
 
 ErrorEstimate::Group ErrorEstimate::Group::operator-(const Group& other) const {
@@ -76,22 +76,22 @@ void ErrorEstimate::Group::operator+=(const Group& other) {
   for (std::size_t i = 0; i < kClamps.size(); ++i) clamped[i] += other.clamped[i];
 }
 
-void ErrorEstimate::Add(const glm::dvec3& drawn, const PixelTruth& truth) {
-  THUNDERHEAD_CHECK(truth.Paths() >= 2, "a pixel needs two paths");
-  const auto count = static_cast<double>(truth.Paths());
-  const double weight = truth.Weight();
+void ErrorEstimate::Add(const glm::dvec3& drawn, const PixelReference& reference) {
+  THUNDERHEAD_CHECK(reference.Paths() >= 2, "a pixel needs two paths");
+  const auto count = static_cast<double>(reference.Paths());
+  const double weight = reference.Weight();
   Group& group = groups_[static_cast<std::size_t>(pixels_) % kGroups];
   group.pixels += 1.0;
   group.drawn += weight * MeanOf(drawn);
   group.squared_drawn += weight * MeanOf(drawn * drawn);
   for (std::size_t i = 0; i < kClamps.size(); ++i) {
-    const auto& [first, squares] = truth.Clamped(i);
+    const auto& [first, squares] = reference.Clamped(i);
     const glm::dvec3 mean = first / count;
-    const double squared_truth = MeanOf((first * first - squares) / (count * (count - 1.0)));
+    const double squared_reference = MeanOf((first * first - squares) / (count * (count - 1.0)));
     group.clamped[i] +=
-        {weight * MeanOf(mean), weight * MeanOf(drawn * mean), weight * squared_truth};
+        {weight * MeanOf(mean), weight * MeanOf(drawn * mean), weight * squared_reference};
     const double squared_error =
-        weight * (MeanOf(drawn * drawn) - 2.0 * MeanOf(drawn * mean) + squared_truth);
+        weight * (MeanOf(drawn * drawn) - 2.0 * MeanOf(drawn * mean) + squared_reference);
     const double variance =
         weight * std::max(MeanOf((squares - first * mean) / (count - 1.0)), 0.0);
     noise_[i].squared_error += squared_error;
@@ -101,7 +101,7 @@ void ErrorEstimate::Add(const glm::dvec3& drawn, const PixelTruth& truth) {
                             4.0 * std::max(squared_error, 0.0) * variance / count;
   }
   ++pixels_;
-  paths_ += truth.Paths();
+  paths_ += reference.Paths();
 }
 
 ErrorEstimate::Group ErrorEstimate::All() const {
@@ -112,15 +112,16 @@ ErrorEstimate::Group ErrorEstimate::All() const {
 
 ErrorEstimate::Ratios ErrorEstimate::RatiosOf(const Group& group, std::size_t clamp) const {
   const Sums& clamped = group.clamped[clamp];
-  const double whole_truth = group.clamped.back().truth;
+  const double whole_reference = group.clamped.back().reference;
   // The light that clamping removes is added back, spread over all pixels, by scaling the reference
   // radiance.
-  const double scale = clamped.truth > 0.0 ? whole_truth / clamped.truth : 1.0;
-  const double squared_error = group.squared_drawn - 2.0 * scale * clamped.drawn_truth +
-                               scale * scale * clamped.squared_truth;
-  const double difference = (group.drawn - whole_truth) / group.pixels;
-  const double truth = mean_drawn_ - difference;
-  return {squared_error / group.pixels / (truth * truth), difference / truth, scale - 1.0};
+  const double scale = clamped.reference > 0.0 ? whole_reference / clamped.reference : 1.0;
+  const double squared_error = group.squared_drawn - 2.0 * scale * clamped.drawn_reference +
+                               scale * scale * clamped.squared_reference;
+  const double difference = (group.drawn - whole_reference) / group.pixels;
+  const double reference = mean_drawn_ - difference;
+  return {squared_error / group.pixels / (reference * reference), difference / reference,
+          scale - 1.0};
 }
 
 std::size_t ErrorEstimate::BestClamp(const Group& all) const {
@@ -146,7 +147,8 @@ std::optional<MeasuredError> ErrorEstimate::Result() const {
   const Group all = All();
   // The left side minus the right is the sum of the estimated reference radiances. It must be
   // positive, because errors are relative to their mean.
-  if (pixels_ < kMinPixels || !(mean_drawn_ * all.pixels > all.drawn - all.clamped.back().truth)) {
+  if (pixels_ < kMinPixels ||
+      !(mean_drawn_ * all.pixels > all.drawn - all.clamped.back().reference)) {
     return std::nullopt;
   }
   const std::size_t clamp = BestClamp(all);

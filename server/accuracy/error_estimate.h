@@ -1,5 +1,5 @@
-// Estimates a picture's error. The input is independent estimates of the reference radiance (Monte
-// Carlo ground truth) of some of its pixels. Errors are relative RMSE and bias, as
+// Estimates a picture's error. The input is independent estimates of the reference radiance (traced
+// by the Monte Carlo reference) of some of its pixels. Errors are relative RMSE and bias, as
 // measure/image_error.h defines them. Each error has a 95 % confidence interval
 // (docs/decisions/0051-measured-error.md). This code does not depend on scenes.
 #pragma once
@@ -37,7 +37,7 @@ struct MeasuredError {
 inline constexpr std::array<double, 8> kClamps = {4.0, 6.0, 9.0, 13.0, 20.0, 30.0, 60.0, 1e300};
 
 // The sums of independent, almost unbiased estimates of the reference radiance of one pixel.
-class PixelTruth {
+class PixelReference {
  public:
   struct Sums {
     glm::dvec3 first{0.0};
@@ -47,7 +47,7 @@ class PixelTruth {
   // `usual` is the pixel's approximate radiance, above 0. `weight` says how many of the picture's
   // pixels this pixel represents, relative to the mean. It equals 1 / (number of pixels x
   // probability of choosing this pixel).
-  explicit PixelTruth(double usual, double weight = 1.0) : usual_(usual), weight_(weight) {}
+  explicit PixelReference(double usual, double weight = 1.0) : usual_(usual), weight_(weight) {}
 
   void Add(const glm::dvec3& estimate);
 
@@ -72,7 +72,7 @@ class ErrorEstimate {
   // Adds a pixel with at least two paths. The paths' noise does not count as error. The squared
   // error is estimated by the product of the differences from `drawn` of two different paths,
   // averaged over all pairs. This estimate is unbiased (a U-statistic).
-  void Add(const glm::dvec3& drawn, const PixelTruth& truth);
+  void Add(const glm::dvec3& drawn, const PixelReference& reference);
 
   // Returns nothing for fewer than 160 pixels, or while the estimated mean reference radiance is
   // not above 0.
@@ -86,12 +86,12 @@ class ErrorEstimate {
   std::int64_t Pixels() const { return pixels_; }
 
  private:
-  // Weighted sums over pixels of means over colours. "Truth" is the reference radiance, estimated
-  // from clamped paths.
+  // Weighted sums over pixels of means over colours. The reference radiance is estimated from
+  // clamped paths.
   struct Sums {
-    double truth = 0.0;
-    double drawn_truth = 0.0;    // sum of drawn times reference radiance
-    double squared_truth = 0.0;  // sum of squared reference radiance, without the paths' noise
+    double reference = 0.0;          // sum of reference radiance
+    double drawn_reference = 0.0;    // sum of drawn times reference radiance
+    double squared_reference = 0.0;  // sum of squared reference radiance, without the paths' noise
 
     Sums operator-(const Sums& other) const;
     void operator+=(const Sums& other);

@@ -52,18 +52,19 @@ absl::StatusOr<std::unique_ptr<ErrorMeter>> ErrorMeter::Create(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
     int threads, std::uint64_t seed, const reference::MakesTracer& makes_tracer) {
   // The reference technique is used, in which each field has its own phase function.
-  scene::Scene truth = scene;
-  truth.rendering.technique =
+  scene::Scene reference_scene = scene;
+  reference_scene.rendering.technique =
       scene::Reference{.false_colors = scene::FieldLookOf(scene.rendering.technique).false_colors};
   reference::MediumOptions options;
   options.peak_cut_deg = reference::kPeakCut_deg;
   options.similar = true;
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<const reference::Medium> medium,
-                               reference::MediumOf(truth, *fields, options));
+                               reference::MediumOf(reference_scene, *fields, options));
   THUNDERHEAD_ASSIGN_OR_RETURN(reference::RayTracer tracer, makes_tracer(medium));
   return std::unique_ptr<ErrorMeter>(new ErrorMeter(
-      std::move(tracer), reference::SurroundingsOf(truth, *fields, reference::GroundLight::kShaded),
-      reference::CameraOf(truth, *fields), threads, seed));
+      std::move(tracer),
+      reference::SurroundingsOf(reference_scene, *fields, reference::GroundLight::kShaded),
+      reference::CameraOf(reference_scene, *fields), threads, seed));
 }
 
 void ErrorMeter::Show(picture::LinearPicture drawn) {
@@ -81,7 +82,7 @@ void ErrorMeter::Show(picture::LinearPicture drawn) {
   mean_drawn_ = sum / static_cast<double>(pixels_);
   estimate_.emplace(mean_drawn_);
   for (const TracedPixel& pixel : traced_) {
-    estimate_->Add(glm::dvec3(drawn_.radiance[pixel.index]), pixel.truth);
+    estimate_->Add(glm::dvec3(drawn_.radiance[pixel.index]), pixel.reference);
   }
 }
 
@@ -171,11 +172,11 @@ absl::Status ErrorMeter::Step(const reference::IsWanted& wanted) {
   for (std::size_t i = 0; i < pixels; ++i) {
     const double weight = 1.0 / (ChanceOf(indices[i]) * static_cast<double>(pixels_));
     const double usual = std::max(MeanColor(drawn_.radiance[indices[i]]), kDark * mean_drawn_);
-    TracedPixel pixel{indices[i], PixelTruth(usual, weight)};
+    TracedPixel pixel{indices[i], PixelReference(usual, weight)};
     for (const glm::dvec3& one : std::span(radiance).subspan(i * per_pixel, per_pixel)) {
-      pixel.truth.Add(one);
+      pixel.reference.Add(one);
     }
-    estimate_->Add(glm::dvec3(drawn_.radiance[pixel.index]), pixel.truth);
+    estimate_->Add(glm::dvec3(drawn_.radiance[pixel.index]), pixel.reference);
     traced_.push_back(pixel);
   }
   traced_s_ += 1e-3 * stopwatch.ElapsedMs();

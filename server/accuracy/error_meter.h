@@ -56,7 +56,7 @@ class ErrorMeter {
  private:
   struct TracedPixel {
     std::size_t index;
-    PixelTruth truth;
+    PixelReference reference;
   };
 
   ErrorMeter(reference::RayTracer tracer, reference::Surroundings surroundings,

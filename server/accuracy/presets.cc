@@ -11,7 +11,7 @@ namespace {
 // each preset.
 constexpr int kFastSlices = 64;
 // With 128 samples, thin edges look jagged at 1280 x 640 pixels (docs/performance.md).
-constexpr int kTrueSlices = 512;
+constexpr int kAccurateSlices = 512;
 
 const NamedPreset& RowOf(Preset preset) {
   const auto* const row = std::ranges::find(kPresets, preset, &NamedPreset::preset);
@@ -30,8 +30,8 @@ scene::Technique TechniqueOf(Preset preset) {
     light_volume.medium.look.detail = false;
     light_volume.slices = kFastSlices;
     light_volume.traced_light = scene::TracedLight::kOff;
-  } else if (preset == Preset::kTrue) {
-    light_volume.slices = kTrueSlices;
+  } else if (preset == Preset::kAccurate) {
+    light_volume.slices = kAccurateSlices;
     light_volume.traced_light = scene::TracedLight::kAwaited;
   }
   return light_volume;

@@ -14,7 +14,7 @@ namespace thunderhead::accuracy {
 enum class Preset {
   kFast,
   kBalanced,
-  kTrue,
+  kAccurate,
   kUniformPhaseLowAlbedo,
   kUniformPhaseTranslucent,
   kPerFieldPhaseTranslucent,
@@ -31,7 +31,7 @@ struct NamedPreset {
 inline constexpr std::array<NamedPreset, 7> kPresets = {{
     {Preset::kFast, "fast"},
     {Preset::kBalanced, "balanced"},
-    {Preset::kTrue, "true"},
+    {Preset::kAccurate, "accurate"},
     {Preset::kUniformPhaseLowAlbedo, kUniformPhaseLowAlbedoMode.name, &kUniformPhaseLowAlbedoMode},
     {Preset::kUniformPhaseTranslucent, kUniformPhaseTranslucentMode.name,
      &kUniformPhaseTranslucentMode},

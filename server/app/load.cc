@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -25,7 +26,7 @@ namespace {
 struct LoadFlags {
   std::string server;
   std::string size = "640x360";
-  std::string stills_size = "640x360";
+  std::string images_size = "640x360";
   std::optional<double> kbit_per_s;
   std::optional<int> throttled;
   load::LoadOptions load;
@@ -70,10 +71,10 @@ absl::StatusOr<load::LoadOptions> LoadOptionsOf(const LoadFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize size, ParsePictureSize(flags.size));
   options.width_px = size.width_px;
   options.height_px = size.height_px;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize still,
-                               ParsePictureSize(flags.stills_size, "--stills-size"));
-  options.stills.width_px = still.width_px;
-  options.stills.height_px = still.height_px;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const PictureSize image,
+                               ParsePictureSize(flags.images_size, "--images-size"));
+  options.images.width_px = image.width_px;
+  options.images.height_px = image.height_px;
   if (flags.throttled.has_value() && !flags.kbit_per_s.has_value()) {
     return absl::InvalidArgumentError(
         "--throttled needs --kbit, the rate at which those viewers read");
@@ -118,6 +119,22 @@ absl::Status Load(const LoadFlags& flags) {
     wrong.push_back(absl::StrCat("errors during the load: ", report->ErrorCount()));
   }
   return wrong.empty() ? absl::OkStatus() : absl::AbortedError(absl::StrJoin(wrong, "; "));
+}
+
+// Adds the flags of single images, whose names begin with `name`.
+std::vector<CLI::Option*> AddImageFlags(const std::string& name, CLI::App& load, LoadFlags& flags) {
+  load::ImageBurstOptions& images = flags.load.images;
+  return {
+      load.add_option(name, images.count,
+                      "Additional single images, all requested when measuring begins")
+          ->check(CLI::Range(0, 10000))
+          ->capture_default_str(),
+      load.add_option(name + "-size", flags.images_size, "Size of the single images, WIDTHxHEIGHT")
+          ->capture_default_str(),
+      load.add_option(name + "-slices", images.slices,
+                      "Slices of the single images; 0 for the default")
+          ->check(CLI::Range(0, 4096))
+          ->capture_default_str()};
 }
 
 void AddBounds(CLI::App& load, load::Bounds& bounds) {
@@ -187,16 +204,9 @@ Command AddLoad(CLI::App& app) {
           "PEM file of the certificate authorities that may sign the server's certificate; without "
           "it the connection to HOST:PORT is not encrypted, and https:// uses this machine's "
           "authorities");
-  load->add_option("--stills", options.stills.count,
-                   "Additional single images, all requested when measuring begins")
-      ->check(CLI::Range(0, 10000))
-      ->capture_default_str();
-  load->add_option("--stills-size", flags->stills_size, "Size of the single images, WIDTHxHEIGHT")
-      ->capture_default_str();
-  load->add_option("--stills-slices", options.stills.slices,
-                   "Slices of the single images; 0 for the default")
-      ->check(CLI::Range(0, 4096))
-      ->capture_default_str();
+  AddImageFlags("--images", *load, *flags);
+  // The earlier names are still accepted.
+  for (CLI::Option* earlier : AddImageFlags("--stills", *load, *flags)) earlier->group("");
   AddBounds(*load, flags->bounds);
   load->add_flag("--json", flags->json, "Print JSON");
   return {load, [flags] { return Load(*flags); }};

@@ -12,7 +12,7 @@
 #include "accuracy/named_settings.h"
 #include "app/commands.h"
 #include "app/interruption.h"
-#include "app/kept_truth.h"
+#include "app/kept_reference.h"
 #include "app/local_scene.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
@@ -20,8 +20,8 @@
 #include "frame/image_codec.h"
 #include "frame/tone_map.h"
 #include "gl/context.h"
-#include "measure/against_truth.h"
 #include "measure/light_parts.h"
+#include "measure/reference_comparison.h"
 #include "measure/trade.h"
 #include "picture/exr_file.h"
 #include "runs/progress_bar.h"
@@ -52,44 +52,44 @@ bool Chosen(const std::vector<std::string>& names, std::string_view name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
 
-absl::StatusOr<picture::LinearPicture> TruthOf(const LightFlags& flags, const LocalScene& local,
-                                               LightPart part, const std::string& path,
-                                               const Interruption& interruption) {
+absl::StatusOr<picture::LinearPicture> ReferenceOf(const LightFlags& flags, const LocalScene& local,
+                                                   LightPart part, const std::string& path,
+                                                   const Interruption& interruption) {
   v1::Scene message = local.message;
   message.clear_rendering();
-  Truth truth;
-  truth.name = measure::NameOf(part);
-  truth.scene = measure::SceneOf(part, measure::TrueScene(local.scene));
-  truth.scene_text = message.ShortDebugString();
-  truth.options = measure::TraceOptionsOf(part, flags.peak_cut_deg);
-  truth.samples_per_pixel = flags.samples_per_pixel;
-  return KeptTruth(truth, *local.fields, path, interruption);
+  ReferenceRequest request;
+  request.name = measure::NameOf(part);
+  request.scene = measure::SceneOf(part, measure::ReferenceScene(local.scene));
+  request.scene_text = message.ShortDebugString();
+  request.options = measure::TraceOptionsOf(part, flags.peak_cut_deg);
+  request.samples_per_pixel = flags.samples_per_pixel;
+  return KeptReference(request, *local.fields, path, interruption);
 }
 
 // Writes three pictures side by side: by the reference, as drawn, and their difference. Grey (1/2)
 // means no difference; the brightness changes by a quarter for a difference of the reference's
 // mean.
-absl::Status WriteComparison(const picture::LinearPicture& truth,
+absl::Status WriteComparison(const picture::LinearPicture& reference,
                              const picture::LinearPicture& drawn, scene::Scene scene,
                              const std::string& path) {
   frame::ToneMapper tone_mapper;
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped left,
-                               tone_mapper.Map(frame::TextureOf(truth), scene));
+                               tone_mapper.Map(frame::TextureOf(reference), scene));
   scene.display.exposure_ev = left.exposure_ev;
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped middle,
                                tone_mapper.Map(frame::TextureOf(drawn), scene));
   double mean = 0.0;
-  for (const glm::vec3& pixel : truth.radiance) mean += (pixel.x + pixel.y + pixel.z) / 3.0;
-  mean /= static_cast<double>(truth.radiance.size());
-  const auto width = static_cast<std::size_t>(truth.size_px.x);
+  for (const glm::vec3& pixel : reference.radiance) mean += (pixel.x + pixel.y + pixel.z) / 3.0;
+  mean /= static_cast<double>(reference.radiance.size());
+  const auto width = static_cast<std::size_t>(reference.size_px.x);
   std::vector<std::uint8_t> rgb;
-  for (std::size_t y = 0; y < static_cast<std::size_t>(truth.size_px.y); ++y) {
+  for (std::size_t y = 0; y < static_cast<std::size_t>(reference.size_px.y); ++y) {
     const auto row = static_cast<std::ptrdiff_t>(3 * y * width);
     const auto end = row + static_cast<std::ptrdiff_t>(3 * width);
     rgb.insert(rgb.end(), left.rgb.begin() + row, left.rgb.begin() + end);
     rgb.insert(rgb.end(), middle.rgb.begin() + row, middle.rgb.begin() + end);
     for (std::size_t x = 0; x < width; ++x) {
-      const glm::vec3 off = drawn.radiance[y * width + x] - truth.radiance[y * width + x];
+      const glm::vec3 off = drawn.radiance[y * width + x] - reference.radiance[y * width + x];
       for (int color = 0; color < 3; ++color) {
         const double shown = 127.5 + 0.5 * 127.5 * off[color] / mean;
         rgb.push_back(static_cast<std::uint8_t>(std::clamp(shown, 0.0, 255.0)));
@@ -97,7 +97,7 @@ absl::Status WriteComparison(const picture::LinearPicture& truth,
     }
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::string png,
-                               frame::EncodePng(3 * truth.size_px.x, truth.size_px.y, rgb));
+                               frame::EncodePng(3 * reference.size_px.x, reference.size_px.y, rgb));
   return base::WriteWholeFile(path, png);
 }
 
@@ -107,7 +107,7 @@ struct Compared {
   const LightFlags& flags;
   const LocalScene& local;
   LightPart part;
-  measure::AgainstTruth truth;
+  measure::ReferenceComparison comparison;
   renderers::SceneRenderer& renderer;
 
   absl::Status Print(const scene::Scene& scene, const std::string& name,
@@ -119,14 +119,14 @@ struct Compared {
         const picture::LinearPicture single,
         measure::DrawPart(renderer, scene, local.fields, part, 1, correction));
     std::cout << absl::StrFormat("%-5s %-15s %8.4f %+8.4f %8.4f %8.4f\n", measure::NameOf(part),
-                                 name, truth.RelativeRmseWithoutNoise(drawn),
-                                 truth.RelativeBias(drawn), truth.RelativeRmseWithoutNoise(single),
-                                 truth.Noise())
+                                 name, comparison.RelativeRmseWithoutNoise(drawn),
+                                 comparison.RelativeBias(drawn),
+                                 comparison.RelativeRmseWithoutNoise(single), comparison.Noise())
               << std::flush;
     const std::string prefix = absl::StrCat(flags.output, ".", measure::NameOf(part), ".",
                                             absl::StrReplaceAll(name, {{" ", "_"}}));
     THUNDERHEAD_RETURN_IF_ERROR(picture::WriteExr(prefix + ".exr", drawn));
-    return WriteComparison(truth.Truth(), drawn, local.scene, prefix + ".png");
+    return WriteComparison(comparison.Reference(), drawn, local.scene, prefix + ".png");
   }
 };
 
@@ -181,13 +181,14 @@ absl::Status MeasureLight(const LightFlags& flags) {
     if (!Chosen(flags.parts, measure::NameOf(part))) continue;
     THUNDERHEAD_ASSIGN_OR_RETURN(
         picture::LinearPicture traced,
-        TruthOf(flags, local, part, absl::StrCat(flags.output, ".", measure::NameOf(part), ".exr"),
-                interruption));
+        ReferenceOf(flags, local, part,
+                    absl::StrCat(flags.output, ".", measure::NameOf(part), ".exr"), interruption));
     THUNDERHEAD_ASSIGN_OR_RETURN(
-        measure::AgainstTruth truth,
-        measure::AgainstTruth::Of(local.scene, *local.fields, std::move(traced),
-                                  measure::TraceOptionsOf(part, flags.peak_cut_deg).peak_cut_deg));
-    const Compared compared{flags, local, part, std::move(truth), renderer};
+        measure::ReferenceComparison comparison,
+        measure::ReferenceComparison::Of(
+            local.scene, *local.fields, std::move(traced),
+            measure::TraceOptionsOf(part, flags.peak_cut_deg).peak_cut_deg));
+    const Compared compared{flags, local, part, std::move(comparison), renderer};
     for (const auto& transport : accuracy::kTransportNames) {
       const bool once = part == LightPart::kOnce;
       if (once ? transport.value != scene::Transport::kConsistent

@@ -12,12 +12,12 @@
 #include "accuracy/named_settings.h"
 #include "app/commands.h"
 #include "app/interruption.h"
-#include "app/kept_truth.h"
+#include "app/kept_reference.h"
 #include "app/local_scene.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "gl/context.h"
-#include "measure/against_truth.h"
+#include "measure/reference_comparison.h"
 #include "measure/trade_table.h"
 #include "reference/trace_scene.h"
 #include "runs/progress_bar.h"
@@ -44,15 +44,15 @@ absl::Status CheckFlags(const TradeFlags& flags) {
       "--spp is ", flags.samples_per_pixel, "; the reference needs at least 16 samples per pixel"));
 }
 
-absl::StatusOr<picture::LinearPicture> TruthOf(const TradeFlags& flags, const LocalScene& local,
-                                               const std::string& path,
-                                               const Interruption& interruption) {
-  Truth truth;
-  truth.name = "the reference";
-  truth.scene = measure::TrueScene(local.scene);
-  truth.scene_text = local.message.ShortDebugString();
-  truth.samples_per_pixel = flags.samples_per_pixel;
-  return KeptTruth(truth, *local.fields, path, interruption);
+absl::StatusOr<picture::LinearPicture> ReferenceOf(const TradeFlags& flags, const LocalScene& local,
+                                                   const std::string& path,
+                                                   const Interruption& interruption) {
+  ReferenceRequest request;
+  request.name = "the reference";
+  request.scene = measure::ReferenceScene(local.scene);
+  request.scene_text = local.message.ShortDebugString();
+  request.samples_per_pixel = flags.samples_per_pixel;
+  return KeptReference(request, *local.fields, path, interruption);
 }
 
 // Returns the rows that an earlier run has written to `path`, if any. Rewrites the file with only
@@ -130,20 +130,21 @@ absl::Status MeasureTrade(const TradeFlags& flags) {
                                OpenScene(flags.storm, flags.scene, interruption.Token()));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<gl::Context> context,
                                gl::Context::Create(flags.device));
-  THUNDERHEAD_ASSIGN_OR_RETURN(picture::LinearPicture traced,
-                               TruthOf(flags, local, flags.output + ".truth.exr", interruption));
   THUNDERHEAD_ASSIGN_OR_RETURN(
-      const measure::AgainstTruth truth,
-      measure::AgainstTruth::Of(local.scene, *local.fields, std::move(traced),
-                                reference::kPeakCut_deg));
-  measure::Trade trade(local.scene, local.fields, truth, flags.error_seconds);
+      picture::LinearPicture traced,
+      ReferenceOf(flags, local, flags.output + ".truth.exr", interruption));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const measure::ReferenceComparison comparison,
+      measure::ReferenceComparison::Of(local.scene, *local.fields, std::move(traced),
+                                       reference::kPeakCut_deg));
+  measure::Trade trade(local.scene, local.fields, comparison, flags.error_seconds);
   measure::TradeTitle title;
   title.storm = absl::StrCat(local.storm_id, ", time ", local.message.time_index());
   title.view = flags.scene.camera.empty() ? "orbit" : flags.scene.camera;
   title.renderer = context->Info().renderer;
-  title.size_px = truth.Truth().size_px;
-  title.truth_samples_per_pixel = flags.samples_per_pixel;
-  title.truth_noise = truth.Noise();
+  title.size_px = comparison.Reference().size_px;
+  title.reference_samples_per_pixel = flags.samples_per_pixel;
+  title.reference_noise = comparison.Noise();
   const std::string csv = flags.output + ".csv";
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<measure::TradeRow> rows,
                                RowsSoFar(csv, measure::CsvHead(title)));

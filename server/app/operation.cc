@@ -32,8 +32,8 @@ using std::chrono::steady_clock;
 // One request may arrive as several signals (interruption.cc).
 constexpr milliseconds kOneRequest{250};
 
-// A lane counts as stalled if it has drawn nothing for --stuck-seconds times this factor.
-constexpr double kLaneFactor = 5.0;
+// A worker counts as stalled if it has drawn nothing for --stuck-seconds times this factor.
+constexpr double kWorkerFactor = 5.0;
 
 // Interval between checks of the health that is reported to gRPC's clients.
 constexpr std::chrono::seconds kHealthPause{1};
@@ -167,8 +167,9 @@ std::string Operation::MetricsText() {
     add("reading_stuck_seconds",
         "Time since a storage that hangs last returned data; 0 if none hangs",
         load.reading_stuck_s);
-    add("lane_stalled_seconds",
-        "Time since a busy lane last drew a piece; 0 if no lane is busy or it waits for its turn",
+    add("worker_stalled_seconds",
+        "Time since a busy worker last drew a piece; 0 if no worker is busy or it waits for its "
+        "turn",
         load.stalled_s);
     add("jobs_stalled_seconds",
         "Time for which the thread of render jobs has been at one task, or the folder of results "
@@ -195,11 +196,11 @@ telemetry::Health Operation::HealthNow() {
             .ready = false,
             .state = absl::StrFormat("not making progress: drawing for %.0f s", load.turn_s)};
   }
-  // The limit is long because a lane may read, fit or encode for minutes between two pieces.
-  if (load.stalled_s > kLaneFactor * flags_.stuck_s) {
+  // The limit is long because a worker may read, fit or encode for minutes between two pieces.
+  if (load.stalled_s > kWorkerFactor * flags_.stuck_s) {
     return {.alive = false,
             .ready = false,
-            .state = absl::StrFormat("not making progress: a lane has drawn nothing for %.0f s",
+            .state = absl::StrFormat("not making progress: a worker has drawn nothing for %.0f s",
                                      load.stalled_s)};
   }
   if (load.recovering) {

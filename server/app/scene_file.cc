@@ -191,10 +191,14 @@ void AddTechniqueOptions(CLI::App& command, SceneFlags& flags) {
   CLI::Option* quality =
       command
           .add_option("--quality", flags.preset,
-                      "fast (half the samples, no detail), balanced (the default) or true (as "
+                      "fast (half the samples, no detail), balanced (the default) or accurate (as "
                       "balanced, and a single image waits for the path-traced correction of its "
                       "light, which takes minutes)")
-          ->check(CLI::IsMember({"fast", "balanced", "true"}));
+          ->transform([](const std::string& name) {
+            // "true" is the earlier name of this quality.
+            return name == "true" ? std::string("accurate") : name;
+          })
+          ->check(CLI::IsMember({"fast", "balanced", "accurate"}));
   CLI::Option* preset = command.add_option(
       "--preset", flags.preset, "A named setting, such as the papers' per_field_phase_translucent");
   CLI::Option* renderer = command.add_option("--renderer", flags.technique,

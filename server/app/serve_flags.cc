@@ -26,6 +26,8 @@ constexpr std::array kRarelyChanged = {
     "--max-connections",
     "--max-connections-each",
     "--max-handshakes-each",
+    "--max-images",
+    "--max-images-each",
     "--max-job-pictures",
     "--max-job-pictures-each",
     "--max-jobs",
@@ -39,8 +41,6 @@ constexpr std::array kRarelyChanged = {
     "--max-requests",
     "--max-samples",
     "--max-sessions-each",
-    "--max-stills",
-    "--max-stills-each",
     "--max-streams",
     "--max-streams-each",
     "--max-streams-per-connection",
@@ -164,10 +164,11 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
   AddLimit(serve, "--max-predicted-render-time", flags.render_loop.image_limits.max_predicted_s,
            0.001, 1e6,
            "Maximum predicted seconds of drawing for a single image; costlier ones are refused");
-  AddLimit(serve, "--max-stills", flags.render_loop.max_waiting_images, 0, 1e6,
+  // The second names of these two flags are earlier ones, which are still accepted.
+  AddLimit(serve, "--max-images,--max-stills", flags.render_loop.max_waiting_images, 0, 1e6,
            "Maximum number of single images that wait to be drawn");
-  AddLimit(serve, "--max-stills-each", flags.render_loop.max_waiting_images_each, 0, 1e6,
-           "Maximum number of single images of one identity that wait to be drawn");
+  AddLimit(serve, "--max-images-each,--max-stills-each", flags.render_loop.max_waiting_images_each,
+           0, 1e6, "Maximum number of single images of one identity that wait to be drawn");
   AddLimit(serve, "--max-waiting", flags.executor.max_waiting, 1, 1e6,
            "Maximum number of other requests that wait for a storm to be read, described, mapped "
            "or probed");

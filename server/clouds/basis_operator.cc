@@ -14,7 +14,7 @@ constexpr int kSlabLayers = 4;
 constexpr int kBallsAChunk = 64;
 
 // Eight partial sums, which the compiler can keep in one vector register.
-constexpr std::size_t kLanes = 8;
+constexpr std::size_t kSimdWidth = 8;
 
 // The values of a ball in one row of cells along x, for x from 0 to count - 1.
 struct GaussianRow {
@@ -36,11 +36,11 @@ struct WyvillRow {
 
 template <typename Values, typename Weigh>
 float SumRow(const Values& values, std::size_t count, const Weigh& weigh) {
-  std::array<float, kLanes> sums{};
+  std::array<float, kSimdWidth> sums{};
   std::size_t x = 0;
-  for (; x + kLanes <= count; x += kLanes) {
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      sums[lane] += weigh(values(x + lane), x + lane);
+  for (; x + kSimdWidth <= count; x += kSimdWidth) {
+    for (std::size_t i = 0; i < kSimdWidth; ++i) {
+      sums[i] += weigh(values(x + i), x + i);
     }
   }
   float sum = 0.0F;

@@ -15,7 +15,7 @@ using telemetry::Counted;
 int Worth(const FrameForm& form) {
   int worth = kTiers - form.tier;
   if (form.kind == FrameForm::Kind::kJpeg) worth += kTiers;
-  if (form.kind == FrameForm::Kind::kStill) worth += 2 * kTiers;
+  if (form.kind == FrameForm::Kind::kResting) worth += 2 * kTiers;
   return worth;
 }
 
@@ -60,7 +60,7 @@ bool FrameHub::IsTooSmall(const Watch& watch, const PublishedFrame& frame) {
   switch (watch.last_form.kind) {
     case FrameForm::Kind::kJpeg:
       return JpegTier(watch, frame) < watch.last_form.tier;
-    case FrameForm::Kind::kStill:
+    case FrameForm::Kind::kResting:
       return TierForWindow(WidthOf(frame.Described()), watch.wants.window_width_px) <
              watch.last_form.tier;
     case FrameForm::Kind::kVideo:
@@ -103,14 +103,16 @@ std::optional<int> FrameHub::VideoTier(const Watch& watch, const PictureWidth& w
   return std::max(TierForWindow(width, watch.wants.window_width_px), watch.link.step() - 1);
 }
 
-bool FrameHub::KeepsStill(const Watch& watch, const EncodedFrame& next, Time now) const {
-  // Frames by the Monte Carlo reference come too fast to wait for their stills. The stills of other
-  // frames may be late on a busy machine, so the wait is limited.
+bool FrameHub::KeepsRestingFrame(const Watch& watch, const EncodedFrame& next, Time now) const {
+  // Frames by the Monte Carlo reference come too fast to wait for their resting frames. Those of
+  // other frames may be late on a busy machine, so the wait is limited.
   if (next.refinement.has_value()) return false;
-  if (stills_due_since_.has_value() && now - *stills_due_since_ > kLongestForStill) return false;
+  if (resting_frame_due_since_.has_value() &&
+      now - *resting_frame_due_since_ > kLongestForRestingFrame)
+    return false;
   const int for_window = TierForWindow(WidthOf(next), watch.wants.window_width_px);
-  return watch.wants.takes_stills && watch.last_revision == next.scene_revision &&
-         watch.last_form == FrameForm{FrameForm::Kind::kStill, for_window};
+  return watch.wants.takes_resting_frames && watch.last_revision == next.scene_revision &&
+         watch.last_form == FrameForm{FrameForm::Kind::kResting, for_window};
 }
 
 std::size_t FrameHub::MaxInFlight(const Watch& watch) {
@@ -153,15 +155,15 @@ std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedF
     return Offer{described.sequence, form, {}};
   };
   const int for_window = TierForWindow(WidthOf(described), watch.wants.window_width_px);
-  if (watch.wants.takes_stills && frame.Still(for_window) != nullptr) {
-    return if_wanted({FrameForm::Kind::kStill, for_window});
+  if (watch.wants.takes_resting_frames && frame.RestingFrame(for_window) != nullptr) {
+    return if_wanted({FrameForm::Kind::kResting, for_window});
   }
-  if (frame.StillFollows() && KeepsStill(watch, described, now)) return std::nullopt;
+  if (frame.RestingFrameFollows() && KeepsRestingFrame(watch, described, now)) return std::nullopt;
   const FrameForm jpeg{FrameForm::Kind::kJpeg, JpegTier(watch, frame)};
   const std::optional<int> video_tier = VideoTier(watch, WidthOf(described));
   if (!video_tier.has_value()) return if_wanted(jpeg);
-  const bool awaits_still = watch.wants.takes_stills && frame.StillFollows();
-  if (frame.Rests() && !awaits_still) return if_wanted(jpeg);
+  const bool awaits_resting_frame = watch.wants.takes_resting_frames && frame.RestingFrameFollows();
+  if (frame.Rests() && !awaits_resting_frame) return if_wanted(jpeg);
   if (auto video = VideoFor(watch, frame, *video_tier); video.has_value()) return video;
   // The viewer gets small JPEG pictures until the next key picture. A viewer that has the stream's
   // base picture needs none.
@@ -236,8 +238,8 @@ std::shared_ptr<const EncodedFrame> FrameHub::Made(const Offer& offer, Published
   switch (offer.form.kind) {
     case FrameForm::Kind::kVideo:
       return offer.picture.frame;
-    case FrameForm::Kind::kStill:
-      return published.Still(offer.form.tier);
+    case FrameForm::Kind::kResting:
+      return published.RestingFrame(offer.form.tier);
     case FrameForm::Kind::kJpeg:
       break;
   }
@@ -331,15 +333,16 @@ void FrameHub::LoseVideo(std::uint64_t viewer_id, std::optional<Time> at) {
   if (found != watches_.end()) found->second.place.Lost(now);
 }
 
-std::vector<VideoOrder> FrameHub::OrderVideo(const EncodedFrame& described, bool still_follows,
-                                             std::optional<Time> at) {
+std::vector<VideoOrder> FrameHub::OrderVideo(const EncodedFrame& described,
+                                             bool resting_frame_follows, std::optional<Time> at) {
   const Time now = at.value_or(time_.Now());
   const std::lock_guard lock(mutex_);
   for (VideoStream& stream : streams_) stream.Begin();
   for (auto& [id, watch] : watches_) {
     const std::optional<int> tier = VideoTier(watch, WidthOf(described));
-    const bool gets_jpeg = described.at_rest && !(still_follows && watch.wants.takes_stills);
-    const bool waits = still_follows && KeepsStill(watch, described, now);
+    const bool gets_jpeg =
+        described.at_rest && !(resting_frame_follows && watch.wants.takes_resting_frames);
+    const bool waits = resting_frame_follows && KeepsRestingFrame(watch, described, now);
     if (!tier.has_value() || gets_jpeg || waits) continue;
     streams_[static_cast<std::size_t>(*tier)].Ask(
         *tier, {&watch.place, IsReady(watch, now), watch.last_sequence}, now);
@@ -353,7 +356,7 @@ std::vector<VideoOrder> FrameHub::OrderVideo(const EncodedFrame& described, bool
 }
 
 std::uint64_t FrameHub::Publish(EncodedFrame described, EncodeFrame encode,
-                                std::vector<EncodedVideo> video, bool still_follows,
+                                std::vector<EncodedVideo> video, bool resting_frame_follows,
                                 std::optional<Time> at) {
   const Time now = at.value_or(time_.Now());
   const std::uint64_t scene_revision = described.scene_revision;
@@ -364,10 +367,11 @@ std::uint64_t FrameHub::Publish(EncodedFrame described, EncodeFrame encode,
     const std::lock_guard lock(mutex_);
     sequence = ++frame_count_;
     described.sequence = sequence;
-    const bool goes_on =
-        still_follows && frame_ != nullptr && frame_->Described().scene_revision == scene_revision;
-    if (!goes_on) stills_due_since_.reset();
-    if (still_follows && !stills_due_since_.has_value()) stills_due_since_ = now;
+    const bool goes_on = resting_frame_follows && frame_ != nullptr &&
+                         frame_->Described().scene_revision == scene_revision;
+    if (!goes_on) resting_frame_due_since_.reset();
+    if (resting_frame_follows && !resting_frame_due_since_.has_value())
+      resting_frame_due_since_ = now;
     VideoPictures pictures;
     for (EncodedVideo& one : video) {
       one.frame.sequence = sequence;
@@ -377,7 +381,7 @@ std::uint64_t FrameHub::Publish(EncodedFrame described, EncodeFrame encode,
                              std::make_shared<const EncodedFrame>(std::move(one.frame)), now);
     }
     published = std::make_shared<PublishedFrame>(std::move(described), std::move(encode),
-                                                 std::move(pictures), still_follows);
+                                                 std::move(pictures), resting_frame_follows);
     for (const auto& [id, watch] : watches_) {
       const auto offer = OfferFor(watch, *published, now);
       if (offer.has_value() && offer->form.kind == FrameForm::Kind::kJpeg) {
@@ -405,27 +409,27 @@ std::shared_ptr<PublishedFrame> FrameHub::Newest(std::uint64_t sequence) const {
 
 bool FrameHub::IsNewest(std::uint64_t sequence) const { return Newest(sequence) != nullptr; }
 
-void FrameHub::AddStill(std::uint64_t sequence, int tier, EncodedFrame still) {
+void FrameHub::AddRestingFrame(std::uint64_t sequence, int tier, EncodedFrame resting_frame) {
   const auto frame = Newest(sequence);
   if (frame == nullptr) return;
-  still.sequence = sequence;
-  frame->SetStill(tier, std::move(still));
-  StillsCame();
+  resting_frame.sequence = sequence;
+  frame->SetRestingFrame(tier, std::move(resting_frame));
+  RestingFrameCame();
   frame->Rest();
   WakeAll();
 }
 
-void FrameHub::NoStills(std::uint64_t sequence) {
+void FrameHub::NoRestingFrame(std::uint64_t sequence) {
   const auto frame = Newest(sequence);
   if (frame == nullptr) return;
-  frame->NoStills();
-  StillsCame();
+  frame->NoRestingFrame();
+  RestingFrameCame();
   WakeAll();
 }
 
-void FrameHub::StillsCame() {
+void FrameHub::RestingFrameCame() {
   const std::lock_guard lock(mutex_);
-  stills_due_since_.reset();
+  resting_frame_due_since_.reset();
 }
 
 void FrameHub::Rest(std::uint64_t sequence) {
@@ -477,11 +481,11 @@ bool FrameHub::HasViewers() const {
   return !watches_.empty();
 }
 
-std::array<bool, kTiers> FrameHub::StillTiers(const PictureWidth& width) const {
+std::array<bool, kTiers> FrameHub::RestingTiers(const PictureWidth& width) const {
   std::array<bool, kTiers> wanted{};
   const std::lock_guard lock(mutex_);
   for (const auto& [id, watch] : watches_) {
-    if (!watch.wants.takes_stills) continue;
+    if (!watch.wants.takes_resting_frames) continue;
     wanted[static_cast<std::size_t>(TierForWindow(width, watch.wants.window_width_px))] = true;
   }
   return wanted;

@@ -35,12 +35,12 @@ using FrameEvent = std::variant<std::shared_ptr<const EncodedFrame>, Problem>;
 
 // A viewer's settings for the frames that it receives.
 struct ViewerWants {
-  int window_width_px = 0;         // 0 means the width that the scene asks for
-  double frames_per_second = 0.0;  // maximum rate; 0 means no limit
-  bool adapts = false;             // accepts smaller pictures on a slow link
-  bool takes_video = false;        // accepts VP9 video; has an effect only if `adapts` is set
-  bool takes_stills = false;       // accepts AVIF stills (frames at rest in higher quality)
-  bool saves_bytes = false;        // prefers video even on a fast link
+  int window_width_px = 0;            // 0 means the width that the scene asks for
+  double frames_per_second = 0.0;     // maximum rate; 0 means no limit
+  bool adapts = false;                // accepts smaller pictures on a slow link
+  bool takes_video = false;           // accepts VP9 video; has an effect only if `adapts` is set
+  bool takes_resting_frames = false;  // accepts resting frames (AVIF of higher quality)
+  bool saves_bytes = false;           // prefers video even on a fast link
 
   bool operator==(const ViewerWants&) const = default;
 };
@@ -72,9 +72,9 @@ class FrameHub {
   // If at least this many viewers can decode video, all of these get video. One video encoding then
   // costs less than sending JPEG to each of them.
   static constexpr int kManyForVideo = 12;
-  // Maximum time that a viewer that has a still keeps it while waiting for the next still of the
-  // same scene.
-  static constexpr std::chrono::seconds kLongestForStill{2};
+  // Maximum time that a viewer that has a resting frame keeps it while waiting for the next one of
+  // the same scene.
+  static constexpr std::chrono::seconds kLongestForRestingFrame{2};
 
   // Both callbacks are called without the lock. The hub calls `on_demand` when a viewer joins,
   // leaves or becomes ready for another frame. It calls `on_wait` when a caller must call
@@ -111,20 +111,20 @@ class FrameHub {
   std::optional<Time> WakeWaiting(Time now);
 
   // Returns the video pictures to encode of a frame before it is published. Viewers get a frame at
-  // rest as JPEG, except viewers that take stills if stills of the frame follow. Those get it as
-  // video if they have no still of the scene, and otherwise wait for the frame's still.
-  std::vector<VideoOrder> OrderVideo(const EncodedFrame& described, bool still_follows,
+  // rest as JPEG, except viewers that take resting frames if a resting frame follows. Those get it
+  // as video if they have no resting frame of the scene, and otherwise wait for the new one.
+  std::vector<VideoOrder> OrderVideo(const EncodedFrame& described, bool resting_frame_follows,
                                      std::optional<Time> at = std::nullopt);
   // Replaces the newest frame and returns its sequence. `described` is the frame without a picture.
   // `encode` makes the JPEG of each tier that a viewer needs.
   std::uint64_t Publish(EncodedFrame described, EncodeFrame encode = nullptr,
-                        std::vector<EncodedVideo> video = {}, bool still_follows = false,
+                        std::vector<EncodedVideo> video = {}, bool resting_frame_follows = false,
                         std::optional<Time> at = std::nullopt);
-  // The next three calls have an effect only if the newest frame has that sequence. AddStill adds
-  // the frame's still in one tier. NoStills records that the frame gets no stills. Rest records
-  // that no newer frame has come for a while.
-  void AddStill(std::uint64_t sequence, int tier, EncodedFrame still);
-  void NoStills(std::uint64_t sequence);
+  // The next three calls have an effect only if the newest frame has that sequence. AddRestingFrame
+  // adds the frame's encoding of higher quality in one tier. NoRestingFrame records that none
+  // follows. Rest records that no newer frame has come for a while.
+  void AddRestingFrame(std::uint64_t sequence, int tier, EncodedFrame resting_frame);
+  void NoRestingFrame(std::uint64_t sequence);
   void Rest(std::uint64_t sequence);
   // Replaces the newest problem. The problem ends when a frame of the same or a newer revision is
   // published.
@@ -145,16 +145,16 @@ class FrameHub {
   std::size_t Viewers() const;
   // Returns true if a viewer can be sent another frame now.
   bool HasReadyViewer() const;
-  // Returns, for each tier, whether a viewer now takes stills in that tier. `width` is the width of
-  // the frame.
-  std::array<bool, kTiers> StillTiers(const PictureWidth& width) const;
+  // Returns, for each tier, whether a viewer now takes resting frames in that tier. `width` is the
+  // width of the frame.
+  std::array<bool, kTiers> RestingTiers(const PictureWidth& width) const;
   bool IsNewest(std::uint64_t sequence) const;
 
  private:
   struct Sent {
     std::uint64_t sequence = 0;
     Time at;
-    bool moving = false;  // true for every form except a still
+    bool moving = false;  // true for every form except a resting frame
     bool video = false;
     bool was_last = false;  // the window was full, so that no further frame could be sent meanwhile
     std::optional<Time> changed_at;  // set if it is the first frame of its revision that was sent
@@ -192,9 +192,9 @@ class FrameHub {
   static bool IsReady(const Watch& watch, Time now);
   // The following functions need mutex_.
   //
-  // Returns true if the viewer shows a still of the frame's scene and waits for the still of frame
-  // `next`. Until then, any other form of the frame would look worse.
-  bool KeepsStill(const Watch& watch, const EncodedFrame& next, Time now) const;
+  // Returns true if the viewer shows a resting frame of the scene and waits for the resting frame
+  // of `next`. Until then, any other form of the frame would look worse.
+  bool KeepsRestingFrame(const Watch& watch, const EncodedFrame& next, Time now) const;
   std::optional<Offer> OfferFor(const Watch& watch, PublishedFrame& frame, Time now) const;
   std::optional<Offer> VideoFor(const Watch& watch, const PublishedFrame& frame, int tier) const;
   std::optional<Offer> NextFor(const Watch& watch, Time now) const;
@@ -208,7 +208,7 @@ class FrameHub {
   bool Took(Watch& watch, const Offer& offer, Time now);
   void SetLeastSteps(Time now);
   std::shared_ptr<PublishedFrame> Newest(std::uint64_t sequence) const;
-  void StillsCame();
+  void RestingFrameCame();
   void WakeAll();
 
   const std::function<void()> on_demand_;
@@ -217,8 +217,8 @@ class FrameHub {
   mutable std::mutex mutex_;
   std::map<std::uint64_t, Watch> watches_;
   std::shared_ptr<PublishedFrame> frame_;
-  // Set since frames of the newest scene were published whose stills have not arrived yet.
-  std::optional<Time> stills_due_since_;
+  // Set since frames of the newest scene were published whose resting frames have not arrived yet.
+  std::optional<Time> resting_frame_due_since_;
   std::array<VideoStream, kTiers> streams_;
   std::optional<Problem> problem_;
   std::uint64_t problem_count_ = 0;

@@ -36,7 +36,8 @@ class LinkEstimate {
   // Records that a frame sent at `sent_at` was acknowledged.
   void Acknowledged(Time now, Time sent_at);
 
-  // Returns the step for moving pictures. Stills ignore it, because they are worth waiting for.
+  // Returns the step for moving pictures. Resting frames ignore it, because they are worth waiting
+  // for.
   int step() const { return step_; }
 
  private:

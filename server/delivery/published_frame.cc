@@ -6,11 +6,11 @@
 namespace thunderhead::delivery {
 
 PublishedFrame::PublishedFrame(EncodedFrame described, EncodeFrame encode, VideoPictures video,
-                               bool still_follows)
+                               bool resting_frame_follows)
     : described_(std::move(described)),
       encode_(std::move(encode)),
       video_(std::move(video)),
-      still_follows_(still_follows),
+      resting_frame_follows_(resting_frame_follows),
       rests_(described_.at_rest) {}
 
 std::shared_ptr<const EncodedFrame> PublishedFrame::Jpeg(int tier) {
@@ -22,24 +22,25 @@ std::shared_ptr<const EncodedFrame> PublishedFrame::Jpeg(int tier) {
   return frame;
 }
 
-void PublishedFrame::SetStill(int tier, EncodedFrame still) {
+void PublishedFrame::SetRestingFrame(int tier, EncodedFrame resting_frame) {
   const std::lock_guard lock(mutex_);
-  stills_[static_cast<std::size_t>(tier)] = std::make_shared<const EncodedFrame>(std::move(still));
+  resting_frames_[static_cast<std::size_t>(tier)] =
+      std::make_shared<const EncodedFrame>(std::move(resting_frame));
 }
 
-std::shared_ptr<const EncodedFrame> PublishedFrame::Still(int tier) const {
+std::shared_ptr<const EncodedFrame> PublishedFrame::RestingFrame(int tier) const {
   const std::lock_guard lock(mutex_);
-  return stills_[static_cast<std::size_t>(tier)];
+  return resting_frames_[static_cast<std::size_t>(tier)];
 }
 
-void PublishedFrame::NoStills() {
+void PublishedFrame::NoRestingFrame() {
   const std::lock_guard lock(mutex_);
-  still_follows_ = false;
+  resting_frame_follows_ = false;
 }
 
-bool PublishedFrame::StillFollows() const {
+bool PublishedFrame::RestingFrameFollows() const {
   const std::lock_guard lock(mutex_);
-  return still_follows_;
+  return resting_frame_follows_;
 }
 
 void PublishedFrame::Rest() {

@@ -1,6 +1,6 @@
 // The newest frame of a session in all forms that viewers take: JPEG in several sizes, video
-// pictures, and stills. Stills have higher quality and are added a little later. Safe from any
-// thread.
+// pictures, and resting frames. A resting frame is an AVIF encoding of higher quality, which is
+// added a little later. Safe from any thread.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ using VideoPictures = std::array<VideoPicture, kTiers>;
 
 // An encoding and size of a frame.
 struct FrameForm {
-  enum class Kind { kJpeg, kVideo, kStill };
+  enum class Kind { kJpeg, kVideo, kResting };
 
   Kind kind = Kind::kJpeg;
   int tier = 0;
@@ -36,9 +36,9 @@ struct FrameForm {
 class PublishedFrame {
  public:
   // `described` has no picture. Without `encode`, Jpeg returns `described` itself for every tier.
-  // If `still_follows` is true, a call of SetStill or NoStills must follow.
+  // If `resting_frame_follows` is true, a call of SetRestingFrame or NoRestingFrame must follow.
   PublishedFrame(EncodedFrame described, EncodeFrame encode, VideoPictures video = {},
-                 bool still_follows = false);
+                 bool resting_frame_follows = false);
 
   const EncodedFrame& Described() const { return described_; }
 
@@ -47,11 +47,11 @@ class PublishedFrame {
 
   const VideoPicture& Video(int tier) const { return video_[static_cast<std::size_t>(tier)]; }
 
-  void SetStill(int tier, EncodedFrame still);
-  std::shared_ptr<const EncodedFrame> Still(int tier) const;
-  // Records that the frame gets no stills although they were announced.
-  void NoStills();
-  bool StillFollows() const;
+  void SetRestingFrame(int tier, EncodedFrame resting_frame);
+  std::shared_ptr<const EncodedFrame> RestingFrame(int tier) const;
+  // Records that the frame gets no resting frame although one was announced.
+  void NoRestingFrame();
+  bool RestingFrameFollows() const;
 
   // Records that no newer frame has come for a while, so that viewers get this frame in full
   // quality.
@@ -65,8 +65,8 @@ class PublishedFrame {
   std::mutex encoding_;  // held while a JPEG is encoded
   std::array<std::shared_ptr<const EncodedFrame>, kTiers> jpegs_;
   mutable std::mutex mutex_;  // guards the members below
-  std::array<std::shared_ptr<const EncodedFrame>, kTiers> stills_;
-  bool still_follows_;
+  std::array<std::shared_ptr<const EncodedFrame>, kTiers> resting_frames_;
+  bool resting_frame_follows_;
   bool rests_;
 };
 

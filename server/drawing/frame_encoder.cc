@@ -103,11 +103,12 @@ absl::StatusOr<delivery::EncodedVideo> WithVideo(const delivery::EncodedFrame& d
 // Returns the video pictures that viewers wait for. If encoding fails, the picture is left out, and
 // its viewers get JPEG.
 std::vector<delivery::EncodedVideo> VideoOf(const delivery::EncodedFrame& described,
-                                            session::Session& session, bool still_follows,
+                                            session::Session& session, bool resting_frame_follows,
                                             Pictures& pictures, base::MemoryBudget& memory,
                                             const SerializeFrame& serialize) {
   std::vector<delivery::EncodedVideo> video;
-  for (const delivery::VideoOrder& order : session.hub().OrderVideo(described, still_follows)) {
+  for (const delivery::VideoOrder& order :
+       session.hub().OrderVideo(described, resting_frame_follows)) {
     auto encoded = base::Guarded([&] {
       return WithVideo(described, order, pictures.At(order.tier), session.video(), memory,
                        serialize);
@@ -141,29 +142,29 @@ delivery::EncodeFrame JpegEncoder(const std::shared_ptr<session::Session>& sessi
 }
 
 void EncodeAndPublish(DrawnFrame drawn, const SerializeFrame& serialize, base::MemoryBudget& memory,
-                      StillMaker& stills, session::Clock::time_point now) {
+                      RestingFrameEncoder& resting_frames, session::Clock::time_point now) {
   const std::shared_ptr<session::Session>& session = drawn.session;
   const delivery::EncodedFrame described = Described(drawn, now);
   Count(described, drawn.scene);
   const auto pictures = std::make_shared<Pictures>(frame::RgbImage{
       drawn.picture.width_px, drawn.picture.height_px, std::move(drawn.picture.rgb)});
-  const bool still_follows = drawn.fine.has_value();
-  auto video = VideoOf(described, *session, still_follows, *pictures, memory, serialize);
+  const bool resting_frame_follows = drawn.fine.has_value();
+  auto video = VideoOf(described, *session, resting_frame_follows, *pictures, memory, serialize);
   const std::uint64_t sequence = session->hub().Publish(
       described, JpegEncoder(session, pictures, drawn.scene.output.jpeg_quality, serialize),
-      std::move(video), still_follows);
+      std::move(video), resting_frame_follows);
   if (!drawn.refined) return;
   const absl::Status made = base::Guarded([&] {
-    StillToMake still{session, sequence, described, drawn.rests_at, nullptr};
-    if (still_follows) {
-      still.fine =
+    RestingFrame resting{session, sequence, described, drawn.rests_at, nullptr};
+    if (resting_frame_follows) {
+      resting.fine =
           std::make_shared<delivery::PictureSizes<frame::FineImage>>(*std::move(drawn.fine));
     }
-    stills.Make(std::move(still));
+    resting_frames.Encode(std::move(resting));
     return absl::OkStatus();
   });
-  // The frame is published already, so viewers must not wait for its still.
-  if (!made.ok()) session->hub().NoStills(sequence);
+  // The frame is published already, so viewers must not wait for its resting frame.
+  if (!made.ok()) session->hub().NoRestingFrame(sequence);
 }
 
 }  // namespace
@@ -175,7 +176,7 @@ FrameEncoder::FrameEncoder(int threads, SerializeFrame serialize,
       memory_(std::move(memory)),
       on_encoded_(std::move(on_encoded)),
       time_(time),
-      stills_(serialize_, time) {
+      resting_frames_(serialize_, time) {
   for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { Run(); });
 }
 
@@ -224,7 +225,7 @@ void FrameEncoder::Run() {
     lock.unlock();
     const std::uint64_t revision = drawn.scene_revision;
     const absl::Status encoded = base::Guarded([&] {
-      EncodeAndPublish(std::move(drawn), serialize_, *memory_, stills_, time_.Now());
+      EncodeAndPublish(std::move(drawn), serialize_, *memory_, resting_frames_, time_.Now());
       return absl::OkStatus();
     });
     if (!encoded.ok()) session->hub().Publish(delivery::ProblemOf(revision, encoded));

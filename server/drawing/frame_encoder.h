@@ -1,5 +1,5 @@
 // Encodes sessions' frames as JPEG and video on separate threads, and publishes them in the order
-// in which they were drawn. Stills of higher quality are published later (still_maker.h). The
+// in which they were drawn. Resting frames are published later (resting_frame_encoder.h). The
 // render loop submits at most two frames of a session at a time, which bounds the queue.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 #include "base/time_source.h"
 #include "drawing/frame_source.h"
-#include "drawing/still_maker.h"
+#include "drawing/resting_frame_encoder.h"
 #include "scene/view.h"
 #include "session/sessions.h"
 
@@ -30,7 +30,7 @@ struct DrawnFrame {
   // When the scene counts as at rest, unless it changes earlier.
   session::Clock::time_point rests_at;
   DisplayFrame picture;
-  std::optional<frame::FineImage> fine;  // set if viewers take stills of higher quality
+  std::optional<frame::FineImage> fine;  // set if viewers take resting frames
   // Set if the Monte Carlo reference drew the picture.
   std::optional<delivery::Refinement> refinement;
   scene::View view;
@@ -61,7 +61,7 @@ class FrameEncoder {
   const std::shared_ptr<base::MemoryBudget> memory_;
   const std::function<void()> on_encoded_;
   const base::TimeSource& time_;
-  StillMaker stills_;
+  RestingFrameEncoder resting_frames_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool stopping_ = false;

@@ -27,14 +27,14 @@ struct PlannerTargets {
   // frame is shown within 300 ms.
   double refined_ms = 180.0;
   session::Clock::duration rest_delay = std::chrono::milliseconds(80);
-  // The longest that other sessions may wait for the lane that draws a picture. A frame with a
+  // The longest that other sessions may wait for the worker that draws a picture. A frame with a
   // longer predicted time is drawn only after its scene has rested for as long as predicted. (The
   // prediction may be too long, because it may stem from a moment when the machine was busy.)
   double longest_ms = 5000.0;
   // If the full-quality frame of a scene is predicted to take longer than this, the scene stays at
   // the finest quality that is predicted to take no longer.
   double longest_at_rest_ms = 20'000.0;
-  // A frame at rest whose predicted time is longer than this is drawn in pieces, in a lane.
+  // A frame at rest whose predicted time is longer than this is drawn in pieces, by a worker.
   double whole_ms = 30.0;
   // The delay before a full-quality frame that takes longer than refined_ms. Such a frame would
   // delay the response to a next change. So it waits until the scene has very likely come to rest.

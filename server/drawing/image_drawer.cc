@@ -14,7 +14,7 @@
 namespace thunderhead::drawing {
 namespace {
 
-// A picture whose predicted time is at most this may use the lane for quick pictures.
+// A picture whose predicted time is at most this may use the worker for quick pictures.
 constexpr double kQuick_ms = 5e3;
 // Maximum number of pictures that hold their fields while paths are traced for them.
 constexpr std::ptrdiff_t kMaxTraced = 8;
@@ -45,13 +45,13 @@ absl::Status TooCostly(double predicted_s, double max_s) {
 
 ImageDrawer::ImageDrawer(const ImageLimits& limits, ImageQueue& queue, MeasuredSource& source,
                          std::shared_ptr<Preparation> preparation, LightTracer& tracer,
-                         const Lanes& lanes, const base::TimeSource& time)
+                         const Workers& workers, const base::TimeSource& time)
     : limits_(limits),
       queue_(queue),
       source_(source),
       preparation_(std::move(preparation)),
       tracer_(tracer),
-      lanes_(lanes),
+      workers_(workers),
       time_(time) {}
 
 void ImageDrawer::Attend() {
@@ -60,8 +60,8 @@ void ImageDrawer::Attend() {
   for (auto image = begun_.begin(); image != begun_.end();) {
     image = Ends(*image) ? begun_.erase(image) : std::next(image);
   }
-  Begin(lanes_.quick);
-  Begin(lanes_.any);
+  Begin(workers_.quick);
+  Begin(workers_.any);
 }
 
 absl::Status ImageDrawer::Admit(ImageJob& job) const {
@@ -73,18 +73,18 @@ absl::Status ImageDrawer::Admit(ImageJob& job) const {
                                                 : TooCostly(predicted_s, limits_.max_predicted_s);
 }
 
-void ImageDrawer::Begin(Lane& lane) {
-  if (!lane.IsIdle()) return;
+void ImageDrawer::Begin(Worker& worker) {
+  if (!worker.IsIdle()) return;
   // Pictures that already hold their fields are started first.
   const auto ready = std::ranges::find_if(begun_, [&](const Begun& image) {
     const bool waits = image.phase == Phase::kToDraw || image.phase == Phase::kToRead;
-    return waits && Suits(lane, image.quick);
+    return waits && Suits(worker, image.quick);
   });
-  if (ready != begun_.end()) return WorkIn(lane, *ready);
+  if (ready != begun_.end()) return WorkIn(worker, *ready);
   const auto traced =
       std::ranges::count_if(begun_, [](const Begun& image) { return IsTraced(image.job); });
   std::optional<ImageJob> job = queue_.Take([&](const ImageJob& waits) {
-    return Suits(lane, waits.predicted_ms <= kQuick_ms) &&
+    return Suits(worker, waits.predicted_ms <= kQuick_ms) &&
            (traced < kMaxTraced || !IsTraced(waits));
   });
   if (!job.has_value()) return;
@@ -94,16 +94,16 @@ void ImageDrawer::Begin(Lane& lane) {
   image.name = absl::StrCat("picture ", ++count_);
   image.quick = quick;
   image.begun_at = time_.Now();
-  WorkIn(lane, image);
+  WorkIn(worker, image);
 }
 
-void ImageDrawer::WorkIn(Lane& lane, Begun& image) {
-  image.lane = &lane;
+void ImageDrawer::WorkIn(Worker& worker, Begun& image) {
+  image.worker = &worker;
   if (image.phase == Phase::kToDraw) image.phase = Phase::kDrawing;
   if (image.phase == Phase::kToRead) image.phase = Phase::kReading;
   const bool draws = image.phase == Phase::kDrawing || !IsTraced(image.job);
-  // `image` stays valid: it remains in `begun_` until the lane is idle.
-  lane.Begin(
+  // `image` stays valid: it remains in `begun_` until the worker is idle.
+  worker.Begin(
       [&image, draws, preparation = preparation_](const absl::StatusOr<FrameSource*>& source) {
         image.status = base::Guarded([&]() -> absl::Status {
           THUNDERHEAD_RETURN_IF_ERROR(source.status());
@@ -160,8 +160,8 @@ bool ImageDrawer::Ends(Begun& image) {
   if (image.phase == Phase::kTracing || image.phase == Phase::kMeasuring) {
     return EndsTracing(image);
   }
-  if (image.lane == nullptr || !image.lane->IsIdle()) return false;
-  image.lane = nullptr;
+  if (image.worker == nullptr || !image.worker->IsIdle()) return false;
+  image.worker = nullptr;
   if (TriesAgain(image)) return false;
   if (image.status.ok() && !image.frame.has_value()) {
     AwaitsLight(*image.job.decided) ? Trace(image) : Measure(image);

@@ -1,5 +1,6 @@
-// Draws the pictures of an ImageQueue in lanes, which run alongside the render loop. A picture that
-// waits for traced light does not occupy a lane meanwhile. Used by the render loop's thread only.
+// Gives the pictures of an ImageQueue to workers, which draw them alongside the render loop. A
+// picture that waits for traced light does not occupy a worker meanwhile. Used by the render loop's
+// thread only.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +18,9 @@
 #include "accuracy/measured_errors.h"
 #include "base/time_source.h"
 #include "drawing/image_queue.h"
-#include "drawing/lane.h"
 #include "drawing/light_tracer.h"
 #include "drawing/measured_source.h"
+#include "drawing/worker.h"
 
 namespace thunderhead::drawing {
 
@@ -30,23 +31,23 @@ struct ImageLimits {
 
 class ImageDrawer {
  public:
-  // Pictures with a short predicted time have a lane of their own, so that they do not wait for
+  // Pictures with a short predicted time have a worker of their own, so that they do not wait for
   // long ones.
-  struct Lanes {
-    Lane& quick;
-    Lane& any;
+  struct Workers {
+    Worker& quick;
+    Worker& any;
   };
 
-  // All references must outlive the drawer. The lanes' work must have ended before the drawer is
+  // All references must outlive the drawer. The workers' work must have ended before the drawer is
   // destroyed. `preparation` is null if no scene needs preparation.
   ImageDrawer(const ImageLimits& limits, ImageQueue& queue, MeasuredSource& source,
-              std::shared_ptr<Preparation> preparation, LightTracer& tracer, const Lanes& lanes,
+              std::shared_ptr<Preparation> preparation, LightTracer& tracer, const Workers& workers,
               const base::TimeSource& time = base::SteadyTime());
 
   // Completes finished and cancelled pictures, admits new pictures, and starts pictures for which a
-  // lane is free.
+  // worker is free.
   void Attend();
-  // Ends all started pictures. Those that are not drawn yet get the error `why`. The lanes' work
+  // Ends all started pictures. Those that are not drawn yet get the error `why`. The workers' work
   // must have ended.
   void EndAll(const absl::Status& why);
 
@@ -59,7 +60,7 @@ class ImageDrawer {
     std::string name;  // name in the light tracer
     bool quick = false;
     Phase phase = Phase::kReading;
-    Lane* lane = nullptr;  // lane that works on it; null while no lane does
+    Worker* worker = nullptr;  // worker that works on it; null while no worker does
     std::shared_ptr<const volume::HydrometeorFields> fields;
     std::vector<StageTime> stages;  // costs of the stages before drawing
     std::int64_t wanted_paths = 0;
@@ -68,19 +69,19 @@ class ImageDrawer {
     int refuted = 0;   // number of settings whose error turned out too large
     int attempts = 0;  // number of attempts to draw it
     base::TimeSource::Clock::time_point begun_at{};
-    // Written by the lane.
+    // Written by the worker.
     absl::Status status;
     std::optional<DisplayFrame> frame;
   };
 
   absl::Status Admit(ImageJob& job) const;
-  // The following functions run in a lane.
+  // The following functions run on a worker's thread.
   static absl::Status Read(Begun& image, const std::shared_ptr<Preparation>& preparation);
   static absl::Status Draw(Begun& image, FrameSource& source);
 
-  bool Suits(const Lane& lane, bool quick) const { return quick || &lane == &lanes_.any; }
-  void WorkIn(Lane& lane, Begun& image);
-  void Begin(Lane& lane);
+  bool Suits(const Worker& worker, bool quick) const { return quick || &worker == &workers_.any; }
+  void WorkIn(Worker& worker, Begun& image);
+  void Begin(Worker& worker);
   // Returns true if the picture must be drawn again.
   static bool TriesAgain(Begun& image);
   // Returns true if the picture is finished.
@@ -101,7 +102,7 @@ class ImageDrawer {
   MeasuredSource& source_;
   const std::shared_ptr<Preparation> preparation_;
   LightTracer& tracer_;
-  const Lanes lanes_;
+  const Workers workers_;
   const base::TimeSource& time_;
   std::list<Begun> begun_;
   std::uint64_t count_ = 0;  // number of started pictures

@@ -39,7 +39,7 @@ std::optional<absl::StatusOr<TracedStep>> LightTracer::TakeNews(const std::strin
 }
 
 void LightTracer::TakeOutcome(session::Clock::time_point now) {
-  if (outcome_ == nullptr || !lane_.IsIdle()) return;
+  if (outcome_ == nullptr || !worker_.IsIdle()) return;
   const std::shared_ptr<Outcome> outcome = std::exchange(outcome_, nullptr);
   const std::lock_guard lock(outcome->mutex);
   const auto found = wanted_.find(tracing_for_);
@@ -96,7 +96,7 @@ LightTracer::Progress LightTracer::Trace(FrameSource& source, const Request& req
 }
 
 std::optional<session::Clock::time_point> LightTracer::Begin(session::Clock::time_point now) {
-  if (!lane_.IsIdle() || outcome_ != nullptr) return std::nullopt;
+  if (!worker_.IsIdle() || outcome_ != nullptr) return std::nullopt;
   std::optional<session::Clock::time_point> again;
   auto next = wanted_.upper_bound(tracing_for_);
   for (std::size_t left = wanted_.size(); left > 0; --left, ++next) {
@@ -110,7 +110,7 @@ std::optional<session::Clock::time_point> LightTracer::Begin(session::Clock::tim
     tracing_for_ = next->first;
     tracing_scene_ = wanted.request.scene;
     outcome_ = std::make_shared<Outcome>();
-    lane_.Begin(
+    worker_.Begin(
         [outcome = outcome_, request = wanted.request](const absl::StatusOr<FrameSource*>& source) {
           accuracy::LightClaim claim;
           Progress progress = base::Guarded([&]() -> Progress {

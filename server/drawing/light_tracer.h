@@ -1,6 +1,6 @@
 // Traces light for views at rest and measures the errors of their pictures. A view belongs to a
 // session, or is a single picture that waits for light. The tracer does one step for each view in
-// turn, in a separate lane. Used by the render loop's thread only.
+// turn, by a separate worker. Used by the render loop's thread only.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 #include "absl/status/statusor.h"
 #include "accuracy/error_meters.h"
 #include "accuracy/light_progress.h"
-#include "drawing/lane.h"
+#include "drawing/worker.h"
 #include "scene/scene.h"
 #include "session/sessions.h"
 #include "volume/hydrometeor_fields.h"
@@ -33,9 +33,9 @@ struct TracedStep {
 
 class LightTracer {
  public:
-  // The lane must outlive the tracer. The lane's work must have ended before the tracer is
+  // The worker must outlive the tracer. The worker's work must have ended before the tracer is
   // destroyed.
-  explicit LightTracer(Lane& lane) : lane_(lane) {}
+  explicit LightTracer(Worker& worker) : worker_(worker) {}
 
   struct Request {
     std::shared_ptr<const scene::Scene> scene;
@@ -55,7 +55,7 @@ class LightTracer {
   // there is no progress.
   std::optional<absl::StatusOr<TracedStep>> TakeNews(const std::string& who);
 
-  // Takes the outcome of the step that the lane has finished, if any.
+  // Takes the outcome of the step that the worker has finished, if any.
   void TakeOutcome(session::Clock::time_point now);
   // Begins the next step if no step is running. Returns when to call again, unless the loop is
   // woken earlier.
@@ -73,14 +73,14 @@ class LightTracer {
   };
   static Progress Trace(FrameSource& source, const Request& request, accuracy::LightClaim* claim);
   static bool Ends(const Request& request, const TracedStep& step);
-  // The outcome of a step, written by the lane's thread.
+  // The outcome of a step, written by the worker's thread.
   struct Outcome {
     std::mutex mutex;
     std::optional<Progress> progress;
     accuracy::LightClaim claim;
   };
 
-  Lane& lane_;
+  Worker& worker_;
   std::map<std::string, Wanted> wanted_;
   std::string tracing_for_;  // name of the view for which the current or last step is done
   std::shared_ptr<const scene::Scene> tracing_scene_;

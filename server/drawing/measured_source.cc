@@ -45,10 +45,10 @@ absl::StatusOr<CheckedFrame> MeasuredSource::DrawChecked(const std::string& view
   return checked;
 }
 
-void MeasuredSource::Learn(std::string_view lane, const std::string& view,
+void MeasuredSource::Learn(std::string_view worker, const std::string& view,
                            const scene::Scene& scene, const FrameQuality& quality,
                            const accuracy::Evidence& evidence, DisplayFrame* frame) {
-  Report(view, {scene, quality, TotalMs(*frame), frame->stages, false, lane}, evidence, frame);
+  Report(view, {scene, quality, TotalMs(*frame), frame->stages, false, worker}, evidence, frame);
 }
 
 absl::StatusOr<DisplayFrame> MeasuredSource::Tone(const picture::LinearPicture& picture,

@@ -43,8 +43,8 @@ class MeasuredSource {
   // Replaces the source after the device was lost. While the source is null, nothing can be drawn.
   void Replace(std::unique_ptr<FrameSource> source);
 
-  // Reports a frame that the source of the named lane drew to the cost model.
-  void Learn(std::string_view lane, const std::string& view, const scene::Scene& scene,
+  // Reports a frame that the source of the named worker drew to the cost model.
+  void Learn(std::string_view worker, const std::string& view, const scene::Scene& scene,
              const FrameQuality& quality, const accuracy::Evidence& evidence, DisplayFrame* frame);
 
   // Forgets the costs of a view that is no longer drawn.

@@ -13,12 +13,12 @@
 #include "base/thread_priority.h"
 #include "drawing/guarded_source.h"
 #include "drawing/image_drawer.h"
-#include "drawing/lane.h"
 #include "drawing/light_tracer.h"
 #include "drawing/measured_source.h"
 #include "drawing/session_drawer.h"
-#include "drawing/session_lane.h"
+#include "drawing/session_worker.h"
 #include "drawing/turns.h"
+#include "drawing/worker.h"
 #include "gl/device_faults.h"
 #include "spdlog/spdlog.h"
 #include "telemetry/metrics.h"
@@ -26,23 +26,23 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Niceness of the lanes that draw single pictures. It is above that of sessions' frames, for which
-// viewers wait, but below that of tracing, which could use all CPU cores indefinitely.
+// Niceness of the workers that draw single pictures. It is above that of sessions' frames, for
+// which viewers wait, but below that of tracing, which could use all CPU cores indefinitely.
 constexpr int kImageNiceness = 5;
-// Niceness of the lane that draws frames at rest, which yields to frames of changing scenes.
+// Niceness of the worker that draws frames at rest, which yields to frames of changing scenes.
 constexpr int kSessionNiceness = 1;
 
-// The lanes that draw alongside the render loop.
-class Lanes {
+// The workers that draw alongside the render loop.
+class Workers {
  public:
   struct Entry {
     std::string name;  // sorts before all session ids
     TurnClass turn_class;
-    Lane& lane;
+    Worker& worker;
   };
 
-  Lanes(const FrameSourceFactory& make_source, bool yield, const std::function<void()>& wake,
-        const base::TimeSource& time)
+  Workers(const FrameSourceFactory& make_source, bool yield, const std::function<void()>& wake,
+          const base::TimeSource& time)
       : sessions(make_source, yield ? kSessionNiceness : 0, wake, time),
         tracing(make_source, yield ? base::kLowestPriority : 0, wake, time),
         quick_images(make_source, yield ? kImageNiceness : 0, wake, time),
@@ -51,14 +51,14 @@ class Lanes {
              {"/quick images", TurnClass::kBatch, quick_images},
              {"/images", TurnClass::kBatch, images}} {}
 
-  // Returns the lanes that compete for turns as contenders of their own. The sessions' lane is not
-  // among them: the session whose frame it draws competes instead.
+  // Returns the workers that compete for turns as contenders of their own. The sessions' worker is
+  // not among them: the session whose frame it draws competes instead.
   const std::vector<Entry>& All() const { return all_; }
 
-  Lane sessions;
-  Lane tracing;
-  Lane quick_images;
-  Lane images;
+  Worker sessions;
+  Worker tracing;
+  Worker quick_images;
+  Worker images;
 
  private:
   const std::vector<Entry> all_;
@@ -149,8 +149,8 @@ RenderLoop::RenderLoop(const RenderLoopOptions& options, storm_store::StormStore
       encoder_(std::make_unique<FrameEncoder>(
           options.encoder_threads, options.serialize_frame, options_.memory,
           [&wake] { wake.Notify(); }, time_)),
-      tracer_(std::make_unique<TruthTracer>(
-          options.make_truth_source, options.max_traced_sessions, options_.memory,
+      tracer_(std::make_unique<ReferenceTracer>(
+          options.make_reference_source, options.max_traced_sessions, options_.memory,
           [&wake] { wake.Notify(); }, time_)) {}
 
 RenderLoop::~RenderLoop() { Stop(); }
@@ -163,15 +163,15 @@ double RenderLoop::TurnSeconds() const {
   return std::chrono::duration<double>(took).count();
 }
 
-void RenderLoop::NoteLanes(std::vector<const Lane*> lanes) {
-  const std::lock_guard lock(lanes_mutex_);
-  lanes_ = std::move(lanes);
+void RenderLoop::NoteWorkers(std::vector<const Worker*> workers) {
+  const std::lock_guard lock(workers_mutex_);
+  workers_ = std::move(workers);
 }
 
 double RenderLoop::StalledSeconds() const {
-  const std::lock_guard lock(lanes_mutex_);
+  const std::lock_guard lock(workers_mutex_);
   double stalled_s = 0.0;
-  for (const Lane* lane : lanes_) stalled_s = std::max(stalled_s, lane->StalledSeconds());
+  for (const Worker* worker : workers_) stalled_s = std::max(stalled_s, worker->StalledSeconds());
   return stalled_s;
 }
 
@@ -217,40 +217,41 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
                           const FrameSourceFactory& make_source) {
   MeasuredSource measured(std::move(source), options_.offer_tables(), time_);
   const auto wake = [this] { wake_.Notify(); };
-  auto lanes = std::make_unique<Lanes>(make_source, options_.lanes_yield, wake, time_);
-  LightTracer light_tracer(lanes->tracing);
-  SessionLane session_lane(lanes->sessions, [this](std::uint64_t bytes) {
+  auto workers = std::make_unique<Workers>(make_source, options_.workers_yield, wake, time_);
+  LightTracer light_tracer(workers->tracing);
+  SessionWorker session_worker(workers->sessions, [this](std::uint64_t bytes) {
     return std::ranges::all_of(options_.device_memory,
                                [bytes](const auto& budget) { return budget->HasRoom(bytes); });
   });
   SessionDrawer drawer(options_.targets, {store_, *reader_, preparation_}, measured, *encoder_,
-                       *tracer_, light_tracer, session_lane,
+                       *tracer_, light_tracer, session_worker,
                        {.picture_bytes = options_.memory->Bytes() / 2,
                         .references = std::max<std::size_t>(1, options_.max_traced_sessions / 2)},
                        time_);
   ImageDrawer image_drawer(options_.image_limits, images_, measured, preparation_, light_tracer,
-                           {lanes->quick_images, lanes->images}, time_);
+                           {workers->quick_images, workers->images}, time_);
   Turns turns;
   MemoryPressure pressure(options_.device_memory, wake_, time_);
-  const std::vector<Lane*> all_lanes{&lanes->sessions, &lanes->tracing, &lanes->quick_images,
-                                     &lanes->images};
-  NoteLanes({all_lanes.begin(), all_lanes.end()});
+  const std::vector<Worker*> all_workers{&workers->sessions, &workers->tracing,
+                                         &workers->quick_images, &workers->images};
+  NoteWorkers({all_workers.begin(), all_workers.end()});
   while (!stopping_) {
     BeginTurn();
     if (device_lost_.exchange(false)) {
-      if (!Recover(make_source, all_lanes, measured)) break;
+      if (!Recover(make_source, all_workers, measured)) break;
       drawer.DeviceReplaced();
     }
     pressure.Answer([&] {
-      // The render loop can draw what the sessions' lane draws, so the lane's copy is freed first.
-      if (session_lane.IsFree() && session_lane.Last().has_value()) {
-        session_lane.Forget();
-        lanes->sessions.FreeUnused(0.0);
+      // The render loop can draw what the sessions' worker draws, so the worker's copy is freed
+      // first.
+      if (session_worker.IsFree() && session_worker.Last().has_value()) {
+        session_worker.Forget();
+        workers->sessions.FreeUnused(0.0);
         return base::GiveBackFreedMemory();
       }
       drawer.YieldMemory(sessions_.AllDrawn());
       measured.FreeUnused(kUnused_s);
-      for (Lane* lane : all_lanes) lane->FreeUnused(kUnused_s);
+      for (Worker* worker : all_workers) worker->FreeUnused(kUnused_s);
       base::GiveBackFreedMemory();
     });
     BeginTurn();
@@ -261,7 +262,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
     image_drawer.Attend();
     std::optional<session::Clock::time_point> look_again_at;
     std::vector<Contender> contenders;
-    contenders.reserve(sessions.size() + lanes->All().size());
+    contenders.reserve(sessions.size() + workers->All().size());
     for (const auto& session : sessions) {
       const SessionDrawer::Wish wish = drawer.Look(session);
       contenders.push_back({session->id(), session->IsOwnView(), wish.work});
@@ -269,9 +270,9 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
     }
     // This follows the sessions' work, because a session may just have requested light.
     look_again_at = Earlier(look_again_at, light_tracer.Begin(time_.Now()));
-    for (const Lanes::Entry& entry : lanes->All()) {
+    for (const Workers::Entry& entry : workers->All()) {
       contenders.push_back({entry.name, false, std::nullopt});
-      if (entry.lane.WantsTurn()) contenders.back().work = entry.turn_class;
+      if (entry.worker.WantsTurn()) contenders.back().work = entry.turn_class;
     }
     const std::optional<std::size_t> next = turns.Next(contenders);
     if (!next.has_value()) {
@@ -285,17 +286,17 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
     if (*next < sessions.size()) {
       drawer.TakeTurn(sessions[*next]);
     } else {
-      lanes->All()[*next - sessions.size()].lane.GiveTurn();
+      workers->All()[*next - sessions.size()].worker.GiveTurn();
     }
     turns.Used(contenders[*next], base::MsSince(time_, given_at));
     turn_began_ = 0;
   }
-  NoteLanes({});
-  lanes.reset();
+  NoteWorkers({});
+  workers.reset();
   image_drawer.EndAll(base::ShuttingDown());
 }
 
-bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vector<Lane*>& lanes,
+bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vector<Worker*>& workers,
                          MeasuredSource& source) {
   recovering_ = true;
   absl::Status why = gl::DeviceLost();
@@ -311,7 +312,7 @@ bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vecto
     }
     // Objects of a lost context must be deleted before a new context is created.
     ++device_generation_;
-    for (Lane* lane : lanes) lane->RenewSource();
+    for (Worker* worker : workers) worker->RenewSource();
     source.Replace(nullptr);
     const double pause_s = std::chrono::duration<double>(*at - time_.Now()).count();
     spdlog::error("the device was lost; opening it again in {:.1f} s", std::max(pause_s, 0.0));

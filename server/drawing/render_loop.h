@@ -1,5 +1,5 @@
 // The render loop. One thread draws the sessions that have a viewer ready for a frame. It also
-// gives turns on the device to its lanes, which draw long frames and single pictures and trace
+// gives turns on the device to its workers, which draw long frames and single pictures and trace
 // light. Reading, encoding and the Monte Carlo reference run on other threads. Knows no GL (only
 // the frame sources do) and no message formats.
 #pragma once
@@ -27,13 +27,13 @@
 #include "drawing/frame_source.h"
 #include "drawing/image_drawer.h"
 #include "drawing/image_queue.h"
-#include "drawing/truth_source.h"
-#include "drawing/truth_tracer.h"
+#include "drawing/reference_source.h"
+#include "drawing/reference_tracer.h"
 #include "session/sessions.h"
 
 namespace thunderhead::drawing {
 
-class Lane;
+class Worker;
 class MeasuredSource;
 
 struct RenderLoopOptions {
@@ -42,16 +42,16 @@ struct RenderLoopOptions {
   std::size_t max_waiting_images_each = 600;  // maximum per owner
   ImageLimits image_limits;
   int encoder_threads = 1;
-  // If true, lanes and their threads run at a lower priority than frames of changing scenes. Set it
-  // to false if no session is served. Otherwise, other programs on the machine would slow the lanes
-  // down.
-  bool lanes_yield = true;
+  // If true, workers and their threads run at a lower priority than frames of changing scenes. Set
+  // it to false if no session is served. Otherwise, other programs on the machine would slow the
+  // workers down.
+  bool workers_yield = true;
   SerializeFrame serialize_frame = [](const delivery::EncodedFrame&) { return ""; };
   // Maximum number of sessions that show the Monte Carlo reference. Each uses some hundred bytes
   // per pixel, plus the memory of its storm's fields.
   std::size_t max_traced_sessions = 8;
   std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
-  TruthSourceFactory make_truth_source = [] { return MakeReferenceTruthSource(); };
+  ReferenceSourceFactory make_reference_source = [] { return MakeReferenceSource(); };
   // The memory budget for pictures; null means no limit.
   std::shared_ptr<base::MemoryBudget> memory;
   // The budgets for GL objects. When a budget refuses a reservation, the sources free their caches.
@@ -90,8 +90,8 @@ class RenderLoop {
   bool IsRecovering() const { return recovering_; }
   std::size_t WaitingImages() const { return images_.Waiting(); }
 
-  // Returns how many seconds a lane has worked without drawing a piece or waiting for a turn: the
-  // longest of all lanes. Returns 0 while no lane works.
+  // Returns how many seconds a worker has worked without drawing a piece or waiting for a turn: the
+  // longest of all workers. Returns 0 while no worker works.
   double StalledSeconds() const;
 
   // Requests a stop after the current frame or piece. Returns without waiting.
@@ -105,12 +105,12 @@ class RenderLoop {
 
   void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
   void DrawWith(std::unique_ptr<FrameSource> source, const FrameSourceFactory& make_source);
-  void NoteLanes(std::vector<const Lane*> lanes);
+  void NoteWorkers(std::vector<const Worker*> workers);
   // Starts the time measurement of TurnSeconds.
   void BeginTurn() { turn_began_ = time_.Now().time_since_epoch().count(); }
   // Reopens the device after a loss. Returns true when it is open again, false if the loop gives
   // up.
-  bool Recover(const FrameSourceFactory& make_source, const std::vector<Lane*>& lanes,
+  bool Recover(const FrameSourceFactory& make_source, const std::vector<Worker*>& workers,
                MeasuredSource& source);
 
   const RenderLoopOptions options_;
@@ -129,13 +129,13 @@ class RenderLoop {
   // Since the clock's epoch; 0 while there is no turn.
   std::atomic<session::Clock::rep> turn_began_{0};
 
-  mutable std::mutex lanes_mutex_;
-  std::vector<const Lane*> lanes_;  // all existing lanes
+  mutable std::mutex workers_mutex_;
+  std::vector<const Worker*> workers_;  // all existing workers
 
   ImageQueue images_;
   std::unique_ptr<FieldsReader> reader_;
   std::unique_ptr<FrameEncoder> encoder_;
-  std::unique_ptr<TruthTracer> tracer_;
+  std::unique_ptr<ReferenceTracer> tracer_;
   std::thread thread_;
 };
 

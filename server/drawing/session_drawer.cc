@@ -87,8 +87,8 @@ std::optional<session::Clock::time_point> TryAgainAt(const absl::Status& why,
 }  // namespace
 
 SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields,
-                             MeasuredSource& source, FrameEncoder& encoder, TruthTracer& tracer,
-                             LightTracer& light_tracer, SessionLane& lane, const Share& share,
+                             MeasuredSource& source, FrameEncoder& encoder, ReferenceTracer& tracer,
+                             LightTracer& light_tracer, SessionWorker& worker, const Share& share,
                              const base::TimeSource& time)
     : targets_(targets),
       fields_(fields),
@@ -96,7 +96,7 @@ SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& 
       encoder_(encoder),
       tracer_(tracer),
       light_tracer_(light_tracer),
-      lane_(lane),
+      worker_(worker),
       share_(share),
       time_(time) {}
 
@@ -108,7 +108,7 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<session::Session>&
   TakeRead(turn);
   turn.kept.reference.EndUnless(*newest->scene);
   turn.kept.gives_turn = false;
-  if (const auto in_lane = LookInLane(turn, *newest)) return *in_lane;
+  if (const auto in_worker = LookInWorker(turn, *newest)) return *in_worker;
   if (!session->hub().HasReadyViewer() || encoder_.IsFullFor(*session)) return {};
   turn.kept.work = NextWork(turn, *newest);
   const bool traces = std::holds_alternative<TraceLight>(turn.kept.work) ||
@@ -116,61 +116,61 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<session::Session>&
   if (!traces) light_tracer_.Stop(session->id());
   Wish wish = std::visit([&](const auto& work) { return Need(turn, work); }, turn.kept.work);
   // Need may have replaced the work, for example by work that shows the light traced meanwhile.
-  turn.kept.in_lane = turn.kept.in_lane || IsLong(turn, turn.kept.work);
-  if (turn.kept.in_lane && !lane_.IsFree()) wish.work.reset();
+  turn.kept.in_worker = turn.kept.in_worker || IsLong(turn, turn.kept.work);
+  if (turn.kept.in_worker && !worker_.IsFree()) wish.work.reset();
   return wish;
 }
 
-std::optional<SessionDrawer::Wish> SessionDrawer::LookInLane(const Turn& turn,
-                                                             const session::NewestScene& newest) {
-  if (!in_lane_.has_value() || !lane_.IsFor(turn.session->id())) return std::nullopt;
+std::optional<SessionDrawer::Wish> SessionDrawer::LookInWorker(const Turn& turn,
+                                                               const session::NewestScene& newest) {
+  if (!in_worker_.has_value() || !worker_.IsFor(turn.session->id())) return std::nullopt;
   // A changed scene cancels only refinement. An interactive frame is ready soon, and if each change
   // cancelled it, no frame would ever be shown.
-  if (in_lane_->turn_class == TurnClass::kRefining &&
-      in_lane_->newest_revision != newest.revision) {
-    lane_.Cancel();
+  if (in_worker_->turn_class == TurnClass::kRefining &&
+      in_worker_->newest_revision != newest.revision) {
+    worker_.Cancel();
     return std::nullopt;
   }
-  turn.kept.gives_turn = lane_.WantsTurn();
+  turn.kept.gives_turn = worker_.WantsTurn();
   if (!turn.kept.gives_turn) return Wish{};
-  return Wish{in_lane_->turn_class, std::nullopt};
+  return Wish{in_worker_->turn_class, std::nullopt};
 }
 
 void SessionDrawer::TakeTurn(const std::shared_ptr<session::Session>& session) {
   const Turn turn{session, KeptFor(*session)};
   const SessionWork work = std::exchange(turn.kept.work, WaitUntil{});
-  if (std::exchange(turn.kept.gives_turn, false)) return lane_.GiveTurn();
-  if (std::exchange(turn.kept.in_lane, false)) return BeginInLane(turn, work);
+  if (std::exchange(turn.kept.gives_turn, false)) return worker_.GiveTurn();
+  if (std::exchange(turn.kept.in_worker, false)) return BeginInWorker(turn, work);
   std::visit([&](const auto& found) { Do(turn, found); }, work);
 }
 
-void SessionDrawer::BeginInLane(const Turn& turn, const SessionWork& work) {
+void SessionDrawer::BeginInWorker(const Turn& turn, const SessionWork& work) {
   const session::NewestScene& shown = *ShownBy(work);
   const auto* draw = std::get_if<DrawFrame>(&work);
   const bool refined = draw == nullptr || draw->plan.refined;
   const bool moves = turn.kept.view.state() == SessionView::State::kMoving;
-  in_lane_ = InLane{.work = work,
-                    .shown = shown,
-                    .fields = turn.kept.fields.Fields(),
-                    .newest_revision = turn.session->Newest()->revision,
-                    .turn_class = moves ? TurnClass::kInteractive : TurnClass::kRefining};
-  lane_.Begin({.session_id = turn.session->id(),
-               .scene = shown.scene,
-               .fields = turn.kept.fields.Fields(),
-               .quality = QualityOf(work),
-               .checked = std::holds_alternative<CheckSlices>(work),
-               .fine = refined && WantsFine(*turn.session, shown.scene->output.width_px)});
+  in_worker_ = InWorker{.work = work,
+                        .shown = shown,
+                        .fields = turn.kept.fields.Fields(),
+                        .newest_revision = turn.session->Newest()->revision,
+                        .turn_class = moves ? TurnClass::kInteractive : TurnClass::kRefining};
+  worker_.Begin({.session_id = turn.session->id(),
+                 .scene = shown.scene,
+                 .fields = turn.kept.fields.Fields(),
+                 .quality = QualityOf(work),
+                 .checked = std::holds_alternative<CheckSlices>(work),
+                 .fine = refined && WantsFine(*turn.session, shown.scene->output.width_px)});
 }
 
 void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<session::Session>>& sessions) {
   alone_ = std::ranges::count_if(
                sessions, [](const auto& session) { return session->hub().HasViewers(); }) <= 1;
-  if (!in_lane_.has_value()) return;
-  lane_.WantsTurn();  // WantsTurn lets cancelled drawing run to its end
-  const std::string session_id = lane_.For();
-  auto picture = lane_.Take();
+  if (!in_worker_.has_value()) return;
+  worker_.WantsTurn();  // WantsTurn lets cancelled drawing run to its end
+  const std::string session_id = worker_.For();
+  auto picture = worker_.Take();
   if (!picture.has_value()) return;
-  const InLane drawn = *std::exchange(in_lane_, std::nullopt);
+  const InWorker drawn = *std::exchange(in_worker_, std::nullopt);
   const auto session = FindById(sessions, session_id);
   const auto kept = kept_.find(session_id);
   if (session == nullptr || kept == kept_.end() || absl::IsCancelled(picture->status())) return;
@@ -181,15 +181,15 @@ void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<session::Session
   if (picture->ok()) {
     if (turn.kept.fields.Fields() == drawn.fields) Show(turn, drawn, **std::move(picture));
   } else if (absl::IsResourceExhausted(picture->status()) && turn.kept.whole_revision != revision) {
-    // The memory does not suffice for a second copy of the storm in the lane, so the render loop's
-    // source draws the frame.
+    // The memory does not suffice for a second copy of the storm in the worker's source, so
+    // the render loop's source draws the frame.
     turn.kept.whole_revision = revision;
   } else {
     Fail(turn, revision, picture->status());
   }
 }
 
-void SessionDrawer::Show(const Turn& turn, const InLane& drawn, SessionLane::Picture picture) {
+void SessionDrawer::Show(const Turn& turn, const InWorker& drawn, SessionWorker::Picture picture) {
   const session::NewestScene& shown = drawn.shown;
   const bool shows_light = std::holds_alternative<ShowLight>(drawn.work);
   source_.Learn("sessions", turn.session->id(), *shown.scene, QualityOf(drawn.work),
@@ -233,7 +233,7 @@ void SessionDrawer::ReleaseUnwatched(
       kept->second.reference.Release();
       if (session != nullptr) session->video().Release();
       light_tracer_.Stop(kept->first);
-      if (lane_.IsFor(kept->first)) lane_.Cancel();
+      if (worker_.IsFor(kept->first)) worker_.Cancel();
     }
     if (session != nullptr) {
       ++kept;  // the session's view is kept, because viewers may come back
@@ -253,7 +253,7 @@ void SessionDrawer::YieldMemory(const std::vector<std::shared_ptr<session::Sessi
   const bool lack_pictures =
       std::ranges::any_of(kept_, [](const auto& entry) { return entry.second.refused; });
   for (auto& [id, kept] : kept_) {
-    if (lane_.IsFor(id) || !kept.view.Yield(now, lack_pictures)) continue;
+    if (worker_.IsFor(id) || !kept.view.Yield(now, lack_pictures)) continue;
     kept.work = WaitUntil{};
     kept.fields.Yield();
     light_tracer_.Stop(id);
@@ -293,37 +293,37 @@ SessionWork SessionDrawer::Placed(const Turn& turn, const session::NewestScene& 
                                   SessionWork work) {
   const auto* draw = std::get_if<DrawFrame>(&work);
   const bool moves = turn.kept.view.state() == SessionView::State::kMoving;
-  turn.kept.in_lane = false;
+  turn.kept.in_worker = false;
   if (draw != nullptr && moves) {
-    // If a picture was drawn at rest in the lane and only its tone map changes, the lane's source
-    // still has the picture's radiance.
+    // If a picture was drawn at rest by the worker and only its tone map changes, the worker's
+    // source still has the picture's radiance.
     const scene::Scene& scene = *draw->shown.scene;
     const auto has_light = [&](const std::optional<LastDrawn>& last) {
       return FirstDirty(last, scene) >= scene::Stage::kTone;
     };
     const auto& fields = turn.kept.fields.Fields();
-    const std::optional<LastDrawn>& in_lane = IfDrawnFrom(fields, lane_.Last());
+    const std::optional<LastDrawn>& in_worker = IfDrawnFrom(fields, worker_.Last());
     const std::optional<LastDrawn>& in_loop = IfDrawnFrom(fields, source_.Last());
-    if (!lane_.IsFree() || !has_light(in_lane) || in_lane->quality.sparse) return work;
+    if (!worker_.IsFree() || !has_light(in_worker) || in_worker->quality.sparse) return work;
     const bool is_finer =
-        !has_light(in_loop) || in_loop->quality.Scale() < in_lane->quality.Scale();
+        !has_light(in_loop) || in_loop->quality.Scale() < in_worker->quality.Scale();
     if (!is_finer) return work;
   } else if (!IsLong(turn, work)) {
     return work;
   }
-  turn.kept.in_lane = true;
+  turn.kept.in_worker = true;
   if (draw == nullptr) return work;
   return turn.kept.view.Next(newest, drawable, time_.Now(),
-                             IfDrawnFrom(turn.kept.fields.Fields(), lane_.Last()));
+                             IfDrawnFrom(turn.kept.fields.Fields(), worker_.Last()));
 }
 
 bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
   const session::NewestScene* shown = ShownBy(work);
   if (shown == nullptr || shown->revision == turn.kept.whole_revision) return false;
   if (turn.kept.view.state() == SessionView::State::kMoving) return false;
-  // If memory is scarce, a second copy of the storm in the lane would make other sessions free
+  // If memory is scarce, a second copy of the storm for the worker would make other sessions free
   // memory.
-  if (!lane_.HasRoomFor(*shown->scene, turn.kept.device_bytes)) return false;
+  if (!worker_.HasRoomFor(*shown->scene, turn.kept.device_bytes)) return false;
   const scene::Stage first_dirty =
       std::min(FirstDirty(IfDrawnFrom(turn.kept.fields.Fields(), source_.Last()), *shown->scene),
                scene::Stage::kView);
@@ -455,7 +455,7 @@ void SessionDrawer::Do(const Turn& turn, const ShowReference& work) {
 
 absl::Status SessionDrawer::ShowTraced(const Turn& turn, const session::NewestScene& shown) {
   const auto& fields = turn.kept.fields.Fields();
-  const TruthPicture& traced = turn.kept.reference.TakePicture();
+  const ReferencePicture& traced = turn.kept.reference.TakePicture();
   THUNDERHEAD_ASSIGN_OR_RETURN(DisplayFrame picture, source_.Tone(traced.picture, *shown.scene));
   picture.stages.insert(picture.stages.begin(), {scene::FrameStage::kTrace, traced.trace_ms});
   picture.modelled.technique = scene::Reference::kName;
@@ -469,8 +469,8 @@ absl::Status SessionDrawer::ShowTraced(const Turn& turn, const session::NewestSc
 }
 
 bool SessionDrawer::WantsFine(session::Session& session, int width_px) {
-  const auto still_tiers = session.hub().StillTiers({width_px, width_px});
-  return std::ranges::find(still_tiers, true) != still_tiers.end();
+  const auto resting_tiers = session.hub().RestingTiers({width_px, width_px});
+  return std::ranges::find(resting_tiers, true) != resting_tiers.end();
 }
 
 std::optional<frame::FineImage> SessionDrawer::FineOf(const Turn& turn,

@@ -1,5 +1,5 @@
 // Does the work of sessions' views, one item per turn. It draws with the source and passes the
-// frames to the encoder. Long frames are drawn in pieces, in a lane. Work that needs no device is
+// frames to the encoder. Long frames are drawn in pieces, by a worker. Work that needs no device is
 // done in Look. Used by the render loop's thread only.
 #pragma once
 
@@ -16,9 +16,9 @@
 #include "drawing/light_tracer.h"
 #include "drawing/measured_source.h"
 #include "drawing/session_fields.h"
-#include "drawing/session_lane.h"
 #include "drawing/session_reference.h"
 #include "drawing/session_view.h"
+#include "drawing/session_worker.h"
 #include "drawing/turns.h"
 #include "session/sessions.h"
 
@@ -36,8 +36,8 @@ class SessionDrawer {
 
   // All references must outlive it.
   SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields, MeasuredSource& source,
-                FrameEncoder& encoder, TruthTracer& tracer, LightTracer& light_tracer,
-                SessionLane& lane, const Share& share,
+                FrameEncoder& encoder, ReferenceTracer& tracer, LightTracer& light_tracer,
+                SessionWorker& worker, const Share& share,
                 const base::TimeSource& time = base::SteadyTime());
 
   struct Wish {
@@ -47,7 +47,7 @@ class SessionDrawer {
   Wish Look(const std::shared_ptr<session::Session>& session);
   // Does the work that the last Look found for the session: all of it, or one piece.
   void TakeTurn(const std::shared_ptr<session::Session>& session);
-  // Passes the frame that was drawn in the lane, if one is ready, to the encoder. `sessions` must
+  // Passes the frame that was drawn by the worker, if one is ready, to the encoder. `sessions` must
   // be ordered by id.
   void TakeDrawn(const std::vector<std::shared_ptr<session::Session>>& sessions);
 
@@ -57,8 +57,8 @@ class SessionDrawer {
   // same.
   void YieldMemory(const std::vector<std::shared_ptr<session::Session>>& sessions);
 
-  // Forgets which frame the lane's source drew last, because the device was replaced.
-  void DeviceReplaced() { lane_.Forget(); }
+  // Forgets which frame the worker's source drew last, because the device was replaced.
+  void DeviceReplaced() { worker_.Forget(); }
 
   // Frees the resources of sessions without viewers and of sessions that are not in `sessions`,
   // which must be ordered by id.
@@ -74,19 +74,19 @@ class SessionDrawer {
     SessionWork work = WaitUntil{};  // the work that the last Look found
     // The property of the scene that ShowLight could not show.
     std::optional<scene::NotShown> not_shown = std::nullopt;
-    bool in_lane = false;            // the frame must be drawn in the lane
-    bool gives_turn = false;         // the next turn of the session goes to its frame in the lane
+    bool in_worker = false;          // the frame must be drawn by the worker
+    bool gives_turn = false;         // the session's next turn goes to its frame at the worker
     int losses = 0;                  // device losses since the last frame
     bool tells = false;              // the last frame reported its error to viewers
     bool refused = false;            // memory for its fields was refused since the last frame
     std::uint64_t device_bytes = 0;  // device memory that the last frame used
     std::size_t picture_bytes = 0;   // memory of the last frame's picture
-    // The revision whose frame at rest did not fit into memory in the lane. The render loop draws
-    // that frame in one piece.
+    // The revision whose frame at rest did not fit into the memory for the worker's source. The
+    // render loop draws that frame in one piece.
     std::uint64_t whole_revision = 0;
   };
-  // The frame that is drawn in the lane.
-  struct InLane {
+  // The frame that the worker draws.
+  struct InWorker {
     SessionWork work;
     session::NewestScene shown;
     std::shared_ptr<const volume::HydrometeorFields> fields;
@@ -106,17 +106,17 @@ class SessionDrawer {
   absl::Status CheckReference(const Turn& turn) const;
   void TakeRead(const Turn& turn);
   SessionWork NextWork(const Turn& turn, const session::NewestScene& newest);
-  // Returns the wish of a session whose frame is in the lane. Returns none if the session no longer
-  // shows the scene of that frame.
-  std::optional<Wish> LookInLane(const Turn& turn, const session::NewestScene& newest);
-  // Returns the work, moved to the lane if it takes too long for the render loop or if the lane's
-  // source can reuse more stages. In the lane, the frame's quality is planned again for the stages
-  // that must be rerun there.
+  // Returns the wish of a session whose frame the worker draws. Returns none if the session no
+  // longer shows the scene of that frame.
+  std::optional<Wish> LookInWorker(const Turn& turn, const session::NewestScene& newest);
+  // Returns the work, moved to the worker if it takes too long for the render loop or if the
+  // worker's source can reuse more stages. The frame's quality is then planned again for the
+  // stages that the worker must rerun.
   SessionWork Placed(const Turn& turn, const session::NewestScene& newest,
                      const std::optional<session::NewestScene>& drawable, SessionWork work);
   bool IsLong(const Turn& turn, const SessionWork& work) const;
-  void BeginInLane(const Turn& turn, const SessionWork& work);
-  void Show(const Turn& turn, const InLane& drawn, SessionLane::Picture picture);
+  void BeginInWorker(const Turn& turn, const SessionWork& work);
+  void Show(const Turn& turn, const InWorker& drawn, SessionWorker::Picture picture);
 
   // Each function returns the class of the turn that the work needs; absent if it needs no turn.
   Wish Need(const Turn& turn, const WaitUntil& work);
@@ -139,8 +139,8 @@ class SessionDrawer {
   void SendLight(const Turn& turn, const session::NewestScene& shown, DisplayFrame picture,
                  std::optional<frame::FineImage> fine);
   absl::Status ShowTraced(const Turn& turn, const session::NewestScene& shown);
-  // Returns true if a viewer takes stills of a refined frame of that width, which need more than 8
-  // bits per channel.
+  // Returns true if a viewer takes resting frames of that width, which need more than 8 bits per
+  // channel.
   static bool WantsFine(session::Session& session, int width_px);
   // Returns the last picture of the render loop's source with more than 8 bits per channel, if
   // viewers need it.
@@ -154,14 +154,14 @@ class SessionDrawer {
   const FieldsAccess fields_;
   MeasuredSource& source_;
   FrameEncoder& encoder_;
-  TruthTracer& tracer_;
+  ReferenceTracer& tracer_;
   LightTracer& light_tracer_;
-  SessionLane& lane_;
+  SessionWorker& worker_;
   const Share share_;
   const base::TimeSource& time_;
-  bool alone_ = true;                 // true if at most one session has viewers
-  std::optional<InLane> in_lane_;     // set until its outcome was taken
-  std::map<std::string, Kept> kept_;  // by session id
+  bool alone_ = true;                  // true if at most one session has viewers
+  std::optional<InWorker> in_worker_;  // set until its outcome was taken
+  std::map<std::string, Kept> kept_;   // by session id
 };
 
 }  // namespace thunderhead::drawing

@@ -1,5 +1,5 @@
-// A session's picture by the Monte Carlo reference, which a TruthTracer refines on another thread.
-// Used by the render loop's thread only. Knows no GL.
+// A session's picture by the Monte Carlo reference, which a ReferenceTracer refines on another
+// thread. Used by the render loop's thread only. Knows no GL.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "drawing/truth_tracer.h"
+#include "drawing/reference_tracer.h"
 #include "session/sessions.h"
 #include "volume/hydrometeor_fields.h"
 
@@ -16,7 +16,7 @@ namespace thunderhead::drawing {
 class SessionReference {
  public:
   // `tracer` must outlive it.
-  SessionReference(TruthTracer& tracer, std::string session_id)
+  SessionReference(ReferenceTracer& tracer, std::string session_id)
       : tracer_(tracer), id_(std::move(session_id)) {}
 
   // Stops tracing if the newest scene would give another picture.
@@ -27,7 +27,7 @@ class SessionReference {
   absl::StatusOr<bool> Trace(const session::NewestScene& shown,
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
   // Returns the picture to show, and marks it as taken.
-  const TruthPicture& TakePicture() {
+  const ReferencePicture& TakePicture() {
     traced_->is_new = false;
     return *traced_->picture;
   }
@@ -41,11 +41,11 @@ class SessionReference {
   struct Traced {
     session::NewestScene shown;
     std::weak_ptr<const volume::HydrometeorFields> fields;
-    std::shared_ptr<const TruthPicture> picture;  // null until there is one
+    std::shared_ptr<const ReferencePicture> picture;  // null until there is one
     bool is_new = false;
   };
 
-  TruthTracer& tracer_;
+  ReferenceTracer& tracer_;
   const std::string id_;
   std::optional<Traced> traced_;
 };

@@ -1,4 +1,4 @@
-// The order in which contenders (sessions and lanes) draw: deficit round robin, counted in
+// The order in which contenders (sessions and workers) draw: deficit round robin, counted in
 // milliseconds. There are three classes of work, in this order: pictures that people wait for,
 // refinement of shown pictures, and pictures outside sessions. Each later class gets at least a
 // tenth of the time that the earlier ones use, even if these always have work, so that its work
@@ -32,7 +32,7 @@ inline constexpr std::size_t kTurnClasses = 3;
 // Minimum time of a class, as a share of the time that the earlier classes use.
 inline constexpr double kMinShare = 0.1;
 
-// A session or lane that may get a turn.
+// A session or worker that may get a turn.
 struct Contender {
   std::string id;
   bool own_view = false;          // true for the own view of one person

@@ -27,14 +27,14 @@ JobBoard::Entry& JobBoard::Insert(JobRecord record) {
   entry.version = 1;
   entry.versions.assign(entry.record.pictures.size(), 1);
   entry.not_before.assign(entry.record.pictures.size(), Time());
-  for (const PictureRecord& picture : entry.record.pictures) {
+  for (const ImageRecord& picture : entry.record.pictures) {
     ++entry.counts[IndexOf(picture.state)];
     if (picture.state == PictureState::kDrawn) AddResult(entry, picture);
   }
   return entry;
 }
 
-void JobBoard::AddResult(Entry& entry, const PictureRecord& picture) {
+void JobBoard::AddResult(Entry& entry, const ImageRecord& picture) {
   entry.last_used = std::max(entry.last_used, picture.drawn_at);
   entry.result_bytes += picture.bytes;
   result_bytes_ += picture.bytes;
@@ -43,7 +43,7 @@ void JobBoard::AddResult(Entry& entry, const PictureRecord& picture) {
   ++entry.unfetched;
 }
 
-void JobBoard::RemoveResult(Entry& entry, const PictureRecord& picture) {
+void JobBoard::RemoveResult(Entry& entry, const ImageRecord& picture) {
   entry.result_bytes -= picture.bytes;
   result_bytes_ -= picture.bytes;
   if (picture.fetched) return;
@@ -120,7 +120,7 @@ std::optional<JobNews> JobBoard::NewsOf(const std::string& id, std::uint64_t ver
   JobNews news{ViewOf(entry, UnfetchedBytes()), {}, entry.version};
   for (std::size_t i = 0; i < entry.versions.size(); ++i) {
     if (entry.versions[i] <= version) continue;
-    const PictureRecord& picture = entry.record.pictures[i];
+    const ImageRecord& picture = entry.record.pictures[i];
     news.pictures.push_back({i, picture.order.name, picture.state, picture.problem, picture.bytes,
                              picture.sha256, picture.milliseconds});
   }
@@ -142,14 +142,14 @@ std::vector<JobView> JobBoard::All() const {
 absl::StatusOr<ResultFile> JobBoard::ResultOf(const PicturePlace& picture) const {
   const auto job = jobs_.find(picture.job_id);
   if (job == jobs_.end()) return NotFound(picture.job_id);
-  const std::vector<PictureRecord>& pictures = job->second.record.pictures;
+  const std::vector<ImageRecord>& pictures = job->second.record.pictures;
   if (picture.place >= pictures.size()) {
     return base::InvalidField(
         "index",
         absl::StrCat("is ", picture.place, "; the job has pictures 0 to ", pictures.size() - 1),
         "VALUE_OUT_OF_RANGE", {{"minimum", "0"}, {"maximum", absl::StrCat(pictures.size() - 1)}});
   }
-  const PictureRecord& record = pictures[picture.place];
+  const ImageRecord& record = pictures[picture.place];
   switch (record.state) {
     case PictureState::kDrawn:
       return ResultFile{picture, record.extension, record.sha256, record.bytes};
@@ -176,7 +176,7 @@ std::string JobBoard::IdOfKey(const std::string& result_key) const {
 }
 
 std::optional<std::size_t> JobBoard::Waiting(Entry& entry, Time now) const {
-  const std::vector<PictureRecord>& pictures = entry.record.pictures;
+  const std::vector<ImageRecord>& pictures = entry.record.pictures;
   std::size_t& first = entry.first_waiting;
   while (first < pictures.size() && pictures[first].state != PictureState::kWaiting) ++first;
   for (std::size_t i = first; i < pictures.size(); ++i) {
@@ -240,7 +240,7 @@ std::optional<Time> JobBoard::NextRetry(Time now) const {
 }
 
 void JobBoard::SetState(Entry& entry, std::size_t place, PictureState state) {
-  PictureRecord& picture = entry.record.pictures[place];
+  ImageRecord& picture = entry.record.pictures[place];
   const bool was_drawn = picture.state == PictureState::kDrawn;
   const bool is_drawn = state == PictureState::kDrawn;
   if (was_drawn != is_drawn) {
@@ -264,13 +264,13 @@ void JobBoard::EndIfDone(Entry& entry, Time now) {
   ++entry.version;
   unsaved_jobs_.insert(entry.record.id);
   // The pictures of an ended job are not drawn again, so their requests are deleted.
-  for (PictureRecord& picture : entry.record.pictures) picture.order.request = {};
+  for (ImageRecord& picture : entry.record.pictures) picture.order.request = {};
 }
 
-PictureRecord* JobBoard::Drawing(const PicturePlace& picture, Entry** entry) {
+ImageRecord* JobBoard::Drawing(const PicturePlace& picture, Entry** entry) {
   const auto job = jobs_.find(picture.job_id);
   if (job == jobs_.end()) return nullptr;
-  PictureRecord& record = job->second.record.pictures[picture.place];
+  ImageRecord& record = job->second.record.pictures[picture.place];
   if (record.state != PictureState::kDrawing) return nullptr;
   *entry = &job->second;
   return &record;
@@ -302,7 +302,7 @@ bool JobBoard::Drawn(const PicturePlace& picture, const ResultFile& file, double
                      double draw_ms, Time now) {
   Settle(picture, draw_ms);
   Entry* entry = nullptr;
-  PictureRecord* record = Drawing(picture, &entry);
+  ImageRecord* record = Drawing(picture, &entry);
   if (record == nullptr) return false;
   typical_ms_ = draw_ms;
   record->bytes = file.bytes;
@@ -319,7 +319,7 @@ bool JobBoard::Drawn(const PicturePlace& picture, const ResultFile& file, double
 bool JobBoard::Fail(const PicturePlace& picture, const Problem& problem, Time now) {
   Settle(picture, std::nullopt);
   Entry* entry = nullptr;
-  PictureRecord* record = Drawing(picture, &entry);
+  ImageRecord* record = Drawing(picture, &entry);
   if (record == nullptr) return false;
   record->problem = problem;
   SetState(*entry, picture.place, PictureState::kFailed);
@@ -330,7 +330,7 @@ bool JobBoard::Fail(const PicturePlace& picture, const Problem& problem, Time no
 bool JobBoard::PutBack(const PicturePlace& picture, bool counts, Time not_before) {
   Settle(picture, std::nullopt);
   Entry* entry = nullptr;
-  PictureRecord* record = Drawing(picture, &entry);
+  ImageRecord* record = Drawing(picture, &entry);
   if (record == nullptr) return false;
   if (!counts) --record->attempts;
   entry->not_before[picture.place] = not_before;
@@ -341,7 +341,7 @@ bool JobBoard::PutBack(const PicturePlace& picture, bool counts, Time not_before
 void JobBoard::Fetched(const PicturePlace& picture, Time now) {
   const auto job = jobs_.find(picture.job_id);
   if (job == jobs_.end() || picture.place >= job->second.record.pictures.size()) return;
-  PictureRecord& record = job->second.record.pictures[picture.place];
+  ImageRecord& record = job->second.record.pictures[picture.place];
   if (record.fetched || record.state != PictureState::kDrawn) return;
   record.fetched = true;
   job->second.last_used = std::max(job->second.last_used, now);

@@ -220,8 +220,8 @@ class JobBoard {
   // picture may be begun.
   std::optional<Problem> PausedBecause(const std::string& owner, const Unfetched& unfetched) const;
   // These two functions add a drawn picture to the entry's sums, or subtract it.
-  void AddResult(Entry& entry, const PictureRecord& picture);
-  void RemoveResult(Entry& entry, const PictureRecord& picture);
+  void AddResult(Entry& entry, const ImageRecord& picture);
+  void RemoveResult(Entry& entry, const ImageRecord& picture);
   std::size_t Unended(const Entry& entry) const;
   absl::Status CheckPictures(const NewJob& job) const;
   absl::Status MakeRoomForJob(const NewJob& job);
@@ -240,7 +240,7 @@ class JobBoard {
   // Returns the index of the job's first picture that may be begun now, or nothing if there is no
   // such picture.
   std::optional<std::size_t> Waiting(Entry& entry, Time now) const;
-  PictureRecord* Drawing(const PicturePlace& picture, Entry** entry);
+  ImageRecord* Drawing(const PicturePlace& picture, Entry** entry);
   // Settles what Next charged for the picture. Without a time, what was charged counts as used.
   void Settle(const PicturePlace& picture, std::optional<double> draw_ms);
 

@@ -83,7 +83,7 @@ void JobBoard::EndAbandoned(Entry& entry, Time now, Expired& expired) {
       absl::StrCat("the results of this job were not fetched for ", limits_.keep.count(),
                    " s (--jobs-keep), so its other pictures could not be drawn")};
   for (std::size_t i = 0; i < entry.record.pictures.size(); ++i) {
-    PictureRecord& picture = entry.record.pictures[i];
+    ImageRecord& picture = entry.record.pictures[i];
     if (picture.state == PictureState::kWaiting) {
       picture.problem = problem;
       SetState(entry, i, PictureState::kFailed);

@@ -121,7 +121,7 @@ std::vector<ResultFile> JobBoard::MakeRoom() {
   std::vector<std::tuple<bool, Time, PicturePlace>> order;
   for (const auto& [id, entry] : jobs_) {
     for (std::size_t i = 0; i < entry.record.pictures.size(); ++i) {
-      const PictureRecord& picture = entry.record.pictures[i];
+      const ImageRecord& picture = entry.record.pictures[i];
       if (picture.state != PictureState::kDrawn || !picture.fetched) continue;
       order.emplace_back(!entry.record.ended_at.has_value(), picture.drawn_at, PicturePlace{id, i});
     }
@@ -131,7 +131,7 @@ std::vector<ResultFile> JobBoard::MakeRoom() {
     if (result_bytes_ <= limits_.max_result_bytes) break;
     const PicturePlace& picture = std::get<PicturePlace>(candidate);
     Entry& entry = jobs_.at(picture.job_id);
-    PictureRecord& record = entry.record.pictures[picture.place];
+    ImageRecord& record = entry.record.pictures[picture.place];
     dropped.push_back({picture, record.extension, record.sha256, record.bytes});
     record.problem = {
         absl::StatusCode::kNotFound, "RESULT_DROPPED",

@@ -49,7 +49,7 @@ struct PictureOrder {
   bool operator==(const PictureOrder&) const = default;
 };
 
-struct PictureRecord {
+struct ImageRecord {
   PictureOrder order;
   PictureState state = PictureState::kWaiting;
   int attempts = 0;  // number of times that drawing was begun, without attempts that ended by an
@@ -63,7 +63,7 @@ struct PictureRecord {
   Time drawn_at = {};
   bool fetched = false;
 
-  bool operator==(const PictureRecord&) const = default;
+  bool operator==(const ImageRecord&) const = default;
 };
 
 struct JobRecord {
@@ -74,7 +74,7 @@ struct JobRecord {
   Time created_at = {};
   std::optional<Time> ended_at = {};
   bool cancelled = false;
-  std::vector<PictureRecord> pictures;
+  std::vector<ImageRecord> pictures;
 
   bool operator==(const JobRecord&) const = default;
 };

@@ -18,7 +18,7 @@ namespace thunderhead::jobs {
 struct JobChange {
   struct Picture {
     std::size_t place = 0;
-    PictureRecord record;  // `order` never changes and is not saved again
+    ImageRecord record;  // `order` never changes and is not saved again
   };
 
   std::string id;

@@ -72,7 +72,7 @@ class RunningLoad {
         progress_(progress),
         session_id_(session.session_id()),
         viewer_key_(session.viewer_key()),
-        stills_(options.stills, transport, stop, errors_),
+        images_(options.images, transport, stop, errors_),
         presenter_(session.scene().camera(), errors_) {
     presenter_.Join(transport, session.session_id());
     AddViewers(ViewerKind::kHealthy, options.viewers - options.looking);
@@ -88,7 +88,7 @@ class RunningLoad {
   absl::StatusOr<Report> Run() {
     const absl::Status joined = AwaitFrames();
     if (joined.ok()) Steer();
-    stills_.Join();
+    images_.Join();
     Leave();
     Close();
     if (!joined.ok()) return joined;
@@ -159,7 +159,7 @@ class RunningLoad {
       if (now_s >= next_sample_s) {
         if (!measuring_.exchange(true)) {
           own_cpu_s = OwnCpu_s();
-          stills_.Begin();
+          images_.Begin();
         }
         Sample();
         next_sample_s += options_.times.sampling_s;
@@ -252,7 +252,7 @@ class RunningLoad {
   Recording Record() const {
     Recording recording{.period = period_,
                         .updates = presenter_.Updates(),
-                        .stills = stills_.Record(),
+                        .images = images_.Record(),
                         .server = samples_,
                         .own_cpu_s = own_cpu_s_,
                         .errors = errors_.Counts()};
@@ -268,7 +268,7 @@ class RunningLoad {
   const std::string session_id_;
   const std::string viewer_key_;
   Errors errors_;
-  Stills stills_;
+  ImageBurst images_;
   std::atomic<bool> measuring_{false};
   Presenter presenter_;
   std::vector<std::unique_ptr<Viewer>> viewers_;

@@ -9,9 +9,9 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "load/image_burst.h"
 #include "load/report.h"
 #include "load/server_process.h"
-#include "load/stills.h"
 #include "load/transport.h"
 
 namespace thunderhead::load {
@@ -46,7 +46,7 @@ struct LoadOptions {
   // Updates per second by the presenter, and camera moves per second by each viewer who looks
   // around; 0 for none.
   double steer_hz = 30.0;
-  StillOptions stills;  // requested when the measured period begins
+  ImageBurstOptions images;  // requested when the measured period begins
   LoadTimes times;
 };
 
@@ -68,7 +68,7 @@ struct Progress {
   int errors = 0;
 };
 
-// Runs the load test until its time has passed and every still has arrived, or until every viewer's
+// Runs the load test until its time has passed and every image has arrived, or until every viewer's
 // call has ended. If `stop` is requested, it ends early with the results so far, or with an error
 // if there are none. Streams that end with an error are counted in the report.
 absl::StatusOr<Report> Run(const LoadOptions& options, Transport& transport,

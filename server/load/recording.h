@@ -54,7 +54,7 @@ class Errors {
 };
 
 // The record of single pictures.
-struct StillRecord {
+struct ImageBurstRecord {
   int asked = 0;
   // Times from the request to the picture, for each picture that arrived.
   std::vector<double> came_ms;
@@ -64,7 +64,7 @@ struct Recording {
   Period period;
   std::vector<Update> updates;  // in the order of their revisions
   std::vector<const ViewerRecord*> viewers;
-  StillRecord stills;
+  ImageBurstRecord images;
   std::vector<ProcessSample> server;  // empty if the server is not on this machine
   double own_cpu_s = 0.0;             // processor time of this program within the period
   std::map<std::string, int> errors;

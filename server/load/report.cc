@@ -95,8 +95,8 @@ Report ReportOf(const Recording& recording) {
   report.looking_first = FirstFramesOf(recording, ViewerKind::kLooking);
   report.throttled_first = FirstFramesOf(recording, ViewerKind::kThrottled);
   report.passing_first = FirstFramesOf(recording, ViewerKind::kPassing);
-  const std::vector<double>& came_ms = recording.stills.came_ms;
-  report.stills = {recording.stills.asked, static_cast<int>(came_ms.size()),
+  const std::vector<double>& came_ms = recording.images.came_ms;
+  report.images = {recording.images.asked, static_cast<int>(came_ms.size()),
                    Percentile(came_ms, 0.5), Percentile(came_ms, 1.0)};
   report.server = FiguresOf(recording.server);
   if (report.seconds > 0.0) report.own_cpu = recording.own_cpu_s / report.seconds;

@@ -41,7 +41,7 @@ struct ServerFigures {
   double cpu = 0.0;  // mean number of busy processors
 };
 
-struct StillFigures {
+struct ImageBurstFigures {
   int asked = 0;
   int came = 0;
   std::optional<double> median_ms;  // from the request to the picture
@@ -64,7 +64,7 @@ struct Report {
   FirstFrames throttled_first;
   int passing = 0;
   FirstFrames passing_first;
-  StillFigures stills;
+  ImageBurstFigures images;
   std::optional<ServerFigures> server;  // absent if the server is not on this machine
   double own_cpu = 0.0;                 // number of processors that this program kept busy
   std::map<std::string, int> errors;    // number of errors by message

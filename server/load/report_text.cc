@@ -71,10 +71,10 @@ std::string PassingJson(const Report& report) {
                          report.passing, report.passing_first.count, Json(report.passing_first));
 }
 
-std::string StillsJson(const StillFigures& stills) {
-  if (stills.asked == 0) return "null";
+std::string ImagesJson(const ImageBurstFigures& images) {
+  if (images.asked == 0) return "null";
   return absl::StrFormat("{\"asked\": %d, \"came\": %d, \"ms\": {\"median\": %s, \"most\": %s}}",
-                         stills.asked, stills.came, Json(stills.median_ms), Json(stills.most_ms));
+                         images.asked, images.came, Json(images.median_ms), Json(images.most_ms));
 }
 
 std::string ServerJson(const std::optional<ServerFigures>& server) {
@@ -128,13 +128,13 @@ void AppendThrottled(const Report& report, std::string& text) {
   }
 }
 
-void AppendStills(const StillFigures& stills, std::string& text) {
-  if (stills.asked == 0) return;
-  absl::StrAppendFormat(&text, "stills: %d asked for at once, %d came\n", stills.asked,
-                        stills.came);
-  if (!stills.median_ms.has_value() || !stills.most_ms.has_value()) return;
+void AppendImages(const ImageBurstFigures& images, std::string& text) {
+  if (images.asked == 0) return;
+  absl::StrAppendFormat(&text, "images: %d asked for at once, %d came\n", images.asked,
+                        images.came);
+  if (!images.median_ms.has_value() || !images.most_ms.has_value()) return;
   absl::StrAppendFormat(&text, "  came             after %.1f s (median), %.1f s (most)\n",
-                        1e-3 * *stills.median_ms, 1e-3 * *stills.most_ms);
+                        1e-3 * *images.median_ms, 1e-3 * *images.most_ms);
 }
 
 void AppendServer(const Report& report, std::string& text) {
@@ -171,7 +171,7 @@ std::string ToText(const Report& report) {
                           report.passing_first.count);
     AppendFirst(report.passing_first, text);
   }
-  AppendStills(report.stills, text);
+  AppendImages(report.images, text);
   AppendServer(report, text);
   absl::StrAppendFormat(&text, "this program\n  processors       %.2f busy\nerrors: %d\n",
                         report.own_cpu, report.ErrorCount());
@@ -198,7 +198,7 @@ std::string ToJson(const Report& report) {
       "  \"errors\": %d, \"error_messages\": {%s}\n}\n",
       Quoted(report.transport), report.seconds, report.width_px, report.height_px, report.steer_hz,
       report.Main().viewers, Keys(report.Main()), Json(report.MainFirst()), LookingJson(report),
-      ThrottledJson(report), report.stalled, PassingJson(report), StillsJson(report.stills),
+      ThrottledJson(report), report.stalled, PassingJson(report), ImagesJson(report.images),
       ServerJson(report.server), report.own_cpu, report.ErrorCount(), errors);
 }
 

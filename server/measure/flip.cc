@@ -125,14 +125,14 @@ Planes Filtered(const Planes& planes) {
   return filtered;
 }
 
-std::vector<double> ColorDifference(const Planes& image, const Planes& truth) {
+std::vector<double> ColorDifference(const Planes& image, const Planes& reference) {
   const auto seen = [](const Planes& opponent) {
     return Mapped(Filtered(opponent), [](const glm::dvec3& value) {
       return LabOf(glm::clamp(RgbOf(value), 0.0, 1.0));
     });
   };
   const Planes a = seen(image);
-  const Planes b = seen(truth);
+  const Planes b = seen(reference);
   const double max_distance =
       std::pow(HybridDistance(LabOf({0.0, 1.0, 0.0}), LabOf({0.0, 0.0, 1.0})), kColorExponent);
   std::vector<double> difference;
@@ -218,11 +218,11 @@ Planes OpponentOf(const frame::RgbImage& image) {
 
 }  // namespace
 
-double Flip(const frame::RgbImage& image, const frame::RgbImage& truth) {
-  THUNDERHEAD_CHECK(image.width_px == truth.width_px && image.height_px == truth.height_px,
+double Flip(const frame::RgbImage& image, const frame::RgbImage& reference) {
+  THUNDERHEAD_CHECK(image.width_px == reference.width_px && image.height_px == reference.height_px,
                     std::to_string(image.width_px));
   const Planes a = OpponentOf(image);
-  const Planes b = OpponentOf(truth);
+  const Planes b = OpponentOf(reference);
   const std::vector<double> color = ColorDifference(a, b);
   const std::vector<double> edges_a = Features(a, true);
   const std::vector<double> edges_b = Features(b, true);

@@ -186,7 +186,7 @@ std::vector<Case> CasesOf(const FrameRateOptions& options) {
     }
   }
   for (const accuracy::Preset preset :
-       {accuracy::Preset::kFast, accuracy::Preset::kBalanced, accuracy::Preset::kTrue}) {
+       {accuracy::Preset::kFast, accuracy::Preset::kBalanced, accuracy::Preset::kAccurate}) {
     cases.push_back({accuracy::TechniqueOf(preset), accuracy::NameOf(preset)});
   }
   cases.push_back({accuracy::TechniqueOf(accuracy::kDefaultPreset), "default"});

@@ -32,34 +32,34 @@ picture::LinearPicture Without(const std::vector<bool>& left_out,
   return rest;
 }
 
-double RelativeRmse(const picture::LinearPicture& image, const picture::LinearPicture& truth) {
-  THUNDERHEAD_CHECK(image.size_px == truth.size_px, std::to_string(image.size_px.x));
+double RelativeRmse(const picture::LinearPicture& image, const picture::LinearPicture& reference) {
+  THUNDERHEAD_CHECK(image.size_px == reference.size_px, std::to_string(image.size_px.x));
   double squares = 0.0;
-  for (std::size_t i = 0; i < truth.radiance.size(); ++i) {
-    const glm::dvec3 difference = glm::dvec3(image.radiance[i]) - glm::dvec3(truth.radiance[i]);
+  for (std::size_t i = 0; i < reference.radiance.size(); ++i) {
+    const glm::dvec3 difference = glm::dvec3(image.radiance[i]) - glm::dvec3(reference.radiance[i]);
     squares += Sum(difference * difference);
   }
-  return std::sqrt(squares / (3.0 * static_cast<double>(truth.radiance.size()))) /
-         MeanRadiance(truth);
+  return std::sqrt(squares / (3.0 * static_cast<double>(reference.radiance.size()))) /
+         MeanRadiance(reference);
 }
 
-double RelativeNoise(const picture::LinearPicture& truth) {
-  THUNDERHEAD_CHECK(!truth.standard_error.empty(), "the reference has no standard error");
+double RelativeNoise(const picture::LinearPicture& reference) {
+  THUNDERHEAD_CHECK(!reference.standard_error.empty(), "the reference has no standard error");
   double squares = 0.0;
-  for (const glm::vec3& error : truth.standard_error)
+  for (const glm::vec3& error : reference.standard_error)
     squares += Sum(glm::dvec3(error) * glm::dvec3(error));
-  return std::sqrt(squares / (3.0 * static_cast<double>(truth.standard_error.size()))) /
-         MeanRadiance(truth);
+  return std::sqrt(squares / (3.0 * static_cast<double>(reference.standard_error.size()))) /
+         MeanRadiance(reference);
 }
 
-double RelativeRmseWithout(double truth_noise, const picture::LinearPicture& image,
-                           const picture::LinearPicture& truth) {
-  const double rmse = RelativeRmse(image, truth);
-  return std::sqrt(std::max(rmse * rmse - truth_noise * truth_noise, 0.0));
+double RelativeRmseWithout(double reference_noise, const picture::LinearPicture& image,
+                           const picture::LinearPicture& reference) {
+  const double rmse = RelativeRmse(image, reference);
+  return std::sqrt(std::max(rmse * rmse - reference_noise * reference_noise, 0.0));
 }
 
-double RelativeBias(const picture::LinearPicture& image, const picture::LinearPicture& truth) {
-  return MeanRadiance(image) / MeanRadiance(truth) - 1.0;
+double RelativeBias(const picture::LinearPicture& image, const picture::LinearPicture& reference) {
+  return MeanRadiance(image) / MeanRadiance(reference) - 1.0;
 }
 
 }  // namespace thunderhead::measure

@@ -131,19 +131,19 @@ void MarkPareto(std::vector<TradeRow>* rows) {
   }
 }
 
-scene::Scene TrueScene(scene::Scene scene) {
+scene::Scene ReferenceScene(scene::Scene scene) {
   scene.rendering.technique = scene::Reference{};
   return scene;
 }
 
 Trade::Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
-             AgainstTruth truth, double error_seconds)
+             ReferenceComparison comparison, double error_seconds)
     : scene_(std::move(scene)),
       fields_(std::move(fields)),
-      truth_(std::move(truth)),
+      comparison_(std::move(comparison)),
       error_seconds_(error_seconds) {
-  scene_.output.width_px = truth_.Truth().size_px.x;
-  scene_.output.height_px = truth_.Truth().size_px.y;
+  scene_.output.width_px = comparison_.Reference().size_px.x;
+  scene_.output.height_px = comparison_.Reference().size_px.y;
 }
 
 absl::StatusOr<frame::RgbImage> Trade::Display(const gl::Texture2D& linear) {
@@ -182,8 +182,9 @@ absl::Status Trade::Estimate(const scene::Scene& scene, const picture::LinearPic
 }
 
 absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_token& stop) {
-  if (truth_display_.rgb.empty()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(truth_display_, Display(frame::TextureOf(truth_.Truth())));
+  if (reference_display_.rgb.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(reference_display_,
+                                 Display(frame::TextureOf(comparison_.Reference())));
   }
   scene::Scene scene = scene_;
   scene.rendering.technique = setting.technique;
@@ -208,12 +209,12 @@ absl::StatusOr<TradeRow> Trade::Measure(const Setting& setting, const std::stop_
     if (i >= 0) milliseconds.push_back(stopwatch.ElapsedMs());
     if (i + 1 < kTimedFrames) continue;
     const picture::LinearPicture image = frame::PictureOf(*linear.radiance);
-    row.relative_rmse = truth_.RelativeRmseWithoutNoise(image);
-    row.relative_bias = truth_.RelativeBias(image);
+    row.relative_rmse = comparison_.RelativeRmseWithoutNoise(image);
+    row.relative_bias = comparison_.RelativeBias(image);
     THUNDERHEAD_RETURN_IF_ERROR(Estimate(scene, image, stop, &row.estimated_error));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const frame::RgbImage seen, frame::DecodeJpeg(jpeg));
-  row.flip = Flip(seen, truth_display_);
+  row.flip = Flip(seen, reference_display_);
   row.bytes = jpeg.size();
   row.milliseconds = Quantile(milliseconds, 0.5);
   row.milliseconds_spread = Quantile(milliseconds, 0.75) - Quantile(milliseconds, 0.25);

@@ -16,7 +16,7 @@
 #include "frame/image_codec.h"
 #include "frame/tone_map.h"
 #include "gl/program.h"
-#include "measure/against_truth.h"
+#include "measure/reference_comparison.h"
 #include "picture/linear_picture.h"
 #include "renderers/scene_renderer.h"
 #include "scene/scene.h"
@@ -60,15 +60,15 @@ void MarkPareto(std::vector<TradeRow>* rows);
 
 // Returns the scene that the reference traces. Each field has its own phase function, and there are
 // no false colours.
-scene::Scene TrueScene(scene::Scene scene);
+scene::Scene ReferenceScene(scene::Scene scene);
 
 class Trade {
  public:
-  // `scene` gives the settings that are not varied. The reference picture `truth` must have the
-  // size of the scene. A server's error estimate is also made for each picture, for `error_seconds`
-  // seconds. With 0 there is no estimate.
+  // `scene` gives the settings that are not varied. The reference picture of `comparison` must have
+  // the size of the scene. A server's error estimate is also made for each picture, for
+  // `error_seconds` seconds. With 0 there is no estimate.
   Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
-        AgainstTruth truth, double error_seconds);
+        ReferenceComparison comparison, double error_seconds);
 
   // Measures a setting. Returns CANCELLED if `stop` was requested during path tracing. Traced paths
   // are kept for the next setting. Settings that differ only in the number of paths are therefore
@@ -85,9 +85,9 @@ class Trade {
 
   scene::Scene scene_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
-  AgainstTruth truth_;
+  ReferenceComparison comparison_;
   double error_seconds_;
-  frame::RgbImage truth_display_;
+  frame::RgbImage reference_display_;
   renderers::SceneRenderer renderer_;
   // Shader programs of the correctors and the error estimates.
   const std::shared_ptr<gl::ProgramCache> programs_ = std::make_shared<gl::ProgramCache>();

@@ -127,7 +127,7 @@ std::string CsvHead(const TradeTitle& title) {
       "relative "
       "noise %.4f\n%s\n",
       title.storm, title.view, title.renderer, title.size_px.x, title.size_px.y,
-      title.truth_samples_per_pixel, title.truth_noise, kColumns);
+      title.reference_samples_per_pixel, title.reference_noise, kColumns);
 }
 
 std::string CsvLine(const TradeRow& row) {
@@ -168,7 +168,7 @@ std::string TradeJson(const TradeTitle& title, const std::vector<TradeRow>& rows
       "%d,\n  \"height_px\": %d,\n  \"truth\": {\"samples_per_pixel\": %d, \"relative_noise\": "
       "%.6g},\n  \"rows\": [\n",
       Quoted(title.renderer), Quoted(title.storm), Quoted(title.view), title.size_px.x,
-      title.size_px.y, title.truth_samples_per_pixel, title.truth_noise);
+      title.size_px.y, title.reference_samples_per_pixel, title.reference_noise);
   absl::StrAppend(&text, absl::StrJoin(rows, ",\n", [](std::string* out, const TradeRow& row) {
     const Setting& setting = row.setting;
     absl::StrAppendFormat(

@@ -17,8 +17,8 @@ struct TradeTitle {
   std::string view;      // display name of the view
   std::string renderer;  // OpenGL's renderer string (GL_RENDERER)
   glm::ivec2 size_px{0};
-  int truth_samples_per_pixel = 0;
-  double truth_noise = 0.0;  // relative RMSE of the reference's own noise
+  int reference_samples_per_pixel = 0;
+  double reference_noise = 0.0;  // relative RMSE of the reference's own noise
 };
 
 // Returns the first lines of a CSV file: comments with the title, then the names of the columns.

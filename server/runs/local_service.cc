@@ -101,7 +101,7 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
     std::shared_ptr<storm_store::StormStore> store, const std::string& device) {
   service::ServerOptions options;
-  options.render_loop.lanes_yield = false;
+  options.render_loop.workers_yield = false;
   auto server = service::Server::Start(options, std::move(store), drawing::GlFrameSources(device));
   // Waiting does not make a missing device appear, so the status must not suggest a retry.
   if (!server.ok() && !absl::IsInvalidArgument(server.status())) {

@@ -7,24 +7,24 @@
 #include "rpc_port/delivery_deadline.h"
 #include "rpc_port/status_table.h"
 #include "service/engine/limits.h"
-#include "service/engine/picture_job.h"
+#include "service/engine/requested_image.h"
 #include "service/handlers.h"
 
 namespace thunderhead::service {
 namespace {
 
 // Sends a picture as the response of a unary call.
-class PictureReactor final : public grpc::ServerUnaryReactor, private PictureListener {
+class PictureReactor final : public grpc::ServerUnaryReactor, private ImageListener {
  public:
   PictureReactor(Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
                  const v1::RenderImageRequest& request, v1::RenderImageResponse& response)
       : caller_(std::move(caller)),
         response_(response),
         delivery_(context, engine.limits),
-        job_(engine, request, response, *this, Awaited::kByACall, caller_->identity().name) {}
+        requested_(engine, request, response, *this, Awaited::kByACall, caller_->identity().name) {}
 
-  void Begin() { job_.Begin(); }
-  void OnCancel() override { job_.Cancel(); }
+  void Begin() { requested_.Begin(); }
+  void OnCancel() override { requested_.Cancel(); }
   void OnDone() override { delete this; }
 
  private:
@@ -37,14 +37,14 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private PictureLis
   const CallerRef caller_;
   const v1::RenderImageResponse& response_;
   rpc_port::DeliveryDeadline delivery_;
-  PictureJob job_;
+  RequestedImage requested_;
 };
 
 // Sends a picture as the last event of a stream. There is at most one pending write. Progress that
 // arrives during a write, or too soon after the last progress, is dropped because newer progress
 // will follow.
 class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent>,
-                            private PictureListener {
+                            private ImageListener {
  public:
   PictureStream(Engine& engine, grpc::CallbackServerContext* context, CallerRef caller,
                 const v1::RenderImageRequest& request)
@@ -52,11 +52,11 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
         in_chunks_(request.in_chunks()),
         time_(engine.sessions.time()),
         delivery_(context, engine.limits),
-        job_(engine, request, *image_.mutable_image(), *this, Awaited::kByACall,
-             caller_->identity().name) {}
+        requested_(engine, request, *image_.mutable_image(), *this, Awaited::kByACall,
+                   caller_->identity().name) {}
 
-  void Begin() { job_.Begin(); }
-  void OnCancel() override { job_.Cancel(); }
+  void Begin() { requested_.Begin(); }
+  void OnCancel() override { requested_.Cancel(); }
   void OnDone() override { delete this; }
 
   void OnWriteDone(bool ok) override {
@@ -136,7 +136,7 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
   std::optional<base::TimeSource::Clock::time_point> told_at_;  // time of the last progress message
   std::optional<grpc::Status> end_;
   rpc_port::DeliveryDeadline delivery_;
-  PictureJob job_;
+  RequestedImage requested_;
 };
 
 }  // namespace

@@ -56,11 +56,11 @@ struct ServerLoad {
   int storms = 0;
   double cached_bytes = 0.0;  // size of the storms' fields in memory
   int pictures = 0;           // single pictures that were started and not yet delivered
-  int waiting_pictures = 0;   // pictures among these that wait for a lane
+  int waiting_pictures = 0;   // pictures among these that wait for a worker
   // Seconds since a blocked storage last responded; 0 if none is blocked.
   double reading_stuck_s = 0.0;
   bool recovering = false;  // true from the loss of the device until it is open again
-  // Seconds since a busy lane last drew a piece; 0 while all lanes are idle.
+  // Seconds since a busy worker last drew a piece; 0 while all workers are idle.
   double stalled_s = 0.0;
   // Seconds since the render loop's current turn began; 0 while the loop waits for work.
   double turn_s = 0.0;

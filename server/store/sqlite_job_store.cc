@@ -18,8 +18,8 @@
 namespace thunderhead::store {
 namespace {
 
+using jobs::ImageRecord;
 using jobs::JobRecord;
-using jobs::PictureRecord;
 using jobs::PictureState;
 
 constexpr char kAddJob[] =
@@ -71,7 +71,7 @@ std::optional<PictureState> StateOf(std::int64_t number) {
   return std::nullopt;
 }
 
-void BindState(const PictureRecord& picture, Statement& statement) {
+void BindState(const ImageRecord& picture, Statement& statement) {
   statement.Bind(1, NumberOf(picture.state));
   statement.Bind(2, std::int64_t{picture.attempts});
   statement.Bind(3, static_cast<std::int64_t>(picture.problem.code));
@@ -93,12 +93,12 @@ void BindEnd(const std::optional<jobs::Time>& ended_at, int parameter, Statement
   }
 }
 
-absl::StatusOr<PictureRecord> PictureOf(const Statement& row) {
+absl::StatusOr<ImageRecord> PictureOf(const Statement& row) {
   const std::optional<PictureState> state = StateOf(row.Number(0));
   if (!state.has_value()) {
     return absl::DataLossError(absl::StrCat("a picture has the unknown state ", row.Number(0)));
   }
-  PictureRecord picture;
+  ImageRecord picture;
   picture.state = *state;
   picture.attempts = static_cast<int>(row.Number(1));
   picture.problem = {static_cast<absl::StatusCode>(row.Number(2)), row.Bytes(3), row.Bytes(4)};
@@ -142,7 +142,7 @@ class OpenJobStore final : public SqliteJobStore {
     THUNDERHEAD_RETURN_IF_ERROR(add.Run());
     THUNDERHEAD_ASSIGN_OR_RETURN(Statement add_picture, database_.Prepare(kAddPicture));
     for (std::size_t i = 0; i < job.pictures.size(); ++i) {
-      const PictureRecord& picture = job.pictures[i];
+      const ImageRecord& picture = job.pictures[i];
       BindState(picture, add_picture);
       add_picture.Bind(kStateColumns + 1, job.id);
       add_picture.Bind(kStateColumns + 2, static_cast<std::int64_t>(i));
@@ -199,7 +199,7 @@ class OpenJobStore final : public SqliteJobStore {
       THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, pictures.Next());
       if (!found) return records;
       JobRecord& job = records[index_by_id.at(pictures.Bytes(kStateColumns))];
-      absl::StatusOr<PictureRecord> picture = PictureOf(pictures);
+      absl::StatusOr<ImageRecord> picture = PictureOf(pictures);
       if (!picture.ok()) {
         // An unreadable picture is replaced by a failed picture and not left out, because clients
         // identify pictures by their places.

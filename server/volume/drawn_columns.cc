@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 #include "glm/common.hpp"
 #include "glm/vec3.hpp"
 
@@ -27,9 +27,11 @@ constexpr double kMostInCell = 1024.0;
 // The value of DetailTexel::profile above which billows remove no medium.
 constexpr std::uint8_t kInside = 250;
 
-using Lanes = std::array<float, base::kLanes>;
+using SimdNumbers = std::array<float, base::kSimdWidth>;
 
-float Total(const Lanes& lanes) { return std::accumulate(lanes.begin(), lanes.end(), 0.0F); }
+float Total(const SimdNumbers& numbers) {
+  return std::accumulate(numbers.begin(), numbers.end(), 0.0F);
+}
 
 // Returns a point of a sequence that fills a square evenly: multiples of 1 / 1.3247 and of its
 // square, modulo 1. The number 1.3247 solves x^3 = x + 1.
@@ -62,7 +64,7 @@ class PointSum {
   DrawnColumn Sum() {
     if (count_ > 0) {
       std::fill(weights_.begin() + static_cast<std::ptrdiff_t>(count_), weights_.end(), 0.0F);
-      AddLanes();
+      AddPoints();
     }
     DrawnColumn column;
     std::transform(sums_.begin(), sums_.end(), column.sums.begin(), Total);
@@ -72,51 +74,51 @@ class PointSum {
 
   // Returns the weighted values of the last eight points, all channels together. Points are
   // evaluated in groups of eight, so the most recent points may still be missing.
-  const Lanes& Last() const { return last_; }
+  const SimdNumbers& Last() const { return last_; }
 
  private:
   // `across` is the position relative to the column's corner, and `z` the height above the volume's
   // low corner. Both are in cells.
   void Add(const glm::vec2& across, float z, float weight) {
-    const std::size_t lane = count_++;
-    places_.x[lane] = corner_.x + across.x;
-    places_.y[lane] = corner_.y + across.y;
-    places_.z[lane] = z;
-    weights_[lane] = weight;
-    from_middle_[0][lane] = across.x - 0.5F;
-    from_middle_[1][lane] = across.y - 0.5F;
-    if (count_ == weights_.size()) AddLanes();
+    const std::size_t point = count_++;
+    places_.x[point] = corner_.x + across.x;
+    places_.y[point] = corner_.y + across.y;
+    places_.z[point] = z;
+    weights_[point] = weight;
+    from_middle_[0][point] = across.x - 0.5F;
+    from_middle_[1][point] = across.y - 0.5F;
+    if (count_ == weights_.size()) AddPoints();
   }
 
   // Returns the weights of a linear interpolation between three columns, at places in the middle
   // column.
-  static std::array<Lanes, 3> InterpolationAt(const Lanes& from_middle) {
-    std::array<Lanes, 3> weights;
-    for (std::size_t lane = 0; lane < from_middle.size(); ++lane) {
-      weights[0][lane] = std::max(-from_middle[lane], 0.0F);
-      weights[1][lane] = 1.0F - std::abs(from_middle[lane]);
-      weights[2][lane] = std::max(from_middle[lane], 0.0F);
+  static std::array<SimdNumbers, 3> InterpolationAt(const SimdNumbers& from_middle) {
+    std::array<SimdNumbers, 3> weights;
+    for (std::size_t point = 0; point < from_middle.size(); ++point) {
+      weights[0][point] = std::max(-from_middle[point], 0.0F);
+      weights[1][point] = 1.0F - std::abs(from_middle[point]);
+      weights[2][point] = std::max(from_middle[point], 0.0F);
     }
     return weights;
   }
 
-  void AddLanes() {
+  void AddPoints() {
     count_ = 0;
     DrawnMedium::ChannelsAt here;
     medium_.At(places_, &here);
     last_ = {};
     for (std::size_t i = 0; i < channels_; ++i) {
-      for (std::size_t lane = 0; lane < last_.size(); ++lane) {
-        const float part = here[i][lane] * weights_[lane];
-        sums_[i][lane] += part;
-        last_[lane] += part;
+      for (std::size_t point = 0; point < last_.size(); ++point) {
+        const float part = here[i][point] * weights_[point];
+        sums_[i][point] += part;
+        last_[point] += part;
       }
     }
-    const std::array<Lanes, 3> x = InterpolationAt(from_middle_[0]);
-    const std::array<Lanes, 3> y = InterpolationAt(from_middle_[1]);
+    const std::array<SimdNumbers, 3> x = InterpolationAt(from_middle_[0]);
+    const std::array<SimdNumbers, 3> y = InterpolationAt(from_middle_[1]);
     for (std::size_t k = 0; k < shares_.size(); ++k) {
-      for (std::size_t lane = 0; lane < last_.size(); ++lane) {
-        shares_[k][lane] += last_[lane] * x[k % 3][lane] * y[k / 3][lane];
+      for (std::size_t point = 0; point < last_.size(); ++point) {
+        shares_[k][point] += last_[point] * x[k % 3][point] * y[k / 3][point];
       }
     }
   }
@@ -125,13 +127,13 @@ class PointSum {
   const glm::vec2 corner_;
   const std::size_t channels_;
   std::uint32_t next_;
-  std::size_t count_ = 0;  // points in the lanes
+  std::size_t count_ = 0;  // points in the SIMD numbers
   DrawnMedium::Places places_{};
-  Lanes weights_{};
-  std::array<Lanes, 2> from_middle_{};
-  Lanes last_{};
-  std::array<Lanes, kMaxChannels> sums_{};
-  std::array<Lanes, 9> shares_{};
+  SimdNumbers weights_{};
+  std::array<SimdNumbers, 2> from_middle_{};
+  SimdNumbers last_{};
+  std::array<SimdNumbers, kMaxChannels> sums_{};
+  std::array<SimdNumbers, 9> shares_{};
 };
 
 // Statistics of the medium at a few points of a cell, with all channels added up.
@@ -140,18 +142,18 @@ struct Probe {
   double spread = 0.0;  // standard deviation
 };
 
-Probe ProbeOf(const Lanes& points) {
-  constexpr double kCount = base::kLanes;
+Probe ProbeOf(const SimdNumbers& points) {
+  constexpr double kCount = base::kSimdWidth;
   const double mean = Total(points) / kCount;
   const double square = std::inner_product(points.begin(), points.end(), points.begin(), 0.0F);
   return {mean, std::sqrt(std::max(square / kCount - mean * mean, 0.0))};
 }
 
-// Rounds a number of points up to a multiple of kLanes. Small rounding differences between
+// Rounds a number of points up to a multiple of the SIMD width. Small rounding differences between
 // processors therefore hardly ever change the result.
-int InLanes(double count) {
-  constexpr auto kLanes = static_cast<double>(base::kLanes);
-  return static_cast<int>(kLanes * std::ceil(count / kLanes));
+int RoundedUpToSimdWidth(double count) {
+  constexpr auto kWidth = static_cast<double>(base::kSimdWidth);
+  return static_cast<int>(kWidth * std::ceil(count / kWidth));
 }
 
 }  // namespace
@@ -183,7 +185,7 @@ DrawnColumn DrawnColumns::Sum(const glm::ivec2& column, const ColumnPoints& poin
     const bool surface = HasSurface({column.x, column.y, z});
     const double wanted = by_error[static_cast<std::size_t>(z - levels.begin)];
     const int least = surface ? points.at_surface : points.elsewhere;
-    const int count = wanted > least ? InLanes(std::min(wanted, kMostInCell)) : least;
+    const int count = wanted > least ? RoundedUpToSimdWidth(std::min(wanted, kMostInCell)) : least;
     sum.AddCell(z, count, 1.0F / static_cast<float>(count));
   }
   return sum.Sum();
@@ -200,7 +202,7 @@ std::vector<double> DrawnColumns::PointsByError(const glm::ivec2& column, const 
   double spread = 0.0;
   PointSum sum(medium_, column, channels_, kFirstProbe);
   for (int z = levels.begin; z < levels.end; ++z) {
-    sum.AddCell(z, base::kLanes, 1.0F);
+    sum.AddCell(z, base::kSimdWidth, 1.0F);
     const Probe probe = ProbeOf(sum.Last());
     all += probe.mean;
     spread += probe.spread;

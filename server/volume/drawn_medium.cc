@@ -4,7 +4,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 #include "glm/common.hpp"
 #include "glm/vec2.hpp"
 
@@ -14,13 +14,13 @@ namespace {
 using base::AnyAbove;
 using base::Convert;
 using base::EightFloats;
-using base::ForLanes;
+using base::ForEach;
 using base::Integers;
 using base::Load;
 using base::SetAll;
 
 template <typename Floats>
-THUNDERHEAD_IN_LANES void RoundDown(const Floats& value, Integers<Floats>* down, Floats* rest) {
+THUNDERHEAD_SIMD void RoundDown(const Floats& value, Integers<Floats>* down, Floats* rest) {
   Floats towards_zero;
   Convert(value, down);
   Convert(*down, &towards_zero);
@@ -33,27 +33,27 @@ THUNDERHEAD_IN_LANES void RoundDown(const Floats& value, Integers<Floats>* down,
 
 // Extracts byte `kByte` of each word; byte 0 is the least significant.
 template <int kByte, typename Floats>
-THUNDERHEAD_IN_LANES void ByteOf(const Integers<Floats>& word, Floats* value) {
+THUNDERHEAD_SIMD void ByteOf(const Integers<Floats>& word, Floats* value) {
   Convert((word >> (8 * kByte)) & 255, value);
 }
 
 // Does the same as base::FloatFromHalf.
 template <typename Floats>
-THUNDERHEAD_IN_LANES void FromHalf(const Integers<Floats>& half, Floats* value) {
+THUNDERHEAD_SIMD void FromHalf(const Integers<Floats>& half, Floats* value) {
   *value = __builtin_bit_cast(Floats, half << 13) * 0x1p112F;
 }
 
 template <typename Floats>
-THUNDERHEAD_IN_LANES void Limit(float low, float high, Floats* value) {
+THUNDERHEAD_SIMD void Limit(float low, float high, Floats* value) {
   *value = *value < low ? Floats{} + low : *value;
   *value = *value > high ? Floats{} + high : *value;
 }
 
 }  // namespace
 
-// Evaluates the medium at several places, one in each lane.
+// Evaluates the medium at several places, one per SIMD element.
 template <typename Floats>
-struct DrawnMedium::Lanes {
+struct DrawnMedium::Simd {
   using Whole = Integers<Floats>;
   using Weights = std::array<Floats, kCorners>;
 
@@ -72,7 +72,7 @@ struct DrawnMedium::Lanes {
   };
 
   // Computes the corners' weights, in the order along x, then y, then z.
-  THUNDERHEAD_IN_LANES static void FindWeights(const Point& share, Weights* weights) {
+  THUNDERHEAD_SIMD static void FindWeights(const Point& share, Weights* weights) {
     for (std::size_t i = 0; i < kCorners; ++i) {
       (*weights)[i] = ((i & 1U) != 0 ? share.x : 1.0F - share.x) *
                       ((i & 2U) != 0 ? share.y : 1.0F - share.y) *
@@ -80,8 +80,8 @@ struct DrawnMedium::Lanes {
     }
   }
 
-  THUNDERHEAD_IN_LANES static void FindAlong(const Floats& in_cells, int size, Whole* low,
-                                             Floats* share) {
+  THUNDERHEAD_SIMD static void FindAlong(const Floats& in_cells, int size, Whole* low,
+                                         Floats* share) {
     Floats from_middle = in_cells - 0.5F;
     Limit(0.0F, static_cast<float>(size - 1), &from_middle);
     Convert(from_middle, low);
@@ -92,8 +92,8 @@ struct DrawnMedium::Lanes {
     *share = from_middle - whole;
   }
 
-  THUNDERHEAD_IN_LANES static void FindPlace(const DrawnMedium& medium, const Point& in_cells,
-                                             Place* place) {
+  THUNDERHEAD_SIMD static void FindPlace(const DrawnMedium& medium, const Point& in_cells,
+                                         Place* place) {
     const glm::ivec3& size = medium.volume_.grid.cells;
     Point share;
     Whole x, y, z;
@@ -104,9 +104,8 @@ struct DrawnMedium::Lanes {
     FindWeights(share, &place->weights);
   }
 
-  THUNDERHEAD_IN_LANES static void FindNoise(const DrawnMedium& medium, const Layer& layer,
-                                             const Point& in_cells, const Whole& fibres,
-                                             Noise* noise) {
+  THUNDERHEAD_SIMD static void FindNoise(const DrawnMedium& medium, const Layer& layer,
+                                         const Point& in_cells, const Whole& fibres, Noise* noise) {
     constexpr int kSide = physics::DetailTile::kSide;
     Point tile = {layer.corner.x + in_cells.x * layer.cell.x,
                   layer.corner.y + in_cells.y * layer.cell.y,
@@ -134,7 +133,7 @@ struct DrawnMedium::Lanes {
     }
   }
 
-  THUNDERHEAD_IN_LANES static void Add(const Whole& word, const Floats& weight, Noise* noise) {
+  THUNDERHEAD_SIMD static void Add(const Whole& word, const Floats& weight, Noise* noise) {
     Noise bytes;
     ByteOf<0>(word, &bytes.billows);
     ByteOf<1>(word, &bytes.x);
@@ -148,8 +147,8 @@ struct DrawnMedium::Lanes {
 
   // Multiplies `values` by the plane's values.
   template <int kPlaneChannels>
-  THUNDERHEAD_IN_LANES static void Multiply(const DrawnMedium& medium, const ExtinctionPlane& plane,
-                                            const Place& from, Floats* values) {
+  THUNDERHEAD_SIMD static void Multiply(const DrawnMedium& medium, const ExtinctionPlane& plane,
+                                        const Place& from, Floats* values) {
     constexpr int kTogether = kPlaneChannels == 1 ? 1 : 2;  // number of channels that one load
                                                             // reads
     using Number = std::conditional_t<kTogether == 1, std::uint16_t, std::uint32_t>;
@@ -174,8 +173,8 @@ struct DrawnMedium::Lanes {
   }
 
   // Evaluates the medium. All `values` must be 1 before the call.
-  THUNDERHEAD_IN_LANES static void Evaluate(const DrawnMedium& medium, const Point& in_cells,
-                                            std::array<Floats, kMaxChannels>* values) {
+  THUNDERHEAD_SIMD static void Evaluate(const DrawnMedium& medium, const Point& in_cells,
+                                        std::array<Floats, kMaxChannels>* values) {
     Place here;
     FindPlace(medium, in_cells, &here);
     Point displaced = in_cells;
@@ -208,8 +207,8 @@ struct DrawnMedium::Lanes {
       occupied /= 255.0F;
       amplitude = (amplitude - 128.0F) / 127.0F;
       Floats factor = occupied > 0.0F ? column : Floats{};
-      ForLanes([](float texel) { return physics::glsl::detail_column_factor(texel / 255.0F); },
-               &factor, factor);
+      ForEach([](float texel) { return physics::glsl::detail_column_factor(texel / 255.0F); },
+              &factor, factor);
       for (Floats& value : *values) value *= factor;
       const Whole fibres = amplitude < 0.0F;
       for (const Layer& layer : medium.layers_) {
@@ -217,14 +216,14 @@ struct DrawnMedium::Lanes {
         FindNoise(medium, layer, in_cells, fibres, &noise);
         if (&layer == medium.layers_.data()) {
           Floats share;
-          ForLanes([](float o, float a) { return physics::glsl::detail_warp_share(o, a); }, &share,
-                   occupied, amplitude);
+          ForEach([](float o, float a) { return physics::glsl::detail_warp_share(o, a); }, &share,
+                  occupied, amplitude);
           displaced.x += share * medium.warp_.x * (2.0F * noise.x - 1.0F);
           displaced.y += share * medium.warp_.y * (2.0F * noise.y - 1.0F);
           displaced.z += share * medium.warp_.z * (2.0F * noise.z - 1.0F);
         }
         Floats change;
-        ForLanes(
+        ForEach(
             [](float p, float a, float n) {
               return physics::glsl::detail_factor({p, a}, n, 0.0F) - 1.0F;
             },
@@ -246,9 +245,9 @@ struct DrawnMedium::Lanes {
     for (; of_plane < values->data() + values->size(); ++of_plane) *of_plane = Floats{};
   }
 
-  // Evaluates places in arrays, one in each lane.
-  THUNDERHEAD_IN_LANES static void EvaluateAll(const DrawnMedium& medium, const Places& in_cells,
-                                               ChannelsAt* values) {
+  // Evaluates places in arrays, one per SIMD element.
+  THUNDERHEAD_SIMD static void EvaluateAll(const DrawnMedium& medium, const Places& in_cells,
+                                           ChannelsAt* values) {
     Point places;
     static_assert(sizeof(places) == sizeof(in_cells));
     std::memcpy(&places, &in_cells, sizeof(places));
@@ -283,14 +282,14 @@ DrawnMedium::DrawnMedium(const DetailControl& control, const PlacedDetail& detai
 DrawnMedium::Channels DrawnMedium::At(const glm::vec3& in_cells) const {
   Channels values;
   values.fill(1.0F);
-  Lanes<float>::Evaluate(*this, {in_cells.x, in_cells.y, in_cells.z}, &values);
+  Simd<float>::Evaluate(*this, {in_cells.x, in_cells.y, in_cells.z}, &values);
   return values;
 }
 
 #if defined(__x86_64__)
 [[gnu::target("avx2")]] void DrawnMedium::AtWithAvx2(const Places& in_cells,
                                                      ChannelsAt* values) const {
-  Lanes<EightFloats>::EvaluateAll(*this, in_cells, values);
+  Simd<EightFloats>::EvaluateAll(*this, in_cells, values);
 }
 #endif
 
@@ -299,7 +298,7 @@ void DrawnMedium::At(const Places& in_cells, ChannelsAt* values) const {
   static const bool kHasAvx2 = __builtin_cpu_supports("avx2") != 0;
   if (kHasAvx2) return AtWithAvx2(in_cells, values);
 #endif
-  Lanes<EightFloats>::EvaluateAll(*this, in_cells, values);
+  Simd<EightFloats>::EvaluateAll(*this, in_cells, values);
 }
 
 }  // namespace thunderhead::volume

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/lanes.h"
+#include "base/simd.h"
 #include "glm/mat3x3.hpp"
 #include "glm/vec3.hpp"
 #include "physics/detail_tile.h"
@@ -49,9 +49,9 @@ class DrawnMedium {
 
   // Evaluates eight places in one call, which takes less than half as long as eight calls.
   struct Places {
-    std::array<float, base::kLanes> x, y, z;
+    std::array<float, base::kSimdWidth> x, y, z;
   };
-  using ChannelsAt = std::array<std::array<float, base::kLanes>, kMaxChannels>;
+  using ChannelsAt = std::array<std::array<float, base::kSimdWidth>, kMaxChannels>;
   void At(const Places& in_cells, ChannelsAt* values) const;
 
  private:
@@ -65,7 +65,7 @@ class DrawnMedium {
   };
 
   template <typename Floats>
-  struct Lanes;
+  struct Simd;
 
   void AtWithAvx2(const Places& in_cells, ChannelsAt* values) const;
 

@@ -186,10 +186,10 @@ TEST_F(LightCorrection, WhatIsBehindIsDrawnFromTheSameView) {
 TEST_F(LightCorrection, TakesMostOfTheErrorAway) {
   reference::RefineLimits limits;
   limits.samples_per_pixel = 600;
-  const auto truth =
+  const auto reference =
       reference::TraceScene(scene_, *fields_, reference::kPeakCut_deg, limits, {}, {});
-  ASSERT_TRUE(truth.ok()) << truth.status();
-  const picture::LinearPicture& exact = truth->image;
+  ASSERT_TRUE(reference.ok()) << reference.status();
+  const picture::LinearPicture& exact = reference->image;
   const double noise = measure::RelativeNoise(exact);
   const auto error_of = [&](const picture::LinearPicture& drawn) {
     return measure::RelativeRmseWithout(noise, drawn, exact);

@@ -19,7 +19,7 @@ import {
   turn,
   VIEWPORT,
 } from "./class_room.mjs";
-import { canvasData, changing, chooseQuality, grabStill, openTool, rested, screenshot, setNumber, until } from "./driver.mjs";
+import { canvasData, changing, chooseQuality, grabRestingFrame, openTool, rested, screenshot, setNumber, until } from "./driver.mjs";
 import { difference, grabCanvas } from "./pictures.mjs";
 import { textOfCode } from "./qr.mjs";
 import { countSceneUpdates } from "./socket_messages.mjs";
@@ -113,7 +113,7 @@ test("a student joins by the link and sees the same picture, but cannot change i
     scenesOfStudent = countSceneUpdates(page);
   });
   await room.inStep(student);
-  const [{ picture: teachers }, { picture: students }] = [await grabStill(teacher), await grabStill(student)];
+  const [{ picture: teachers }, { picture: students }] = [await grabRestingFrame(teacher), await grabRestingFrame(student)];
   const apart = difference(teachers, students);
   assert.ok(apart < 1, `the pictures differ by ${apart}`);
   for (const page of [teacher, student]) await noteWhenShown(page);
@@ -449,10 +449,10 @@ test("a student's name is seen by the teacher", async () => {
 });
 
 test("the teacher reloads by accident and loses nothing", async () => {
-  const { data: before, picture } = await grabStill(teacher);
+  const { data: before, picture } = await grabRestingFrame(teacher);
   await teacher.reload();
   await openTool(teacher, "look");
-  const { data: after } = await grabStill(teacher);
+  const { data: after } = await grabRestingFrame(teacher);
   assert.equal(after.azimuth, before.azimuth);
   // The page sends its size again, and receives one more frame.
   await until("the picture as before", async () => difference(picture, await grabCanvas(teacher)) < 0.5);

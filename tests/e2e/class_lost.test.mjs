@@ -17,7 +17,7 @@ import {
   steers,
   turn,
 } from "./class_room.mjs";
-import { canvasData, changing, grabStill, openTool, rested, setNumber, until } from "./driver.mjs";
+import { canvasData, changing, grabRestingFrame, openTool, rested, setNumber, until } from "./driver.mjs";
 import { difference, grabCanvas } from "./pictures.mjs";
 import { throttledLink } from "./throttled_link.mjs";
 
@@ -183,7 +183,7 @@ test("the server is killed and comes back: teacher and student have their sessio
   await openTool(teacher, "look");
   await setRule(teacher, "viewersMayMark", true);
   await room.inStep(student);
-  const { data: { revision }, picture: drawn } = await grabStill(student);
+  const { data: { revision }, picture: drawn } = await grabRestingFrame(student);
   const [address, mark] = [student.url(), await markOn(student)];
   await room.stored();
 

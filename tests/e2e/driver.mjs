@@ -74,9 +74,9 @@ const isRefined = ({ refined, ownView, agreed, revision }) =>
 
 const isWhole = (data) => isRefined(data) && fits(data);
 
-// Returns whether the picture is a still (AVIF) at full quality. A busy machine first draws pictures with an
+// Returns whether the picture is a resting frame (AVIF) at full quality. A busy machine first draws pictures with an
 // image_scale below 1.
-const isStill = (data) => isWhole(data) && data.encoding === "avif" && Number(data.scale) === 1;
+const isRestingFrame = (data) => isWhole(data) && data.encoding === "avif" && Number(data.scale) === 1;
 
 async function reached(what, page, holds, testId) {
   let data;
@@ -94,19 +94,19 @@ export const rested = (page, testId) => reached("a refined picture", page, isRef
 // previous size.
 export const restedAndFits = (page, testId) => reached("a refined picture of the canvas's size", page, isWhole, testId);
 
-// Waits like `restedAndFits`, until the picture at full quality is shown as a still, an AVIF that replaces the JPEG.
-// The pixels of the two differ by about one level of 255.
-export const restedStill = (page) => reached("a still of the canvas's size and of full quality", page, isStill);
+// Waits like `restedAndFits`, until the picture at full quality is shown as a resting frame, an AVIF that replaces the
+// JPEG. The pixels of the two differ by about one level of 255.
+export const restingFrame = (page) => reached("a resting frame of the canvas's size and of full quality", page, isRestingFrame);
 
-// Returns the still's pixels and the data that the page reports about the still. Both belong to the same frame.
-export async function grabStill(page) {
+// Returns the resting frame's pixels and the data that the page reports about it. Both belong to the same frame.
+export async function grabRestingFrame(page) {
   let data;
   let picture;
-  await until("a still that stays while it is read", async () => {
-    data = await restedStill(page);
+  await until("a resting frame that stays while it is read", async () => {
+    data = await restingFrame(page);
     picture = await grabCanvas(page);
     const after = await canvasData(page);
-    return isStill(after) && after.sequence === data.sequence;
+    return isRestingFrame(after) && after.sequence === data.sequence;
   });
   return { data, picture };
 }

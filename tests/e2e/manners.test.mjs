@@ -226,7 +226,7 @@ async function unreadable(page) {
     // The progress of a movie (.at-work) has a separate position on phones. In wide windows it is in the top bar.
     const [pill] = document.querySelectorAll(".at-work");
     const pillIsABar = pill !== undefined && getComputedStyle(pill).position === "fixed";
-    const bars = boxes(`.top-bar, .time-line, .session-bar, .rail, .truth, aside, .compared-name${pillIsABar ? ", .at-work" : ""}`);
+    const bars = boxes(`.top-bar, .time-line, .session-bar, .rail, .error-line, aside, .compared-name${pillIsABar ? ", .at-work" : ""}`);
     const all = [...texts, ...bars];
     const meet = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
     const mayMeet = (one, other) => bars.includes(one) && bars.includes(other) && (one.covers || other.covers);
@@ -388,9 +388,9 @@ for (const [name, options, most] of [
     });
     assert.ok(covered < most, `${covered} of the picture is covered`);
     // If the line about the error is visible, it is next to the tool.
-    const truth = page.getByTestId("truth");
-    if (await truth.isVisible()) {
-      const [line, panel] = await Promise.all([truth.boundingBox(), page.getByTestId("tool-panel").boundingBox()]);
+    const errorLine = page.getByTestId("error-line");
+    if (await errorLine.isVisible()) {
+      const [line, panel] = await Promise.all([errorLine.boundingBox(), page.getByTestId("tool-panel").boundingBox()]);
       assert.ok(line.x >= panel.x + panel.width, `the line begins at ${line.x}, the tool ends at ${panel.x + panel.width}`);
     }
     await page.context().close();

@@ -8,7 +8,7 @@ import {
   changing as changingOn,
   chooseQuality as chooseQualityOn,
   dragBetween,
-  grabStill as grabStillOf,
+  grabRestingFrame as grabRestingFrameOf,
   launchBrowser,
   listenForErrors,
   openPanel,
@@ -56,15 +56,15 @@ after(async () => {
 });
 
 const canvasData = (of = page) => canvasDataOf(of);
-const still = async () => (await grabStillOf(page)).picture;
+const restingFrame = async () => (await grabRestingFrameOf(page)).picture;
 const rested = (of = page) => restedOn(of);
 const changing = (action, of = page) => changingOn(action, of);
 const screenshot = (name, of = page) => screenshotOf(name, of);
 
 // Runs an action that changes the scene, and returns the final picture of the new scene.
-async function stillAfter(action) {
+async function restingFrameAfter(action) {
   await changing(action);
-  return still();
+  return restingFrame();
 }
 
 function drag(rightPx, downPx) {
@@ -143,7 +143,7 @@ test("the storm's last time is shown first", async () => {
 });
 
 test("a storm is on the canvas, not a blank", async () => {
-  const picture = await still();
+  const picture = await restingFrame();
   await screenshot("1-storm");
   assert.equal(picture.width, PIXEL_RATIO * VIEWPORT.width);
   assert.equal(picture.height, PIXEL_RATIO * VIEWPORT.height);
@@ -189,7 +189,7 @@ test("traced light corrects the picture while it rests, and stays when it turns"
 
 test("fast draws fewer samples without detail, and the arrow keys change the quality", async () => {
   await unfoldSettings();
-  const balanced = await stillAfter(() => chooseQuality("Balanced"));
+  const balanced = await restingFrameAfter(() => chooseQuality("Balanced"));
   assert.deepEqual(await chosenQuality(), ["Balanced"]);
   const slices = () => page.getByTestId("slices-number").inputValue();
   const fine = Number(await slices());
@@ -206,7 +206,7 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
   assert.equal(await page.getByTestId("field-cloud").count(), 1);
   assert.equal(await page.getByTestId("field-cloud").getByText("Detail").count(), 0);
   await unfoldSettings();
-  const fast = await still();
+  const fast = await restingFrame();
   await screenshot("2-fast");
   assert.ok(difference(balanced, fast) > 0.1, "without detail the picture is the same");
 
@@ -220,7 +220,7 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
   assert.equal(await page.getByTestId("traced-light").count(), 0);
   assert.equal(await page.getByTestId("not-shown").count(), 0, "nothing is asked for in vain");
   const paper = page.getByTestId("papers-choice");
-  const darker = await stillAfter(() => paper.selectOption({ label: "Uniform phase, low albedo" }));
+  const darker = await restingFrameAfter(() => paper.selectOption({ label: "Uniform phase, low albedo" }));
   assert.deepEqual(await chosenQuality(), []);
   assert.match(await page.getByTestId("quality-choice-about").innerText(), /low albedo/);
   assert.equal(await page.getByTestId("per-field-phase").isChecked(), false);
@@ -233,8 +233,8 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
 
 test("fields in their false colours", async () => {
   await unfoldSettings();
-  const usual = await still();
-  const coloured = await stillAfter(() => page.getByTestId("false-colors").check());
+  const usual = await restingFrame();
+  const coloured = await restingFrameAfter(() => page.getByTestId("false-colors").check());
   assert.ok(difference(usual, coloured) > 1, "false colours look like true ones");
   await tool("fields");
   const swatches = await page.locator("[data-testid^=field-][data-testid$=-color]").count();
@@ -259,16 +259,16 @@ test("the readout says what the picture costs, and on what", async () => {
 });
 
 test("a drag turns the storm, and the way back brings the first picture again", async () => {
-  const { data: first, picture: firstPicture } = await grabStillOf(page);
+  const { data: first, picture: firstPicture } = await grabRestingFrameOf(page);
   await changing(() => drag(220, 0));
-  const { data: turned, picture: turnedPicture } = await grabStillOf(page);
+  const { data: turned, picture: turnedPicture } = await grabRestingFrameOf(page);
   await screenshot("3-turned");
   const turnDeg = (Number(turned.azimuth) - Number(first.azimuth) + 360) % 360;
   // The drag turns 180 degrees across the picture's height.
   assert.ok(Math.abs(turnDeg - (220 / VIEWPORT.height) * 180) < 1, `it turned by ${turnDeg} degrees`);
   const change = difference(firstPicture, turnedPicture);
   assert.ok(change > 1, `the picture hardly changed: ${change}`);
-  const back = difference(firstPicture, await stillAfter(() => drag(-220, 0)));
+  const back = difference(firstPicture, await restingFrameAfter(() => drag(-220, 0)));
   assert.ok(back < change / 4, `the way back differs by ${back}, the turn by ${change}`);
 });
 
@@ -297,11 +297,11 @@ test("pictures do not pile up while the storm is turned for a while", async () =
 });
 
 test("the time slider shows another time", async () => {
-  const firstPicture = await still();
+  const firstPicture = await restingFrame();
   const firstTime = await page.getByTestId("valid-time").innerText();
   await page.getByTestId("time").focus();
   await changing(() => page.keyboard.press("ArrowRight"));
-  const { data: shown, picture: later } = await grabStillOf(page);
+  const { data: shown, picture: later } = await grabRestingFrameOf(page);
   await screenshot("4-later");
   assert.equal(shown.time, "1");
   assert.notEqual(await page.getByTestId("valid-time").innerText(), firstTime);
@@ -310,7 +310,7 @@ test("the time slider shows another time", async () => {
 });
 
 test("a field switched off goes, and with the last one the storm", async () => {
-  const whole = await stillAfter(async () => {
+  const whole = await restingFrameAfter(async () => {
     await tool("map");
     await page.getByTestId("home").click();
     await tool("look");
@@ -327,9 +327,9 @@ test("a field switched off goes, and with the last one the storm", async () => {
   assert.match(await sizes.innerText(), /^Radius by the papers: [\d.]+ µm$/);
   await changing(() => page.getByTestId("particle-sizes").selectOption({ label: "As the model has them" }));
 
-  const withoutSnow = await stillAfter(() => page.getByTestId("field-snow-visible").uncheck());
+  const withoutSnow = await restingFrameAfter(() => page.getByTestId("field-snow-visible").uncheck());
   await screenshot("5-without-snow");
-  const sky = await stillAfter(async () => {
+  const sky = await restingFrameAfter(async () => {
     for (const name of names) await page.getByTestId(name).uncheck();
   });
   await screenshot("6-sky-alone");
@@ -340,7 +340,7 @@ test("a field switched off goes, and with the last one the storm", async () => {
   assert.ok(lessShare < wholeShare, `without snow the storm covers ${lessShare}, before ${wholeShare}`);
   assert.ok(difference(whole, withoutSnow) > 0.1, "without snow the picture is the same");
 
-  const withAll = await stillAfter(async () => {
+  const withAll = await restingFrameAfter(async () => {
     for (const name of names) await page.getByTestId(name).check();
   });
   const again = difference(whole, withAll);
@@ -348,17 +348,17 @@ test("a field switched off goes, and with the last one the storm", async () => {
 });
 
 test("the sun set by the dome darkens the storm as it sinks", async () => {
-  const high = boxMean(await still(), [0.2, 0.2, 0.6, 0.6]);
+  const high = boxMean(await restingFrame(), [0.2, 0.2, 0.6, 0.6]);
   await tool("light");
   await page.getByTestId("sun-dome").focus();
-  const lowSun = await stillAfter(async () => {
+  const lowSun = await restingFrameAfter(async () => {
     for (let i = 0; i < 7; i += 1) await page.keyboard.press("ArrowDown");
   });
   await screenshot("7-low-sun");
   const low = boxMean(lowSun, [0.2, 0.2, 0.6, 0.6]);
   assert.ok(low < high, `the low sun gives ${low}, the high sun ${high}`);
   await tool("look");
-  const exposed = boxMean(await stillAfter(() => exposeAutomatically(page)), [0.2, 0.2, 0.6, 0.6]);
+  const exposed = boxMean(await restingFrameAfter(() => exposeAutomatically(page)), [0.2, 0.2, 0.6, 0.6]);
   assert.ok(exposed > low, `an automatic exposure of the low sun gives ${exposed}, ${low} without`);
   await tool("light");
   await page.getByTestId("sun-dome").focus();
@@ -401,9 +401,9 @@ test("the reference refines the picture while it rests, and begins again when it
 test("metaballs draw the storm, and the page says what they leave out", async () => {
   await unfoldSettings();
   const choice = page.getByTestId("technique-choice");
-  const before = await still();
+  const before = await restingFrame();
   assert.equal(await page.getByTestId("metaball-count").count(), 0);
-  const balls = await stillAfter(() => choice.selectOption({ label: "Metaballs" }));
+  const balls = await restingFrameAfter(() => choice.selectOption({ label: "Metaballs" }));
   assert.deepEqual(await chosenQuality(), []);
   assert.equal(await page.getByTestId("per-field-phase").isChecked(), true);
   await screenshot("9-metaballs");
@@ -415,7 +415,7 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await page.getByTestId("readout-summary").click();
   assert.match(await page.getByTestId("stages").innerText(), /Metaballs\s+\d+/);
   await page.getByTestId("readout-summary").click();
-  const isotropic = await stillAfter(() => page.getByTestId("metaball-isotropic").click());
+  const isotropic = await restingFrameAfter(() => page.getByTestId("metaball-isotropic").click());
   assert.ok(difference(balls, isotropic) > 0.01);
   await changing(() => page.getByTestId("metaball-isotropic").click());
 
@@ -436,7 +436,7 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   };
   await changing(() => atOneMoment(page, dragSlider));
   assert.equal(sceneUpdates() - updatesBefore, 1);
-  const before2 = await stillAfter(() => setNumber(page, "metaball-count", ballsBefore));
+  const before2 = await restingFrameAfter(() => setNumber(page, "metaball-count", ballsBefore));
 
   const lights = async () => {
     await tool("light");
@@ -444,8 +444,8 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
     if (!(await section.evaluate(({ open }) => open))) await section.locator("summary").click();
   };
   await lights();
-  const warm = await stillAfter(() => page.getByTestId("add-light").click());
-  const both = await stillAfter(() => page.getByTestId("add-light").click());
+  const warm = await restingFrameAfter(() => page.getByTestId("add-light").click());
+  const both = await restingFrameAfter(() => page.getByTestId("add-light").click());
   await screenshot("9-lights");
   assert.ok(difference(before2, warm) > 0.5, "a light more is seen");
   assert.ok(difference(warm, both) > 0.5, "and another one");
@@ -472,7 +472,7 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await changing(() => page.getByTestId("light-1-remove").click());
   assert.equal(await page.getByTestId("light-1").count(), 0);
   await tool("look");
-  const fast = await stillAfter(() => chooseQuality("Fast"));
+  const fast = await restingFrameAfter(() => chooseQuality("Fast"));
   assert.equal(await page.getByTestId("not-shown").count(), 0);
   const changeBack = difference(before, fast);
   assert.ok(changeBack < 1, `the light volume is back, but for ${changeBack} levels`);
@@ -490,13 +490,13 @@ test("a cumulus as a surface, and the parts of its light", async () => {
   }
   assert.match(await page.getByTestId("not-shown").innerText(), /snow/);
   await changing(() => page.getByTestId("cumulus-source").selectOption({ label: "Cauliflower" }));
-  const whole = await stillAfter(() => setNumber(page, "exposure", 0)); // the same exposure for all parts
+  const whole = await restingFrameAfter(() => setNumber(page, "exposure", 0)); // the same exposure for all parts
   await screenshot("10-cumulus");
   assert.ok(spread(whole).deviation > 8, "the picture is nearly uniform");
   assert.match(await page.getByTestId("not-shown").innerText(), /generated from a seed/);
   let last = whole;
   for (const label of ["Direct sunlight", "Inter-reflection", "Sky and ground", "Corona"]) {
-    const part = await stillAfter(() => page.getByTestId("cumulus-component").selectOption({ label }));
+    const part = await restingFrameAfter(() => page.getByTestId("cumulus-component").selectOption({ label }));
     await screenshot(`10-cumulus-${label.toLowerCase().replaceAll(" ", "-")}`);
     const change = difference(last, part);
     assert.ok(change > 0.3, `${label} looks like the part before it: ${change}`);
@@ -506,7 +506,7 @@ test("a cumulus as a surface, and the parts of its light", async () => {
     );
     last = part;
   }
-  const all = await stillAfter(() => page.getByTestId("cumulus-component").selectOption({ label: "All" }));
+  const all = await restingFrameAfter(() => page.getByTestId("cumulus-component").selectOption({ label: "All" }));
   assert.ok(difference(whole, all) < 1, "the whole is back");
   await changing(async () => {
     await exposeAutomatically(page);
@@ -595,7 +595,7 @@ test("a tool opens with its key and Escape closes it", async () => {
 });
 
 test("a cloud is made to order and shown, and a bad one is named", async () => {
-  const before = await still();
+  const before = await restingFrame();
   await openPanel(page, "storms");
   await page.getByTestId("cloud-section").locator("summary").click();
   await page.getByTestId("cloud-own-shape").check();
@@ -608,7 +608,7 @@ test("a cloud is made to order and shown, and a bad one is named", async () => {
   await page.getByTestId("cloud-seed-number").press("Enter");
   await changing(() => page.getByTestId("make-cloud").click());
   assert.equal(await page.getByTestId("storm").inputValue(), "fair-weather-cumulus-3");
-  const cloud = await still();
+  const cloud = await restingFrame();
   await screenshot("cloud");
   assert.ok(difference(before, cloud) > 5, "the picture is of something else");
   assert.equal(await page.getByText("No cloud:").count(), 0);
@@ -706,13 +706,13 @@ test("no error reached the browser's console", () => {
 });
 
 test("a server that dies and comes back is found again with the same scene", async () => {
-  const { data: before, picture: beforePicture } = await grabStillOf(page);
+  const { data: before, picture: beforePicture } = await grabRestingFrameOf(page);
   await server.stop("SIGKILL");
   await page.getByTestId("connection-lost").waitFor({ state: "visible" });
   await screenshot("14-connection-lost");
   server = await startServer(ports);
   await page.getByTestId("connection-lost").waitFor({ state: "hidden" });
-  const { data: healed, picture: healedPicture } = await grabStillOf(page);
+  const { data: healed, picture: healedPicture } = await grabRestingFrameOf(page);
   await screenshot("15-healed");
   assert.equal(healed.azimuth, before.azimuth);
   const change = difference(beforePicture, healedPicture);

@@ -15,7 +15,7 @@ import {
   changing,
   chooseQuality,
   dragBetween,
-  grabStill,
+  grabRestingFrame,
   holdingMovie,
   launchBrowser,
   listenForErrors,
@@ -161,7 +161,7 @@ test("what changed between the last two runs, by keys alone", async () => {
 
 // Checks that a fresh page at the link shows what this page shows.
 async function assertSameView(link) {
-  const { data: here, picture } = await grabStill(page);
+  const { data: here, picture } = await grabRestingFrame(page);
   const colleague = await visit(link);
   try {
     const same = ["camera", "azimuth", "distance", "time"];
@@ -169,7 +169,7 @@ async function assertSameView(link) {
       const there = await canvasData(colleague);
       return same.every((name) => there[name] === here[name]);
     });
-    const { picture: theirs } = await grabStill(colleague);
+    const { picture: theirs } = await grabRestingFrame(colleague);
     assert.equal(await colleague.getByTestId("run").innerText(), await text("run"));
     assert.equal(await colleague.getByTestId("top-time").innerText(), await text("top-time"));
     const apart = difference(picture, theirs);
@@ -282,7 +282,7 @@ test("a link to a view outlives the session that it was made in", async () => {
   await page.evaluate(() => navigator.clipboard.writeText(""));
   const link = await copied(() => page.getByTestId("keep-link").click());
   await page.keyboard.press("Escape");
-  const { data: here, picture } = await grabStill(page);
+  const { data: here, picture } = await grabRestingFrame(page);
   await openPanel(page, "share");
   await page.getByTestId("end-session").click();
   await page.getByTestId("end-session").click();
@@ -290,7 +290,7 @@ test("a link to a view outlives the session that it was made in", async () => {
   const context = await browser.newContext(WINDOW);
   const colleague = await context.newPage();
   await colleague.goto(link);
-  const { data: there, picture: theirs } = await grabStill(colleague);
+  const { data: there, picture: theirs } = await grabRestingFrame(colleague);
   assert.deepEqual([there.azimuth, there.distance, there.time], [here.azimuth, here.distance, here.time]);
   assert.ok(difference(picture, theirs) < 1, "the pictures differ");
   await context.close();
@@ -364,7 +364,7 @@ test("a run with a place: local time, borders on the map, latitude and longitude
 test("at night the page says why the picture is dark, and shows the storm by day", async () => {
   await withPlace(async (opened) => {
     const brightness = async () => {
-      return boxMean((await grabStill(opened)).picture, [0.3, 0.2, 0.7, 0.8]);
+      return boxMean((await grabRestingFrame(opened)).picture, [0.3, 0.2, 0.7, 0.8]);
     };
     const night = opened.getByTestId("night");
     assert.ok((await brightness()) > 30, "it is day at 10:00");

@@ -14,7 +14,7 @@ import {
   changing,
   chooseQuality,
   dragBetween,
-  grabStill,
+  grabRestingFrame,
   holdingMovie,
   launchBrowser,
   listenForErrors,
@@ -195,7 +195,7 @@ test("from a place 20 km south-east of the core at 18:30 local time, by keys alo
   assert.ok(degrees.includes("310°") && degrees.includes("320°"), `on the horizon: ${degrees}`);
   assert.equal(await page.getByTestId("day-clock").inputValue(), "18:30");
   await until("the sun of half past six", async () => /in W(NW)?, \d\d° high/.test(await text("sun-in-words")));
-  const { picture } = await grabStill(page);
+  const { picture } = await grabRestingFrame(page);
   await screenshot("tools-airport", page);
   assertShowsStorm(picture);
   await key("Escape");
@@ -290,7 +290,7 @@ test("a view is kept with a name, and comes back", async () => {
 test("how wrong is this picture: it says so over it", async () => {
   await timed("how wrong is this picture, at a glance", () =>
     until("an error in the line over the picture", async () =>
-      /This picture is [\d.]+ % off/.test((await text("truth")).replaceAll("\n", " ")),
+      /This picture is [\d.]+ % off/.test((await text("error-line")).replaceAll("\n", " ")),
     ),
   );
   const source = page.getByTestId("error-source");
@@ -302,7 +302,7 @@ test("how wrong is this picture: it says so over it", async () => {
     await tabTo(page, "accuracy-section");
     await key("Enter");
     await until("the same error in the report", async () => {
-      const [line, report] = [await text("truth"), await text("accuracy-report")];
+      const [line, report] = [await text("error-line"), await text("accuracy-report")];
       return /([\d.]+) %/.exec(line)[1] === /Measured error ([\d.]+) %/.exec(report)?.[1];
     });
   });
@@ -396,7 +396,7 @@ test("a picture is saved, and dropped on a fresh page it brings the same view", 
   saved = readFileSync(await download.path());
   assert.ok(saved.includes("thunderhead.scene"));
   await page.keyboard.press("Escape");
-  assertSameColours(PNG.sync.read(saved), (await grabStill(page)).picture, "the saved picture");
+  assertSameColours(PNG.sync.read(saved), (await grabRestingFrame(page)).picture, "the saved picture");
   const fresh = await (await browser.newContext(WINDOW)).newPage();
   listenForErrors(fresh, complaints);
   try {
@@ -416,7 +416,7 @@ test("a picture is saved, and dropped on a fresh page it brings the same view", 
       const [there, here] = await Promise.all([canvasData(fresh), canvasData(page)]);
       return there.azimuth === here.azimuth && there.distance === here.distance && there.refined === "true";
     });
-    const [there, here] = [await grabStill(fresh), await grabStill(page)];
+    const [there, here] = [await grabRestingFrame(fresh), await grabRestingFrame(page)];
     const apart = difference(here.picture, there.picture);
     assert.ok(apart < 1, `the pictures differ by ${apart}: ${JSON.stringify([there.data, here.data])}`);
   } finally {
@@ -508,7 +508,7 @@ function streamOf(file) {
 async function assertIsTheMovie(download, codec = "vp9") {
   const file = await download.path();
   assert.deepEqual(streamOf(file), { codec, ...MOVIE, pictures: 4 });
-  assertLastPictureIs((await grabStill(page)).picture, file);
+  assertLastPictureIs((await grabRestingFrame(page)).picture, file);
 }
 
 const rememberedMovie = () => page.evaluate(() => sessionStorage.getItem("thunderhead.movie.supercell") || undefined);
@@ -582,9 +582,9 @@ test("a movie begins at the time shown, unless the newest is, and ends where it 
   assert.match(await text("movie-length"), /^2 pictures/);
   const backwards = await makeMovie(2);
   await key("Escape");
-  assertSameColours(pictureOf(backwards, 0), (await grabStill(page)).picture, "the first picture");
+  assertSameColours(pictureOf(backwards, 0), (await grabRestingFrame(page)).picture, "the first picture");
   await changing(() => page.getByTestId("time").fill("0"), page);
-  assertSameColours(pictureOf(backwards, 1), (await grabStill(page)).picture, "the last picture");
+  assertSameColours(pictureOf(backwards, 1), (await grabRestingFrame(page)).picture, "the last picture");
   await changing(() => page.getByTestId("time").fill(newest), page);
 });
 

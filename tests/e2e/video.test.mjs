@@ -1,4 +1,4 @@
-// Tests that video and stills of higher quality in Chromium show the same picture as JPEG.
+// Tests that video and resting frames in Chromium show the same picture as JPEG.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { canvasData, changing, chooseQuality, dragBetween, launchBrowser, listenForErrors, openTool, rested, restedAndFits, screenshot, until } from "./driver.mjs";
@@ -91,7 +91,7 @@ after(async () => {
   await server?.stop();
 });
 
-test("a browser that saves data sees video while the camera turns, and a still of 10 bits at rest", async () => {
+test("a browser that saves data sees video while the camera turns, and a resting frame of 10 bits", async () => {
   const presenter = await present();
   const link = presenter.url();
   const viewer = await open(link, savesData);
@@ -107,23 +107,23 @@ test("a browser that saves data sees video while the camera turns, and a still o
   assert.deepEqual(numbers, [...numbers].sort((a, b) => a - b), "pictures came out of order");
 
   await rested(presenter);
-  let still;
+  let resting;
   let jpeg;
   // Both pictures are of the same frame.
-  await until("the still", async () => {
+  await until("the resting frame", async () => {
     const seen = await canvasData(viewer);
     if (seen.encoding !== "avif" || seen.refined !== "true") return false;
-    [still, jpeg] = [await grabCanvas(viewer), await grabCanvas(presenter)];
+    [resting, jpeg] = [await grabCanvas(viewer), await grabCanvas(presenter)];
     const after = [await canvasData(viewer), await canvasData(presenter)];
     return after.every(({ sequence }) => sequence === seen.sequence);
   });
   assert.equal((await canvasData(presenter)).encoding, "jpeg");
-  assert.ok(spread(still).deviation > 10, "the still is blank");
-  const apart = difference(still, jpeg);
-  assert.ok(apart < ALIKE, `the still is ${apart} levels from JPEG`);
+  assert.ok(spread(resting).deviation > 10, "the resting frame is blank");
+  const apart = difference(resting, jpeg);
+  assert.ok(apart < ALIKE, `the resting frame is ${apart} levels from JPEG`);
   await viewer.getByTestId("readout-summary").click();
   await until("the readout's word for it", async () => /AVIF/.test(await viewer.getByTestId("encoding").innerText()));
-  await screenshot("still-avif", viewer);
+  await screenshot("resting-frame-avif", viewer);
   assert.deepEqual(complaints, []);
 });
 
@@ -135,7 +135,7 @@ async function sentAs(page) {
   return text;
 }
 
-test("where there is no video the pictures are JPEG or stills, and the readout says why", async () => {
+test("where there is no video the pictures are JPEG or resting frames, and the readout says why", async () => {
   const old = await open(server.url, jpegOnly);
   await rested(old);
   assert.equal(await sentAs(old), "JPEG; this browser has no WebCodecs");
@@ -144,7 +144,7 @@ test("where there is no video the pictures are JPEG or stills, and the readout s
   const plain = await open(server.url.replace("127.0.0.1", OTHER_HOST));
   await rested(plain);
   assert.equal(await plain.evaluate(() => isSecureContext), false);
-  await until("the still", async () => (await sentAs(plain)) === "AVIF, 10 bits; video needs HTTPS or localhost");
+  await until("the resting frame", async () => (await sentAs(plain)) === "AVIF, 10 bits; video needs HTTPS or localhost");
   // Other machines can reach such an address, so Share does not warn.
   await plain.getByTestId("share").click();
   const link = await plain.getByTestId("viewers-link").inputValue();
@@ -181,7 +181,7 @@ test("by a slow link come video, or smaller pictures where the browser decodes n
     });
     await old.getByTestId("readout-summary").click();
     await screenshot("slow-link", old);
-    // Stills keep their full size even on a slow link.
+    // Resting frames keep their full size even on a slow link.
     await until("the full picture at rest", async () => {
       const { tier, refined } = await canvasData(old);
       return tier === "0" && refined === "true";
@@ -192,7 +192,8 @@ test("by a slow link come video, or smaller pictures where the browser decodes n
 });
 
 test("the colours of video are those of JPEG", async () => {
-  // Keeps the latest pictures drawn, except stills, by sequence number, with the data that the page reports about them.
+  // Keeps the latest pictures drawn, except resting frames, by sequence number, with the data that the page reports
+  // about them.
   const keepsPictures = () => {
     window.pictures = new Map();
     const drawImage = CanvasRenderingContext2D.prototype.drawImage;
@@ -238,7 +239,7 @@ test("the colours of video are those of JPEG", async () => {
     rightPx = -rightPx;
     await rested(presenter);
     const { revision } = await canvasData(presenter);
-    await until("the still", async () => {
+    await until("the resting frame", async () => {
       const seen = await canvasData(viewer);
       return seen.encoding === "avif" && seen.revision === revision;
     });

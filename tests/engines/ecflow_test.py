@@ -112,7 +112,7 @@ class Ecflow(EngineTest):
             self.assertIn("try:1 ", self.node(f"/thunderhead/shares/{share}/draw"), share)
 
     def test_a_task_that_is_killed_aborts(self) -> None:
-        self.begin(FLAGS="--size 2560x1440 --device software --quality true --jobs 1")
+        self.begin(FLAGS="--size 2560x1440 --device software --quality accurate --jobs 1")
         draw = "/thunderhead/shares/0/draw"
         self.wait_for("a running task", lambda: self.state(draw) == "active")
         self.client("--alter=change", "variable", "ECF_TRIES", "1", "/thunderhead")

@@ -254,9 +254,9 @@ def radiance(path: pathlib.Path) -> numpy.ndarray:
     return numpy.stack([lines[:, channels.index(colour)] for colour in "RGB"], axis=2).astype("f8")
 
 
-def relative_rmse(image: numpy.ndarray, truth: numpy.ndarray) -> float:
+def relative_rmse(image: numpy.ndarray, reference: numpy.ndarray) -> float:
     """The root mean square of the difference over pixels and colours as a share of the mean radiance, as in docs/accuracy."""
-    return float(numpy.sqrt(numpy.mean((image - truth) ** 2)) / numpy.mean(truth))
+    return float(numpy.sqrt(numpy.mean((image - reference) ** 2)) / numpy.mean(reference))
 
 
 class FormatsTest(ProductTest):

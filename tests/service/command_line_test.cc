@@ -118,6 +118,15 @@ TEST_F(CommandLineTest, ServeReadsItsSettingsFromAFile) {
               HasSubstr("max-sessions=3\n"));
 }
 
+TEST_F(CommandLineTest, ServeAcceptsTheEarlierNamesOfTheLimitsOfImages) {
+  const std::string file = folder_.File("serve.conf");
+  std::ofstream(file) << "max-stills = 77\n";
+  const std::string printed =
+      Run("serve --config " + file + " --max-stills-each 55 --print-config").out;
+  EXPECT_THAT(printed, HasSubstr("max-images=77\n"));
+  EXPECT_THAT(printed, HasSubstr("max-images-each=55\n"));
+}
+
 TEST_F(CommandLineTest, WrongSettingsAreRefusedWithTheirFile) {
   const std::string file = folder_.File("serve.conf");
   const auto refuse = [&](const std::string& setting, const std::string& text) {
@@ -304,9 +313,10 @@ TEST_F(CommandLineTest, FailedRenderNamesTheCauseAndLeavesNoFile) {
 }
 
 TEST_F(CommandLineTest, RenderWaitsForTracedLightAndPrintsTheErrorReached) {
-  // This error needs a tenth of the paths that `--quality true` alone traces. All of them would
+  // This error needs a tenth of the paths that `--quality accurate` alone traces. All of them would
   // take minutes.
-  const Outcome outcome = Run(render_ + " --time 1 --size 48x27 --quality true --max-error 0.09");
+  const Outcome outcome =
+      Run(render_ + " --time 1 --size 48x27 --quality accurate --max-error 0.09");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.err, IsEmpty());
   EXPECT_THAT(outcome.out,
@@ -320,6 +330,7 @@ TEST_F(CommandLineTest, HelpSaysWhatQualityMeans) {
   const Outcome outcome = Run("render --help");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("fast (half the samples, no detail)"));
+  EXPECT_THAT(outcome.out, HasSubstr("{fast,balanced,accurate}"));
   EXPECT_THAT(outcome.out, HasSubstr("waits for the path-traced"));
 }
 
@@ -338,12 +349,29 @@ TEST_F(CommandLineTest, QualityFastAndBalancedDoNotWait) {
   EXPECT_EQ(rendering("balanced").traced_light(), v1::TRACED_LIGHT_AT_REST);
 }
 
+TEST_F(CommandLineTest, TheEarlierNameOfAccurateIsStillAccepted) {
+  const auto traced_light = [&](const std::string& flags) {
+    // This error needs few paths.
+    const Outcome outcome = Run(render_ + " --time 1 --size 16x9 --json --max-error 0.3 " + flags);
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    v1::RenderImageResponse said;
+    EXPECT_TRUE(google::protobuf::util::JsonStringToMessage(outcome.out, &said).ok());
+    return said.scene().rendering().light_volume().traced_light();
+  };
+  EXPECT_EQ(traced_light("--quality balanced"), v1::TRACED_LIGHT_AT_REST);
+  EXPECT_EQ(traced_light("--quality accurate"), v1::TRACED_LIGHT_AWAITED);
+  EXPECT_EQ(traced_light("--quality true"), v1::TRACED_LIGHT_AWAITED);
+  EXPECT_EQ(traced_light("--preset true"), v1::TRACED_LIGHT_AWAITED);
+  EXPECT_EQ(traced_light("--scene " + Scene(R"({"rendering": {"preset": "PRESET_TRUE"}})")),
+            v1::TRACED_LIGHT_AWAITED);
+}
+
 TEST_F(CommandLineTest, AnInterruptedRenderLeavesNoFile) {
   Terminal terminal;
   const std::string out = folder_.File("out");
   RunningProgram program(PROGRAM,
                          {"render", kSample, "--device", "software", "--error-seconds", "0", "-o",
-                          picture_, "--time", "1", "--size", "48x27", "--quality", "true"},
+                          picture_, "--time", "1", "--size", "48x27", "--quality", "accurate"},
                          out, terminal.Name());
   // The progress bar reports the paths traced, because the command waits for them.
   WaitFor([&] {
@@ -451,10 +479,10 @@ TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {
 TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {
   const std::string reference =
       "render " + kSample + " --renderer reference --device software --size 24x16 --spp 4 -o ";
-  const Outcome exr = Run(reference + folder_.File("truth.exr"));
+  const Outcome exr = Run(reference + folder_.File("reference.exr"));
   ASSERT_EQ(exr.code, 0) << exr.err;
   EXPECT_THAT(exr.out, StartsWith("4 samples a pixel"));
-  EXPECT_THAT(Contents(folder_.File("truth.exr")), HasSubstr("stderr.R"));
+  EXPECT_THAT(Contents(folder_.File("reference.exr")), HasSubstr("stderr.R"));
   ASSERT_EQ(Run(reference + picture_).code, 0);
   const auto png = frame::DecodePng(Contents(picture_));
   ASSERT_TRUE(png.ok());
@@ -462,7 +490,7 @@ TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {
   ExpectError(render_ + " --spp 4", 64, "for --renderer reference");
   ExpectError(render_ + " --no-air", 64, "for --renderer reference");
   ExpectError(reference + picture_ + " --max-scatterings -2", 64, "--max-scatterings is -2");
-  ExpectError(reference + "truth.txt", 64, "must end in");
+  ExpectError(reference + "reference.txt", 64, "must end in");
   ExpectError(reference + picture_ + " --seconds -1", 64, "--seconds is -1");
 }
 

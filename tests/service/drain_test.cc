@@ -120,7 +120,7 @@ TEST_F(DrainTest, ATurnThatTakesLongIsSeen) {
   EXPECT_TRUE(AwaitNoTurn()) << "nothing is to be done";
 }
 
-TEST_F(DrainTest, ALaneThatMakesNoProgressIsSeen) {
+TEST_F(DrainTest, AWorkerThatMakesNoProgressIsSeen) {
   EXPECT_EQ(service_.server().Load().stalled_s, 0.0);
   service_.store->reading.Close();
   std::thread caller([&] { Render(); });

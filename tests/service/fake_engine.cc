@@ -253,21 +253,22 @@ class FakeFrameSource final : public drawing::FrameSource {
   const drawing::DeviceInfo info_{"software", "fake renderer", "4.5 fake"};
 };
 
-class FakeTruthSource final : public drawing::TruthSource {
+class FakeReferenceSource final : public drawing::ReferenceSource {
  public:
-  explicit FakeTruthSource(std::shared_ptr<FakeTruth> truth) : truth_(std::move(truth)) {
-    ++truth_->sources;
+  explicit FakeReferenceSource(std::shared_ptr<FakeReference> reference)
+      : reference_(std::move(reference)) {
+    ++reference_->sources;
   }
-  ~FakeTruthSource() override { --truth_->sources; }
+  ~FakeReferenceSource() override { --reference_->sources; }
 
   absl::Status Begin(const scene::Scene& scene,
                      const std::shared_ptr<const volume::HydrometeorFields>& fields,
                      const glm::ivec2& size_px) override {
     THUNDERHEAD_CHECK(fields != nullptr, "traced without fields");
-    truth_->Add({scene, size_px, truth_->samples});
+    reference_->Add({scene, size_px, reference_->samples});
     size_px_ = size_px;
     samples_ = 0;
-    if (scene.display.exposure_ev > truth_->fails_above_exposure_ev) {
+    if (scene.display.exposure_ev > reference_->fails_above_exposure_ev) {
       return absl::InternalError("the fake reference does not like this exposure");
     }
     return absl::OkStatus();
@@ -278,12 +279,12 @@ class FakeTruthSource final : public drawing::TruthSource {
     double left_ms = 1e3 * seconds;
     while (samples_ < until_samples && left_ms > 0.0) {
       if (stop.stop_requested()) break;
-      truth_->sampling.Pass();
-      const double ms = truth_->ms_per_sample;
+      reference_->sampling.Pass();
+      const double ms = reference_->ms_per_sample;
       std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(ms));
       left_ms -= ms;
       ++samples_;
-      ++truth_->samples;
+      ++reference_->samples;
     }
     delivery::Refinement refinement;
     refinement.samples_per_pixel = samples_;
@@ -297,25 +298,25 @@ class FakeTruthSource final : public drawing::TruthSource {
   }
 
  private:
-  const std::shared_ptr<FakeTruth> truth_;
+  const std::shared_ptr<FakeReference> reference_;
   glm::ivec2 size_px_{0};
   int samples_ = 0;
 };
 
 }  // namespace
 
-std::vector<FakeTruth::Begun> FakeTruth::Log() {
+std::vector<FakeReference::Begun> FakeReference::Log() {
   const std::lock_guard lock(mutex_);
   return log_;
 }
 
-void FakeTruth::Add(Begun begun) {
+void FakeReference::Add(Begun begun) {
   const std::lock_guard lock(mutex_);
   log_.push_back(std::move(begun));
 }
 
-drawing::TruthSourceFactory FakeTruthSources(std::shared_ptr<FakeTruth> truth) {
-  return [truth] { return std::make_unique<FakeTruthSource>(truth); };
+drawing::ReferenceSourceFactory FakeReferenceSources(std::shared_ptr<FakeReference> reference) {
+  return [reference] { return std::make_unique<FakeReferenceSource>(reference); };
 }
 
 void Gate::Close() {

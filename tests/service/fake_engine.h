@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "drawing/frame_source.h"
-#include "drawing/truth_source.h"
+#include "drawing/reference_source.h"
 #include "storm_store/storm_store.h"
 #include "tests/support/manual_time.h"
 
@@ -169,7 +169,7 @@ drawing::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machin
 // The behaviour of fake references (path tracers that refine a picture), shared with the test. Each
 // sample per pixel takes `ms_per_sample`, and the relative error is one over the square root of the
 // number of samples. The pictures have uniform radiance.
-struct FakeTruth {
+struct FakeReference {
   struct Begun {
     scene::Scene scene;
     glm::ivec2 size_px{0};
@@ -190,7 +190,7 @@ struct FakeTruth {
   std::vector<Begun> log_;
 };
 
-drawing::TruthSourceFactory FakeTruthSources(std::shared_ptr<FakeTruth> truth);
+drawing::ReferenceSourceFactory FakeReferenceSources(std::shared_ptr<FakeReference> reference);
 
 // The colours in which the fake source paints a scene: red encodes the time, green the sun's
 // azimuth.

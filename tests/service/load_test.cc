@@ -249,14 +249,14 @@ TEST_P(LoadTest, InterruptedHasTheFiguresSoFar) {
   EXPECT_THAT(report->healthy.fps_min, Gt(0.0));
 }
 
-TEST_P(LoadTest, InterruptedWaitsForNoStill) {
+TEST_P(LoadTest, InterruptedWaitsForNoImage) {
   // The picture takes hours, a frame some milliseconds.
   service_->machine->ms_per_mega_sample = 100.0;
-  options_.stills = {.count = 1, .width_px = 4096, .height_px = 2048, .slices = 4096};
+  options_.images = {.count = 1, .width_px = 4096, .height_px = 2048, .slices = 4096};
   const auto report = RunFor(1);
   ASSERT_TRUE(report.ok()) << report.status();
   EXPECT_EQ(report->ErrorCount(), 0) << ToText(*report);
-  EXPECT_THAT(ToText(*report), HasSubstr("stills: 1 asked for at once, 0 came"));
+  EXPECT_THAT(ToText(*report), HasSubstr("images: 1 asked for at once, 0 came"));
 }
 
 TEST_P(LoadTest, FailsWithoutAServer) {

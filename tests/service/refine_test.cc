@@ -37,11 +37,11 @@ v1::Scene TracedFrom(float azimuth_deg) {
 // shown.
 class RefineTest : public ::testing::Test {
  protected:
-  ~RefineTest() override { truth_->sampling.Open(); }
+  ~RefineTest() override { reference_->sampling.Open(); }
 
   service::ServerOptions Options() const {
     service::ServerOptions options = Patient(time_);
-    options.render_loop.make_truth_source = FakeTruthSources(truth_);
+    options.render_loop.make_reference_source = FakeReferenceSources(reference_);
     options.render_loop.max_traced_sessions = 2;
     options.address = "127.0.0.1:0";
     return options;
@@ -70,18 +70,18 @@ class RefineTest : public ::testing::Test {
   // Lets the reference trace `more` samples, and waits until a frame with `samples` samples per
   // pixel is shown.
   bool TraceOn(Watcher& watcher, std::uint64_t revision, int more, std::uint32_t samples) {
-    truth_->sampling.LetPass(more);
+    reference_->sampling.LetPass(more);
     return AwaitSamples(watcher, revision, samples);
   }
 
-  const std::shared_ptr<FakeTruth> truth_ = std::make_shared<FakeTruth>();
+  const std::shared_ptr<FakeReference> reference_ = std::make_shared<FakeReference>();
   const ManualTime time_;
   FakeService service_{Options()};
 };
 
 TEST_F(RefineTest, SamplesGrowAndTheErrorFallsWhileTheSceneRests) {
   // A picture is shown at each doubling of its samples, before further samples are traced.
-  truth_->sampling.Close();
+  reference_->sampling.Close();
   Watcher watcher(service_.stub(), service_.Open(Traced()));
   ASSERT_TRUE(TraceOn(watcher, 1, 1, 1));
   for (int samples = 2; samples <= 64; samples *= 2) {
@@ -111,37 +111,37 @@ TEST_F(RefineTest, LargePicturesBeginSmall) {
   v1::Scene scene = Traced();
   scene.mutable_output()->set_width_px(320);
   scene.mutable_output()->set_height_px(180);
-  truth_->sampling.Close();
+  reference_->sampling.Close();
   Watcher watcher(service_.stub(), service_.Open(scene));
   ASSERT_TRUE(TraceOn(watcher, 1, 1, 1));
-  truth_->sampling.Open();
+  reference_->sampling.Open();
   ASSERT_TRUE(watcher.AwaitFrame(1, true));
   const std::vector<v1::Frame> frames = FramesOf(watcher, 1);
   EXPECT_FALSE(frames.front().refined());
   EXPECT_EQ(frames.front().width_px(), 80U);
   EXPECT_EQ(watcher.NewestFrame().width_px(), 320U);
-  EXPECT_EQ(truth_->sources, 1);
+  EXPECT_EQ(reference_->sources, 1);
 }
 
 TEST_F(RefineTest, AChangeBeginsAgainAtOnce) {
   const std::string id = service_.Open(TracedFrom(0.0F));
   Watcher watcher(service_.stub(), id);
   ASSERT_TRUE(AwaitSamples(watcher, 1, 16));
-  truth_->sampling.Close();
-  ASSERT_TRUE(truth_->sampling.AwaitWaiting(1));
+  reference_->sampling.Close();
+  ASSERT_TRUE(reference_->sampling.AwaitWaiting(1));
   const std::uint64_t revision = service_.Update(id, TracedFrom(40.0F));
   // The first picture ends at its next sample. It would need many more samples to be shown again.
-  truth_->sampling.LetOnePass();
-  ASSERT_TRUE(WaitFor([&] { return truth_->Log().size() == 2U; }));
+  reference_->sampling.LetOnePass();
+  ASSERT_TRUE(WaitFor([&] { return reference_->Log().size() == 2U; }));
   ASSERT_TRUE(TraceOn(watcher, revision, 1, 1));
-  truth_->sampling.Open();
+  reference_->sampling.Open();
   ASSERT_TRUE(AwaitSamples(watcher, revision, 4));
   const std::vector<v1::Frame> frames = FramesOf(watcher, revision);
   EXPECT_EQ(frames.front().refinement().samples_per_pixel(), 1U);
   EXPECT_EQ(frames.front().camera().orbit().azimuth_deg(), 40.0F);
   // The second picture reuses the source of the first.
-  EXPECT_EQ(truth_->sources, 1);
-  EXPECT_EQ(truth_->Log().size(), 2U);
+  EXPECT_EQ(reference_->sources, 1);
+  EXPECT_EQ(reference_->Log().size(), 2U);
 }
 
 TEST_F(RefineTest, AnotherExposureShowsWhatIsThereAndGoesOn) {
@@ -157,7 +157,7 @@ TEST_F(RefineTest, AnotherExposureShowsWhatIsThereAndGoesOn) {
   const auto image = frame::DecodeJpeg(first.jpeg());
   ASSERT_TRUE(image.ok()) << image.status();
   EXPECT_NEAR(image->rgb[0], 127, 4);
-  EXPECT_EQ(truth_->Log().size(), 1U);
+  EXPECT_EQ(reference_->Log().size(), 1U);
 }
 
 TEST_F(RefineTest, LeavingEndsItAndComingBackBeginsAnew) {
@@ -165,14 +165,14 @@ TEST_F(RefineTest, LeavingEndsItAndComingBackBeginsAnew) {
   {
     Watcher watcher(service_.stub(), id);
     ASSERT_TRUE(AwaitSamples(watcher, 1, 8));
-    EXPECT_EQ(truth_->sources, 1);
+    EXPECT_EQ(reference_->sources, 1);
   }
-  ASSERT_TRUE(WaitFor([&] { return truth_->sources == 0; }));
-  const int samples = truth_->samples;
+  ASSERT_TRUE(WaitFor([&] { return reference_->sources == 0; }));
+  const int samples = reference_->samples;
   // The first frame may still be the last frame of the previous scene.
   Watcher again(service_.stub(), id);
-  EXPECT_TRUE(WaitFor([&] { return truth_->Log().size() == 2U; }));
-  EXPECT_EQ(truth_->Log().back().samples_before, samples) << "traced while nobody watched";
+  EXPECT_TRUE(WaitFor([&] { return reference_->Log().size() == 2U; }));
+  EXPECT_EQ(reference_->Log().back().samples_before, samples) << "traced while nobody watched";
   EXPECT_TRUE(AwaitSamples(again, 1, 8));
 }
 
@@ -183,7 +183,7 @@ TEST_F(RefineTest, AnotherRendererEndsIt) {
   const std::uint64_t revision = service_.Update(id, SmallScene());
   ASSERT_TRUE(watcher.AwaitFrame(revision, true));
   EXPECT_FALSE(watcher.NewestFrame().has_refinement());
-  EXPECT_TRUE(WaitFor([&] { return truth_->sources == 0; }));
+  EXPECT_TRUE(WaitFor([&] { return reference_->sources == 0; }));
   const std::uint64_t back = service_.Update(id, Traced());
   EXPECT_TRUE(AwaitSamples(watcher, back, 8));
 }
@@ -200,14 +200,14 @@ TEST_F(RefineTest, AnotherTimeIsReadAndTraced) {
   scene.mutable_camera()->mutable_orbit()->set_distance_m(50000.0F);
   const std::uint64_t revision = service_.Update(id, scene);
   ASSERT_TRUE(AwaitSamples(watcher, revision, 8));
-  EXPECT_EQ(truth_->Log().back().scene.time_index, 2);
+  EXPECT_EQ(reference_->Log().back().scene.time_index, 2);
 }
 
 TEST_F(RefineTest, OtherSessionsAreDrawnMeanwhile) {
   Watcher traced(service_.stub(), service_.Open(Traced()));
   ASSERT_TRUE(AwaitSamples(traced, 1, 2));
-  truth_->sampling.Close();
-  ASSERT_TRUE(truth_->sampling.AwaitWaiting(1));
+  reference_->sampling.Close();
+  ASSERT_TRUE(reference_->sampling.AwaitWaiting(1));
   const std::string id = service_.Open(SmallScene());
   Watcher other(service_.stub(), id);
   // Each frame would wait for the sample if pictures were traced on the render loop's thread.
@@ -216,7 +216,7 @@ TEST_F(RefineTest, OtherSessionsAreDrawnMeanwhile) {
     scene.mutable_sun()->set_azimuth_deg(static_cast<float>(10 * i));
     ASSERT_TRUE(other.AwaitFrame(service_.Update(id, scene), false));
   }
-  truth_->sampling.Open();
+  reference_->sampling.Open();
   EXPECT_TRUE(AwaitSamples(traced, 1, 16));
 }
 
@@ -254,7 +254,7 @@ TEST_F(RefineTest, OneIdentityHasHalfOfThePlaces) {
 }
 
 TEST_F(RefineTest, WhatCannotBeTracedIsAProblemUntilTheSceneChanges) {
-  truth_->fails_above_exposure_ev = 5.0;
+  reference_->fails_above_exposure_ev = 5.0;
   v1::Scene scene = Traced();
   scene.mutable_display()->set_exposure_ev(6.0F);
   const std::string id = service_.Open(scene);
@@ -264,7 +264,7 @@ TEST_F(RefineTest, WhatCannotBeTracedIsAProblemUntilTheSceneChanges) {
   // The render loop checks the session again when another session is drawn.
   Watcher other(service_.stub(), service_.Open(SmallScene()));
   ASSERT_TRUE(other.AwaitFrame(1, true));
-  EXPECT_EQ(truth_->Log().size(), 1U);
+  EXPECT_EQ(reference_->Log().size(), 1U);
   EXPECT_TRUE(AwaitSamples(watcher, service_.Update(id, Traced()), 4));
 }
 
@@ -279,12 +279,12 @@ TEST_F(RefineTest, RenderImageSaysThatItIsForSessions) {
 }
 
 TEST_F(RefineTest, StopsAmidWork) {
-  truth_->ms_per_sample = 50.0;
+  reference_->ms_per_sample = 50.0;
   Watcher watcher(service_.stub(), service_.Open(Traced()));
   ASSERT_TRUE(AwaitSamples(watcher, 1, 1));
   service_.server().Shutdown();
   EXPECT_EQ(watcher.End().error_code(), grpc::StatusCode::UNAVAILABLE);
-  EXPECT_EQ(truth_->sources, 0);
+  EXPECT_EQ(reference_->sources, 0);
 }
 
 // Runs the real path tracer instead of the fake reference.

@@ -103,7 +103,7 @@ class Request {
   std::thread thread_;
 };
 
-// The storms of two pictures are read meanwhile, one picture in each lane (drawing thread).
+// The storms of two pictures are read meanwhile, one picture by each worker (drawing thread).
 TEST(RenderImageTest, CancelledPictureIsNeverDrawn) {
   FakeService service;
   service.store->reading.Close();

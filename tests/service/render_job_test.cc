@@ -576,7 +576,7 @@ TEST_F(RenderJobTest, SinglePicturesGoBeforeThoseOfJobs) {
   EXPECT_TRUE(jobs.Watch(job.id(), &pictures).ok());
 }
 
-TEST_F(RenderJobTest, StillsOfTenJobsBesideADraggingSessionAllComplete) {
+TEST_F(RenderJobTest, ImagesOfTenJobsBesideADraggingSessionAllComplete) {
   FakeService service(Options());
   Jobs jobs(service.server());
   const std::string session = service.Open(SmallScene());
@@ -605,7 +605,7 @@ TEST_F(RenderJobTest, StillsOfTenJobsBesideADraggingSessionAllComplete) {
 
 class RenderJobBenchmark : public RenderJobTest {};
 
-TEST_F(RenderJobBenchmark, MovingFramesBesideFiveHundredStillsOfTenJobs) {
+TEST_F(RenderJobBenchmark, MovingFramesBesideFiveHundredImagesOfTenJobs) {
   FakeService service(Options());
   Jobs jobs(service.server());
   service.machine->ms_per_mega_sample = 100.0;  // 3.7 ms for each picture
@@ -632,7 +632,7 @@ TEST_F(RenderJobBenchmark, MovingFramesBesideFiveHundredStillsOfTenJobs) {
     ASSERT_TRUE(watcher.AwaitFrame(service.Update(session, scene), false));
     latencies_ms.push_back(MsSince(updated));
   }
-  Figure("500 stills of 10 jobs beside a moving session", 1e-3 * MsSince(begun), "s");
+  Figure("500 images of 10 jobs beside a moving session", 1e-3 * MsSince(begun), "s");
   ASSERT_FALSE(latencies_ms.empty());
   std::ranges::sort(latencies_ms);
   Figure("moving frame beside jobs, median", latencies_ms[latencies_ms.size() / 2], "ms");

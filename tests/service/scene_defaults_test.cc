@@ -11,6 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "accuracy/presets.h"
 #include "google/protobuf/descriptor.h"
+#include "google/protobuf/util/json_util.h"
 #include "google/protobuf/util/message_differencer.h"
 #include "gtest/gtest.h"
 #include "service/messages/camera_messages.h"
@@ -387,7 +388,7 @@ TEST(SceneDefaults, ThePapersPresetsStandForTheirConstants) {
     EXPECT_EQ(sizes(preset, v1::PARTICLE_SIZES_UNSPECIFIED), v1::PARTICLE_SIZES_PAPERS);
     EXPECT_EQ(sizes(preset, v1::PARTICLE_SIZES_MODEL), v1::PARTICLE_SIZES_MODEL);
   }
-  for (const v1::Preset preset : {v1::PRESET_FAST, v1::PRESET_BALANCED, v1::PRESET_TRUE}) {
+  for (const v1::Preset preset : {v1::PRESET_FAST, v1::PRESET_BALANCED, v1::PRESET_ACCURATE}) {
     EXPECT_EQ(sizes(preset, v1::PARTICLE_SIZES_UNSPECIFIED), v1::PARTICLE_SIZES_MODEL);
   }
 }
@@ -445,7 +446,7 @@ TEST(SceneDefaults, TheGroundIsThatOfTheStormAndPlainInThePapersLook) {
 TEST(SceneDefaults, APresetIsReplacedByItsTechnique) {
   for (const auto& [preset, technique] :
        {std::pair{v1::PRESET_FAST, accuracy::TechniqueOf(accuracy::Preset::kFast)},
-        std::pair{v1::PRESET_TRUE, accuracy::TechniqueOf(accuracy::Preset::kTrue)},
+        std::pair{v1::PRESET_ACCURATE, accuracy::TechniqueOf(accuracy::Preset::kAccurate)},
         std::pair{v1::PRESET_UNIFORM_PHASE_LOW_ALBEDO,
                   accuracy::TechniqueOf(accuracy::Preset::kUniformPhaseLowAlbedo)}}) {
     v1::Rendering rendering;
@@ -453,6 +454,17 @@ TEST(SceneDefaults, APresetIsReplacedByItsTechnique) {
     FillTechniqueDefaults(rendering);
     EXPECT_TRUE(ToTechnique(rendering) == technique) << v1::Preset_Name(preset);
   }
+}
+
+TEST(SceneDefaults, TheEarlierNameOfPresetAccurateIsReadAndTheNewOneIsWritten) {
+  v1::Scene scene;
+  ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(
+                  R"({"rendering": {"preset": "PRESET_TRUE"}})", &scene)
+                  .ok());
+  EXPECT_EQ(scene.rendering().preset(), v1::PRESET_ACCURATE);
+  std::string json;
+  ASSERT_TRUE(google::protobuf::util::MessageToJsonString(scene, &json).ok());
+  EXPECT_EQ(json, R"({"rendering":{"preset":"PRESET_ACCURATE"}})");
 }
 
 TEST(SceneDefaults, LightIsTracedByDefaultWhereItIsShown) {

@@ -19,7 +19,7 @@ namespace thunderhead::desktop {
 namespace {
 
 constexpr std::array<v1::Preset, 3> kQualities{v1::PRESET_FAST, v1::PRESET_BALANCED,
-                                               v1::PRESET_TRUE};
+                                               v1::PRESET_ACCURATE};
 
 std::string WordsOf(const v1::Scene& scene, v1::Preset preset) {
   switch (preset) {
@@ -27,7 +27,7 @@ std::string WordsOf(const v1::Scene& scene, v1::Preset preset) {
       return "Fewer samples and no fine detail.";
     case v1::PRESET_BALANCED:
       return "Fine detail; traced light while it rests.";
-    case v1::PRESET_TRUE:
+    case v1::PRESET_ACCURATE:
       return "As Balanced; files wait for traced light.";
     case v1::PRESET_UNSPECIFIED:
       return scene.accuracy().limit_case() == v1::Accuracy::LIMIT_NOT_SET
@@ -45,7 +45,7 @@ void Choose(Ui& ui, v1::Preset preset) {
 void DrawQuality(Ui& ui, v1::Preset preset) {
   const auto* const found = std::find(kQualities.begin(), kQualities.end(), preset);
   int quality = found == kQualities.end() ? -1 : static_cast<int>(found - kQualities.begin());
-  if (Segments("quality", {"Fast", "Balanced", "True"}, quality)) {
+  if (Segments("quality", {"Fast", "Balanced", "Accurate"}, quality)) {
     Choose(ui, kQualities.at(static_cast<std::size_t>(quality)));
   }
   Quiet(WordsOf(ui.state.scene, preset));

@@ -91,7 +91,7 @@ const PRESET_NAMES: Readonly<Record<Preset, string>> = {
   [Preset.UNSPECIFIED]: "None",
   [Preset.FAST]: "Fast",
   [Preset.BALANCED]: "Balanced",
-  [Preset.TRUE]: "True",
+  [Preset.ACCURATE]: "Accurate",
   [Preset.UNIFORM_PHASE_LOW_ALBEDO]: "Uniform phase, low albedo",
   [Preset.UNIFORM_PHASE_TRANSLUCENT]: "Uniform phase, translucent",
   [Preset.PER_FIELD_PHASE_TRANSLUCENT]: "Phase per field, translucent",

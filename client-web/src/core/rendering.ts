@@ -40,7 +40,7 @@ export type SettingsChange = SharedSettings &
 
 // The quality presets, which trade speed for accuracy, fastest first. The other presets reproduce
 // the settings of papers.
-export const QUALITY_PRESETS: readonly Preset[] = [Preset.FAST, Preset.BALANCED, Preset.TRUE];
+export const QUALITY_PRESETS: readonly Preset[] = [Preset.FAST, Preset.BALANCED, Preset.ACCURATE];
 
 const TECHNIQUES: readonly (DescField & { readonly message: DescMessage })[] =
   RenderingSchema.fields.flatMap((field) => (field.fieldKind === "message" ? [field] : []));

@@ -4,6 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import { Annotations } from "./annotations";
 import { CompareView } from "./compare/compare_view";
 import { ExpertDrawer } from "./drawer";
+import { ErrorLine } from "./error_line";
 import { Messages } from "./messages";
 import { Overlay } from "./overlay";
 import type { Page } from "./page";
@@ -12,7 +13,6 @@ import { SessionBar } from "./session_bar";
 import { TimeLine } from "./time_line";
 import { ToolPanel, ToolRail } from "./tool_rail";
 import { TopBar } from "./top_bar";
-import { Truth } from "./truth";
 
 export function App({ page }: { page: Page }) {
   const { state } = page;
@@ -38,7 +38,7 @@ export function App({ page }: { page: Page }) {
       <TopBar page={page} />
       <ToolRail page={page} />
       <ToolPanel page={page} />
-      <Truth state={state} />
+      <ErrorLine state={state} />
       <ExpertDrawer page={page} />
       <div class="bottom">
         <SessionBar page={page} />

@@ -12,10 +12,10 @@ export interface Decodable {
 type Probed = Pick<Window, "isSecureContext">;
 
 export async function learnDecodable(window: Probed): Promise<Decodable> {
-  const [whyNoVideo, stills] = await Promise.all([whyNotVideo(window), decodesAvif()]);
+  const [whyNoVideo, avif] = await Promise.all([whyNotVideo(window), decodesAvif()]);
   const codecs = [Codec.JPEG];
   if (whyNoVideo === undefined) codecs.push(Codec.VP9);
-  if (stills) codecs.push(Codec.AVIF);
+  if (avif) codecs.push(Codec.AVIF);
   return { codecs, whyNoVideo };
 }
 

@@ -131,8 +131,8 @@ export class PictureFlow {
 }
 
 function decodeFile(frame: Frame): Promise<ImageBitmap> {
-  const isStill = frame.avif.byteLength > 0;
+  const isAvif = frame.avif.byteLength > 0;
   // The cast is safe because decoded messages never use shared buffers, which Blob does not accept.
-  const bytes = (isStill ? frame.avif : frame.jpeg) as Uint8Array<ArrayBuffer>;
-  return createImageBitmap(new Blob([bytes], { type: isStill ? "image/avif" : "image/jpeg" }));
+  const bytes = (isAvif ? frame.avif : frame.jpeg) as Uint8Array<ArrayBuffer>;
+  return createImageBitmap(new Blob([bytes], { type: isAvif ? "image/avif" : "image/jpeg" }));
 }

@@ -11,8 +11,8 @@ const QUALITIES = [
   [Preset.FAST, nameOfPreset(Preset.FAST), "Fewer samples and no fine detail."],
   [Preset.BALANCED, nameOfPreset(Preset.BALANCED), "Fine detail; traced light while it rests."],
   [
-    Preset.TRUE,
-    nameOfPreset(Preset.TRUE),
+    Preset.ACCURATE,
+    nameOfPreset(Preset.ACCURATE),
     "Four times the samples of Balanced; files wait for traced light.",
   ],
 ] as const;

@@ -1,5 +1,6 @@
 // The factory of the path-traced reference for the registry (technique_registry.h). The reference
-// is traced on the CPU outside the renderers, for sessions that choose it (drawing/truth_source.h).
+// is traced on the CPU outside the renderers, for sessions that choose it
+// (drawing/reference_source.h).
 #pragma once
 
 #include <memory>

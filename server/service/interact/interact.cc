@@ -375,7 +375,7 @@ class InteractCall : public InteractReactor,
       hidden_ = join.window().hidden();
       for (const int codec : join.codecs()) {
         takes_video_ = takes_video_ || codec == v1::CODEC_VP9;
-        takes_stills_ = takes_stills_ || codec == v1::CODEC_AVIF;
+        takes_resting_frames_ = takes_resting_frames_ || codec == v1::CODEC_AVIF;
       }
       wants_ = WantsOf(join.window());
       session_ = found.session;
@@ -428,7 +428,7 @@ class InteractCall : public InteractReactor,
             .frames_per_second = window.frames_per_second(),
             .adapts = true,
             .takes_video = takes_video_,
-            .takes_stills = takes_stills_,
+            .takes_resting_frames = takes_resting_frames_,
             .saves_bytes = window.saves_bytes()};
   }
 
@@ -485,7 +485,7 @@ class InteractCall : public InteractReactor,
   bool frame_next_ = false;
   bool hidden_ = false;
   bool takes_video_ = false;
-  bool takes_stills_ = false;
+  bool takes_resting_frames_ = false;
   delivery::ViewerWants wants_;
   std::shared_ptr<session::Session> watched_;  // the session whose frames are sent
   std::uint64_t watcher_id_ = 0;               // the viewer's id in the hub of watched_

@@ -13,7 +13,7 @@
 #include "base/patient_calls.h"
 #include "base/status.h"
 #include "service/engine/catalogue_follower.h"
-#include "service/engine/picture_job.h"
+#include "service/engine/requested_image.h"
 #include "service/messages/prepare_scene.h"
 #include "service/messages/scene_messages.h"
 #include "thunderhead/v1/job.pb.h"
@@ -47,20 +47,20 @@ class StormFiles {
   base::PatientCalls calls_;
 };
 
-class JobPicture final : public jobs::PictureInHand, private PictureListener {
+class JobPicture final : public jobs::PictureInHand, private ImageListener {
  public:
   JobPicture(Engine& engine, std::shared_ptr<StormFiles> files, std::function<void()> done)
       : engine_(engine),
         files_(std::move(files)),
         done_(std::move(done)),
-        job_(engine, request_, picture_, *this, Awaited::kByNobody) {}
+        requested_(engine, request_, picture_, *this, Awaited::kByNobody) {}
 
   void Begin(const jobs::PictureOrder& order) {
     if (const absl::Status placed = Place(order); !placed.ok()) return Ended(placed);
-    job_.Begin();
+    requested_.Begin();
   }
 
-  void Cancel() override { job_.Cancel(); }
+  void Cancel() override { requested_.Cancel(); }
 
   absl::StatusOr<jobs::DrawnPicture> Take() override {
     THUNDERHEAD_RETURN_IF_ERROR(status_);
@@ -128,7 +128,7 @@ class JobPicture final : public jobs::PictureInHand, private PictureListener {
   std::string path_;  // path of the storm file; empty if unknown
   std::optional<base::FileStamp> stamp_;
   absl::Status status_;
-  PictureJob job_;
+  RequestedImage requested_;
 };
 
 }  // namespace

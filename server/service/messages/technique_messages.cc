@@ -46,7 +46,7 @@ constexpr std::array kCumulusComponents = {
 constexpr std::array kPresets = {
     std::pair{v1::PRESET_BALANCED, accuracy::Preset::kBalanced},
     std::pair{v1::PRESET_FAST, accuracy::Preset::kFast},
-    std::pair{v1::PRESET_TRUE, accuracy::Preset::kTrue},
+    std::pair{v1::PRESET_ACCURATE, accuracy::Preset::kAccurate},
     std::pair{v1::PRESET_UNIFORM_PHASE_LOW_ALBEDO, accuracy::Preset::kUniformPhaseLowAlbedo},
     std::pair{v1::PRESET_UNIFORM_PHASE_TRANSLUCENT, accuracy::Preset::kUniformPhaseTranslucent},
     std::pair{v1::PRESET_PER_FIELD_PHASE_TRANSLUCENT, accuracy::Preset::kPerFieldPhaseTranslucent},

@@ -14,7 +14,7 @@ struct Picture {
   double bias = 0.1;    // mean of (drawn - reference) / reference over the pixels
   double spread = 0.2;  // standard deviation of the pixels' relative errors about the bias
   double noise = 1.5;   // standard deviation of a path's estimate, divided by the reference
-  double truth = 1.0;
+  double reference = 1.0;
   double spikes = 0.0;   // fraction of the light that comes from rare, far brighter paths
   double spike = 100.0;  // brightness of these paths relative to the others
 
@@ -23,11 +23,11 @@ struct Picture {
   ErrorEstimate Traced(int pixels, int paths, std::uint64_t seed) const {
     // The drawn picture's mean is known. Half of the pixels' errors lie above its bias, and half
     // below.
-    ErrorEstimate estimate(truth * (1.0 + bias));
+    ErrorEstimate estimate(reference * (1.0 + bias));
     for (int i = 0; i < pixels; ++i) {
       reference::RandomStream random(seed, static_cast<std::uint64_t>(i), 0);
       const double error = bias + (random.Uniform() < 0.5 ? -spread : spread);
-      PixelTruth pixel(truth);
+      PixelReference pixel(reference);
       for (int path = 0; path < paths; ++path) {
         // The noise has the high value with probability p; its mean is 0 and its standard deviation
         // 1.
@@ -35,16 +35,16 @@ struct Picture {
         const double luck = random.Uniform() < kShare ? std::sqrt((1.0 - kShare) / kShare)
                                                       : -std::sqrt(kShare / (1.0 - kShare));
         const bool is_spike = spikes > 0.0 && random.Uniform() < spikes / spike;
-        pixel.Add(
-            glm::dvec3(truth * ((1.0 - spikes) * (1.0 + noise * luck) + (is_spike ? spike : 0.0))));
+        pixel.Add(glm::dvec3(reference *
+                             ((1.0 - spikes) * (1.0 + noise * luck) + (is_spike ? spike : 0.0))));
       }
-      estimate.Add(glm::dvec3(truth + error * truth), pixel);
+      estimate.Add(glm::dvec3(reference + error * reference), pixel);
     }
     return estimate;
   }
 };
 
-TEST(ErrorEstimate, TheTruthsNoiseIsNoError) {
+TEST(ErrorEstimate, TheReferencesNoiseIsNoError) {
   const Picture right{.bias = 0.0, .spread = 0.0};
   double mean = 0.0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -61,7 +61,7 @@ TEST(ErrorEstimate, TheTruthsNoiseIsNoError) {
 
 TEST(ErrorEstimate, IntervalsHoldTheErrorAsOftenAsTheySay) {
   for (const Picture& picture : {Picture{}, Picture{.bias = -0.3, .spread = 0.4},
-                                 Picture{.bias = 0.02, .spread = 0.1, .truth = 40.0},
+                                 Picture{.bias = 0.02, .spread = 0.1, .reference = 40.0},
                                  Picture{.bias = 0.05, .spread = 0.2, .spikes = 0.01}}) {
     int held = 0;
     int held_bias = 0;
@@ -124,7 +124,7 @@ TEST(ErrorEstimate, RarePathsOfGreatBrightnessWidenNothing) {
 }
 
 TEST(ErrorEstimate, ClampedLightIsGivenBack) {
-  PixelTruth pixel(2.0);
+  PixelReference pixel(2.0);
   pixel.Add(glm::dvec3(1.0, 2.0, 3.0));
   pixel.Add(glm::dvec3(10.0, 20.0, 30.0));
   EXPECT_EQ(pixel.Clamped(kClamps.size() - 1).first, glm::dvec3(11.0, 22.0, 33.0));
@@ -146,10 +146,10 @@ TEST(ErrorEstimate, PixelsCountByTheirWeight) {
   for (int i = 0; i < 30000; ++i) {
     reference::RandomStream random(3, static_cast<std::uint64_t>(i), 0);
     const bool left = random.Uniform() < 2.0 / 3.0;
-    PixelTruth pixel(1.0, left ? 0.75 : 1.5);
-    const double truth = 1.0 + (left ? 0.1 : 0.3) * (random.Uniform() < 0.5 ? -1.0 : 1.0);
+    PixelReference pixel(1.0, left ? 0.75 : 1.5);
+    const double reference = 1.0 + (left ? 0.1 : 0.3) * (random.Uniform() < 0.5 ? -1.0 : 1.0);
     for (int path = 0; path < 4; ++path) {
-      pixel.Add(glm::dvec3(truth * 2.0 * random.Uniform()));
+      pixel.Add(glm::dvec3(reference * 2.0 * random.Uniform()));
     }
     estimate.Add(glm::dvec3(1.0), pixel);
   }
@@ -159,7 +159,7 @@ TEST(ErrorEstimate, PixelsCountByTheirWeight) {
 TEST(ErrorEstimate, FewPixelsAndBlackPicturesSayNothing) {
   EXPECT_FALSE(Picture{}.Traced(100, 16, 1).Result().has_value());
   ErrorEstimate black(0.0);
-  PixelTruth none(1.0);
+  PixelReference none(1.0);
   for (int i = 0; i < 4; ++i) none.Add(glm::dvec3(0.0));
   for (int i = 0; i < 1000; ++i) black.Add(glm::dvec3(0.0), none);
   EXPECT_FALSE(black.Result().has_value());

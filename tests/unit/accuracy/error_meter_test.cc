@@ -48,13 +48,15 @@ scene::Scene TowerScene() {
   return scene;
 }
 
-picture::LinearPicture TruthOf(const scene::Scene& scene, const volume::HydrometeorFields& fields) {
-  scene::Scene truth = scene;
-  truth.rendering.technique =
+picture::LinearPicture ReferenceOf(const scene::Scene& scene,
+                                   const volume::HydrometeorFields& fields) {
+  scene::Scene reference_scene = scene;
+  reference_scene.rendering.technique =
       scene::Reference{.false_colors = scene::FieldLookOf(scene.rendering.technique).false_colors};
   reference::RefineLimits limits;
   limits.samples_per_pixel = 400;
-  return reference::TraceScene(truth, fields, reference::TraceOptions{}, limits, {}, {})->image;
+  return reference::TraceScene(reference_scene, fields, reference::TraceOptions{}, limits, {}, {})
+      ->image;
 }
 
 struct Wrong {
@@ -64,25 +66,25 @@ struct Wrong {
 };
 
 // Returns the picture with every other block of pixels 40 % too bright and the rest 10 % too dark.
-Wrong WrongBy(const picture::LinearPicture& truth) {
-  Wrong wrong{truth};
+Wrong WrongBy(const picture::LinearPicture& reference) {
+  Wrong wrong{reference};
   double squares = 0.0;
   double difference = 0.0;
   double sum = 0.0;
-  for (std::size_t i = 0; i < truth.radiance.size(); ++i) {
-    const auto width = static_cast<std::size_t>(truth.size_px.x);
+  for (std::size_t i = 0; i < reference.radiance.size(); ++i) {
+    const auto width = static_cast<std::size_t>(reference.size_px.x);
     const float factor = (i % width / 4 + i / width / 4) % 2 == 0 ? 1.4F : 0.9F;
     wrong.picture.radiance[i] *= factor;
     for (int color = 0; color < 3; ++color) {
-      const double right = truth.radiance[i][color];
-      const double noise = truth.standard_error[i][color];
+      const double right = reference.radiance[i][color];
+      const double noise = reference.standard_error[i][color];
       // The reference itself has noise, and so has the picture made from it.
       squares += std::pow((factor - 1.0) * right, 2) + (2.0 * factor - 1.0) * noise * noise;
       difference += (factor - 1.0) * right;
       sum += right;
     }
   }
-  const double count = 3.0 * static_cast<double>(truth.radiance.size());
+  const double count = 3.0 * static_cast<double>(reference.radiance.size());
   wrong.error = std::sqrt(squares / count) / (sum / count);
   wrong.bias = difference / sum;
   return wrong;
@@ -91,7 +93,7 @@ Wrong WrongBy(const picture::LinearPicture& truth) {
 TEST(ErrorMeter, IntervalsHoldTheErrorOfAPictureThatIsWrongByAKnownAmount) {
   const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
   const scene::Scene scene = TowerScene();
-  const Wrong wrong = WrongBy(TruthOf(scene, *fields));
+  const Wrong wrong = WrongBy(ReferenceOf(scene, *fields));
   constexpr int kTrials = 24;
   int held = 0;
   int too_low = 0;
@@ -120,16 +122,16 @@ TEST(ErrorMeter, IntervalsHoldTheErrorOfAPictureThatIsWrongByAKnownAmount) {
 TEST(ErrorMeter, PathsCountForTheNextPictureToo) {
   const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
   const scene::Scene scene = TowerScene();
-  const picture::LinearPicture truth = TruthOf(scene, *fields);
-  const Wrong wrong = WrongBy(truth);
+  const picture::LinearPicture reference = ReferenceOf(scene, *fields);
+  const Wrong wrong = WrongBy(reference);
   const auto meter = *ErrorMeter::Create(scene, fields, 0);
   meter->Show(wrong.picture);
   for (int step = 0; step < 8; ++step) ASSERT_TRUE(meter->Step().ok());
   const std::int64_t paths = meter->Result()->paths;
-  meter->Show(truth);
+  meter->Show(reference);
   EXPECT_EQ(meter->Result()->paths, paths);
   // The picture's only error is its own noise.
-  EXPECT_LT(meter->Result()->relative_rmse.low, measure::RelativeNoise(truth));
+  EXPECT_LT(meter->Result()->relative_rmse.low, measure::RelativeNoise(reference));
   EXPECT_LT(meter->Result()->relative_rmse.value, 0.5 * wrong.error);
   picture::LinearPicture smaller{{16, 12}, std::vector<glm::vec3>(192, glm::vec3(0.1F))};
   meter->Show(smaller);
@@ -140,11 +142,11 @@ TEST(ErrorMeter, FalseColorsAreNoError) {
   const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
   scene::Scene scene = TowerScene();
   scene::MediumSettingsOf(&scene.rendering.technique)->look.false_colors = true;
-  const picture::LinearPicture truth = TruthOf(scene, *fields);
+  const picture::LinearPicture reference = ReferenceOf(scene, *fields);
   const auto meter = *ErrorMeter::Create(scene, fields, 0);
-  meter->Show(truth);
+  meter->Show(reference);
   for (int step = 0; step < 8; ++step) ASSERT_TRUE(meter->Step().ok());
-  EXPECT_LT(meter->Result()->relative_rmse.low, measure::RelativeNoise(truth));
+  EXPECT_LT(meter->Result()->relative_rmse.low, measure::RelativeNoise(reference));
 }
 
 // Returns a scene with the sun just above the tower.
@@ -160,7 +162,7 @@ scene::Scene AgainstTheSun() {
 TEST(ErrorMeter, TheAureoleThatTheReferenceLeavesOutIsNoError) {
   const std::shared_ptr<volume::HydrometeorFields> fields = MakeTower();
   const scene::Scene scene = AgainstTheSun();
-  picture::LinearPicture drawn = TruthOf(scene, *fields);
+  picture::LinearPicture drawn = ReferenceOf(scene, *fields);
   const double noise = measure::RelativeNoise(drawn);
   const std::vector<bool> near_sun =
       reference::NearSun(reference::CameraOf(scene, *fields),

@@ -67,7 +67,7 @@ TEST_F(MachineCostsTest, EverySettingsFirstFrameCompiles) {
   costs_.Observe(kView, {.scene = scene_,
                          .total_ms = compiling_ms,
                          .stages = {{scene::FrameStage::kView, compiling_ms}},
-                         .context = "lane"});
+                         .context = "worker"});
   EXPECT_NEAR(FrameMs(), 30.0, 1e-9) << "the first in another context";
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   Observe(900.0);

@@ -189,7 +189,7 @@ TEST_F(FrameHubTest, ASizeIsMadeOnceForAllWhoWantIt) {
   EXPECT_EQ(made, once) << "it was made for others";
 }
 
-TEST_F(FrameHubTest, ASlowLinkGetsSmallMovingPicturesAndFullStills) {
+TEST_F(FrameHubTest, ASlowLinkGetsSmallMovingPicturesAndFullRestingFrames) {
   const std::uint64_t viewer = *hub_.Join(std::make_shared<CountingViewer>(), {.adapts = true});
   const std::uint64_t other = Join();
   auto now = FrameHub::Time() + std::chrono::hours(1);
@@ -206,9 +206,9 @@ TEST_F(FrameHubTest, ASlowLinkGetsSmallMovingPicturesAndFullStills) {
     hub_.Acknowledge(other, frame->sequence, now);
   }
   EXPECT_EQ(tier, 1);
-  EncodedFrame still = FrameOf(2);
-  still.at_rest = true;
-  hub_.Publish(still, CountingReduction(&made));
+  EncodedFrame resting = FrameOf(2);
+  resting.at_rest = true;
+  hub_.Publish(resting, CountingReduction(&made));
   EXPECT_EQ(TakeTier(hub_, viewer, now), 0);
 }
 

@@ -1,4 +1,4 @@
-// Tests of video and of stills (high-quality pictures at rest) in the frame hub. They check which
+// Tests of video and of resting frames (AVIF of higher quality) in the frame hub. They check which
 // encoding each viewer receives, key pictures, and viewers that miss pictures.
 #include "delivery/frame_hub.h"
 #include "gmock/gmock.h"
@@ -13,7 +13,7 @@ using std::chrono::seconds;
 using Kind = FrameForm::Kind;
 
 constexpr ViewerWants kVideo{
-    .adapts = true, .takes_video = true, .takes_stills = true, .saves_bytes = true};
+    .adapts = true, .takes_video = true, .takes_resting_frames = true, .saves_bytes = true};
 
 class VideoViewer : public Viewer {
  public:
@@ -29,7 +29,7 @@ class VideoHubTest : public ::testing::Test {
   }
 
   // Draws, encodes and publishes a frame, a thirtieth of a second after the previous one.
-  std::uint64_t Publish(bool at_rest = false, bool still_follows = false) {
+  std::uint64_t Publish(bool at_rest = false, bool resting_frame_follows = false) {
     now_ += milliseconds(33);
     EncodedFrame frame;
     frame.scene_revision = scene_revision_;
@@ -37,7 +37,7 @@ class VideoHubTest : public ::testing::Test {
     frame.at_rest = at_rest;
     if (by_reference_) frame.refinement.emplace();
     std::vector<EncodedVideo> video;
-    for (VideoOrder order : hub_.OrderVideo(frame, still_follows, now_)) {
+    for (VideoOrder order : hub_.OrderVideo(frame, resting_frame_follows, now_)) {
       if (resized_) order.kind = Vp9Kind::kKey;
       EncodedFrame picture = frame;
       picture.tier = order.tier;
@@ -53,14 +53,14 @@ class VideoHubTest : public ::testing::Test {
       encoded.tier = tier;
       return std::optional(encoded);
     };
-    return hub_.Publish(frame, jpeg, std::move(video), still_follows, now_);
+    return hub_.Publish(frame, jpeg, std::move(video), resting_frame_follows, now_);
   }
 
-  void AddStill(std::uint64_t sequence, int tier = 0) {
-    EncodedFrame still;
-    still.avif = "avif";
-    still.tier = tier;
-    hub_.AddStill(sequence, tier, still);
+  void AddRestingFrame(std::uint64_t sequence, int tier = 0) {
+    EncodedFrame resting_frame;
+    resting_frame.avif = "avif";
+    resting_frame.tier = tier;
+    hub_.AddRestingFrame(sequence, tier, resting_frame);
   }
 
   // Takes the viewer's next picture and returns its kind, in whichever encoding, or "nothing".
@@ -271,17 +271,17 @@ TEST_F(VideoHubTest, WhoLosesVideoGetsJpegAndAKeyPictureLaterEachTime) {
   EXPECT_GE(waits[2], 2 * waits[1] - 10);
 }
 
-TEST_F(VideoHubTest, AtRestTheStillReplacesVideoAndComesOnce) {
+TEST_F(VideoHubTest, AtRestTheRestingFrameReplacesVideoAndComesOnce) {
   const auto video = Join(kVideo);
   const auto jpeg = Join({.adapts = true});
   Publish();
   EXPECT_EQ(TakeAndAcknowledge(video), "key");
   EXPECT_EQ(TakeAndAcknowledge(jpeg), "jpeg");
-  const std::uint64_t sequence = Publish(/*at_rest=*/true, /*still_follows=*/true);
-  EXPECT_EQ(TakeAndAcknowledge(video), "base") << "at once, before the still is made";
+  const std::uint64_t sequence = Publish(/*at_rest=*/true, /*resting_frame_follows=*/true);
+  EXPECT_EQ(TakeAndAcknowledge(video), "base") << "at once, before the resting frame is encoded";
   EXPECT_EQ(TakeAndAcknowledge(jpeg), "jpeg");
   EXPECT_EQ(Take(video), "nothing");
-  AddStill(sequence);
+  AddRestingFrame(sequence);
   EXPECT_EQ(TakeAndAcknowledge(video), "avif");
   EXPECT_EQ(Take(video), "nothing");
   EXPECT_EQ(Take(jpeg), "nothing");
@@ -290,63 +290,64 @@ TEST_F(VideoHubTest, AtRestTheStillReplacesVideoAndComesOnce) {
   EXPECT_EQ(TakeAndAcknowledge(video), "base");
 }
 
-// A still may be replaced when the path-traced correction has improved, or when the error is known.
-TEST_F(VideoHubTest, AStillIsReplacedByNothingButTheNextOneOfItsScene) {
+// A resting frame may be replaced when the path-traced correction has improved, or when the error
+// is known.
+TEST_F(VideoHubTest, ARestingFrameIsReplacedByNothingButTheNextOneOfItsScene) {
   const auto video = Join(kVideo);
-  const auto stills = Join({.takes_stills = true});
+  const auto resting = Join({.takes_resting_frames = true});
   const auto jpeg = Join({});
   const auto settle = [&] {
-    const std::uint64_t sequence = Publish(/*at_rest=*/true, /*still_follows=*/true);
-    for (const std::uint64_t viewer : {video, stills, jpeg}) TakeAndAcknowledge(viewer);
-    AddStill(sequence);
+    const std::uint64_t sequence = Publish(/*at_rest=*/true, /*resting_frame_follows=*/true);
+    for (const std::uint64_t viewer : {video, resting, jpeg}) TakeAndAcknowledge(viewer);
+    AddRestingFrame(sequence);
     EXPECT_EQ(TakeAndAcknowledge(video), "avif");
-    EXPECT_EQ(TakeAndAcknowledge(stills), "avif");
+    EXPECT_EQ(TakeAndAcknowledge(resting), "avif");
     EXPECT_EQ(Take(jpeg), "nothing");
   };
   Publish();
   EXPECT_EQ(TakeAndAcknowledge(video), "key");
   settle();
   for (int i = 0; i < 5; ++i) {
-    Publish(/*at_rest=*/true, /*still_follows=*/true);
+    Publish(/*at_rest=*/true, /*resting_frame_follows=*/true);
     EXPECT_EQ(Take(video), "nothing");
-    EXPECT_EQ(Take(stills), "nothing");
+    EXPECT_EQ(Take(resting), "nothing");
     EXPECT_EQ(TakeAndAcknowledge(jpeg), "jpeg");
   }
   settle();
-  const std::uint64_t last = Publish(/*at_rest=*/true, /*still_follows=*/true);
-  EXPECT_EQ(Take(stills), "nothing");
-  hub_.NoStills(last);
-  EXPECT_EQ(TakeAndAcknowledge(stills), "jpeg") << "there is nothing better";
+  const std::uint64_t last = Publish(/*at_rest=*/true, /*resting_frame_follows=*/true);
+  EXPECT_EQ(Take(resting), "nothing");
+  hub_.NoRestingFrame(last);
+  EXPECT_EQ(TakeAndAcknowledge(resting), "jpeg") << "there is nothing better";
   settle();
-  // On a very busy machine, each frame supersedes the still of the previous frame.
+  // On a very busy machine, each frame supersedes the previous resting frame.
   for (int i = 0; i < 5; ++i) {
     now_ += seconds(1);
-    Publish(/*at_rest=*/true, /*still_follows=*/true);
+    Publish(/*at_rest=*/true, /*resting_frame_follows=*/true);
     TakeAndAcknowledge(video);
-    EXPECT_EQ(TakeAndAcknowledge(stills), i < 2 ? "nothing" : "jpeg") << i;
+    EXPECT_EQ(TakeAndAcknowledge(resting), i < 2 ? "nothing" : "jpeg") << i;
   }
   settle();
   by_reference_ = true;
-  Publish(/*at_rest=*/true, /*still_follows=*/true);
-  EXPECT_EQ(TakeAndAcknowledge(stills), "jpeg") << "its pictures come too fast to wait";
+  Publish(/*at_rest=*/true, /*resting_frame_follows=*/true);
+  EXPECT_EQ(TakeAndAcknowledge(resting), "jpeg") << "its pictures come too fast to wait";
   EXPECT_EQ(TakeAndAcknowledge(video), "base");
   by_reference_ = false;
   settle();
   ++scene_revision_;
-  Publish(/*at_rest=*/true, /*still_follows=*/true);
-  EXPECT_EQ(TakeAndAcknowledge(stills), "jpeg");
+  Publish(/*at_rest=*/true, /*resting_frame_follows=*/true);
+  EXPECT_EQ(TakeAndAcknowledge(resting), "jpeg");
   EXPECT_EQ(TakeAndAcknowledge(video), "base") << "the stream goes on";
 }
 
-// The still was made for the smaller window. The larger picture is more valuable than the better
-// encoding.
+// The resting frame was encoded for the smaller window. The larger picture is more valuable than
+// the better encoding.
 TEST_F(VideoHubTest, AWindowThatGrowsAtRestGetsTheLargerPicture) {
-  ViewerWants wants{.window_width_px = 640, .adapts = true, .takes_stills = true};
+  ViewerWants wants{.window_width_px = 640, .adapts = true, .takes_resting_frames = true};
   const auto viewer = Join(wants);
-  const std::uint64_t sequence = Publish(/*at_rest=*/true, /*still_follows=*/true);
+  const std::uint64_t sequence = Publish(/*at_rest=*/true, /*resting_frame_follows=*/true);
   EXPECT_EQ(TakeAndAcknowledge(viewer), "jpeg");
-  AddStill(sequence, 1);
-  hub_.NoStills(sequence);
+  AddRestingFrame(sequence, 1);
+  hub_.NoRestingFrame(sequence);
   EXPECT_EQ(TakeAndAcknowledge(viewer), "avif");
   EXPECT_EQ(taken_tier_, 1);
   wants.window_width_px = 600;
@@ -359,17 +360,17 @@ TEST_F(VideoHubTest, AWindowThatGrowsAtRestGetsTheLargerPicture) {
   EXPECT_EQ(Take(viewer), "nothing");
 }
 
-TEST_F(VideoHubTest, WithoutAStillJpegReplacesVideo) {
+TEST_F(VideoHubTest, WithoutARestingFrameJpegReplacesVideo) {
   const auto viewer = Join(kVideo);
-  const std::uint64_t sequence = Publish(/*at_rest=*/true, /*still_follows=*/true);
+  const std::uint64_t sequence = Publish(/*at_rest=*/true, /*resting_frame_follows=*/true);
   EXPECT_EQ(TakeAndAcknowledge(viewer), "key");
-  hub_.NoStills(sequence);
+  hub_.NoRestingFrame(sequence);
   EXPECT_EQ(TakeAndAcknowledge(viewer), "jpeg");
 }
 
 TEST_F(VideoHubTest, AFrameDrawnInMotionIsSentInFullOnceItRests) {
   ViewerWants wants = kVideo;
-  wants.takes_stills = false;
+  wants.takes_resting_frames = false;
   const auto viewer = Join(wants);
   const std::uint64_t sequence = Publish();
   EXPECT_EQ(TakeAndAcknowledge(viewer), "key");
@@ -378,12 +379,12 @@ TEST_F(VideoHubTest, AFrameDrawnInMotionIsSentInFullOnceItRests) {
   EXPECT_EQ(TakeAndAcknowledge(viewer), "jpeg");
 }
 
-TEST_F(VideoHubTest, AStillOfAnOlderFrameIsDropped) {
+TEST_F(VideoHubTest, ARestingFrameOfAnOlderFrameIsDropped) {
   const auto viewer = Join(kVideo);
-  const std::uint64_t older = Publish(/*at_rest=*/true, /*still_follows=*/true);
+  const std::uint64_t older = Publish(/*at_rest=*/true, /*resting_frame_follows=*/true);
   TakeAndAcknowledge(viewer);
   Publish();
-  AddStill(older);
+  AddRestingFrame(older);
   EXPECT_EQ(Take(viewer), "base");
 }
 

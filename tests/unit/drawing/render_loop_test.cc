@@ -464,7 +464,7 @@ TEST_F(RenderLoopTest, APictureIsPreparedForTheSettingDecidedAndHoldsUpNobody) {
 
 TEST_F(RenderLoopTest, PicturesYieldToSessionsButNotToOtherProgramsWhereThereAreNone) {
   for (const bool yield : {true, false}) {
-    Start({.lanes_yield = yield});
+    Start({.workers_yield = yield});
     ASSERT_TRUE(Picture(1.0).get().ok());
     const auto log = machine_->Log();
     ASSERT_FALSE(log.empty());

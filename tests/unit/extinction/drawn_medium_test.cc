@@ -73,20 +73,20 @@ TEST(DrawnMedium, EightPlacesHaveWhatEachHas) {
     double sum = 0.0;
     for (int batch = 0; batch < 50; ++batch) {
       DrawnMedium::Places places;
-      for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
-        const auto k = static_cast<float>(batch * 8 + static_cast<int>(lane));
+      for (std::size_t place = 0; place < base::kSimdWidth; ++place) {
+        const auto k = static_cast<float>(batch * 8 + static_cast<int>(place));
         // Some places are beyond the grid.
-        places.x[lane] = std::fmod(0.755F * k, 10.0F) - 0.5F;
-        places.y[lane] = std::fmod(0.57F * k, 8.0F) - 0.5F;
-        places.z[lane] = std::fmod(0.31F * k, 6.0F) - 0.5F;
+        places.x[place] = std::fmod(0.755F * k, 10.0F) - 0.5F;
+        places.y[place] = std::fmod(0.57F * k, 8.0F) - 0.5F;
+        places.z[place] = std::fmod(0.31F * k, 6.0F) - 0.5F;
       }
       DrawnMedium::ChannelsAt together;
       medium.At(places, &together);
-      for (std::size_t lane = 0; lane < base::kLanes; ++lane) {
+      for (std::size_t place = 0; place < base::kSimdWidth; ++place) {
         const DrawnMedium::Channels alone =
-            medium.At({places.x[lane], places.y[lane], places.z[lane]});
+            medium.At({places.x[place], places.y[place], places.z[place]});
         for (std::size_t channel = 0; channel < alone.size(); ++channel) {
-          EXPECT_FLOAT_EQ(together[channel][lane], alone[channel]) << channels;
+          EXPECT_FLOAT_EQ(together[channel][place], alone[channel]) << channels;
           sum += double{alone[channel]};
         }
       }

@@ -24,24 +24,24 @@ frame::RgbImage Drawn(const std::function<int(int x, int y)>& gray) {
 }
 
 TEST(ImageError, RelativeRmseAndBias) {
-  const picture::LinearPicture truth = Linear({1.0F, 3.0F});
-  EXPECT_EQ(RelativeRmse(truth, truth), 0.0);
-  EXPECT_EQ(RelativeBias(truth, truth), 0.0);
+  const picture::LinearPicture reference = Linear({1.0F, 3.0F});
+  EXPECT_EQ(RelativeRmse(reference, reference), 0.0);
+  EXPECT_EQ(RelativeBias(reference, reference), 0.0);
   // The differences are 1 and -1, with a mean of 2.
-  EXPECT_DOUBLE_EQ(RelativeRmse(Linear({2.0F, 2.0F}), truth), 0.5);
-  EXPECT_DOUBLE_EQ(RelativeBias(Linear({2.0F, 2.0F}), truth), 0.0);
-  EXPECT_DOUBLE_EQ(RelativeBias(Linear({1.5F, 3.5F}), truth), 0.25);
-  picture::LinearPicture noisy = truth;
+  EXPECT_DOUBLE_EQ(RelativeRmse(Linear({2.0F, 2.0F}), reference), 0.5);
+  EXPECT_DOUBLE_EQ(RelativeBias(Linear({2.0F, 2.0F}), reference), 0.0);
+  EXPECT_DOUBLE_EQ(RelativeBias(Linear({1.5F, 3.5F}), reference), 0.25);
+  picture::LinearPicture noisy = reference;
   noisy.standard_error = {glm::vec3(0.2F), glm::vec3(0.2F)};
   EXPECT_DOUBLE_EQ(RelativeNoise(noisy), 0.2F / 2.0);
 }
 
-TEST(ImageError, TheTruthsNoiseIsTakenOutInSquares) {
-  const picture::LinearPicture truth = Linear({1.0F, 3.0F});
+TEST(ImageError, TheReferencesNoiseIsTakenOutInSquares) {
+  const picture::LinearPicture reference = Linear({1.0F, 3.0F});
   const picture::LinearPicture image = Linear({2.0F, 2.0F});  // its relative error is 0.5
-  EXPECT_NEAR(RelativeRmseWithout(0.3, image, truth), 0.4, 1e-12);
-  EXPECT_EQ(RelativeRmseWithout(0.0, image, truth), RelativeRmse(image, truth));
-  EXPECT_EQ(RelativeRmseWithout(0.6, image, truth), 0.0);
+  EXPECT_NEAR(RelativeRmseWithout(0.3, image, reference), 0.4, 1e-12);
+  EXPECT_EQ(RelativeRmseWithout(0.0, image, reference), RelativeRmse(image, reference));
+  EXPECT_EQ(RelativeRmseWithout(0.6, image, reference), 0.0);
 }
 
 TEST(Flip, OfAPictureWithItselfIsZero) {
@@ -62,23 +62,23 @@ TEST(Flip, OfEvenGraysFollowsTheColourFormula) {
 }
 
 TEST(Flip, IsSymmetricAndGrowsWithTheDifference) {
-  const frame::RgbImage truth = Drawn([](int x, int) { return 100 + x; });
+  const frame::RgbImage reference = Drawn([](int x, int) { return 100 + x; });
   const auto shifted = [&](int by) { return Drawn([=](int x, int) { return 100 + x + by; }); };
-  const double small = Flip(shifted(2), truth);
-  const double large = Flip(shifted(40), truth);
+  const double small = Flip(shifted(2), reference);
+  const double large = Flip(shifted(40), reference);
   EXPECT_GT(small, 0.0);
   EXPECT_LT(small, large);
   EXPECT_LT(large, 1.0);
-  EXPECT_DOUBLE_EQ(Flip(truth, shifted(40)), large);
+  EXPECT_DOUBLE_EQ(Flip(reference, shifted(40)), large);
 }
 
 TEST(Flip, FineNoiseIsForgivenAndANewEdgeIsNot) {
-  const frame::RgbImage truth = Drawn([](int, int) { return 128; });
+  const frame::RgbImage reference = Drawn([](int, int) { return 128; });
   // Both pictures change every pixel by 10 levels.
   const frame::RgbImage chequered =
       Drawn([](int x, int y) { return (x + y) % 2 == 0 ? 118 : 138; });
   const frame::RgbImage stepped = Drawn([](int x, int) { return x < 24 ? 118 : 138; });
-  EXPECT_LT(2.0 * Flip(chequered, truth), Flip(stepped, truth));
+  EXPECT_LT(2.0 * Flip(chequered, reference), Flip(stepped, reference));
 }
 
 }  // namespace

@@ -27,17 +27,17 @@ TEST(BufferRing, EachBufferHoldsItsStateWhole) {
   std::uniform_int_distribution<int> place(0, kSide);
   for (const std::size_t count : {1U, 2U, 5U}) {
     BufferRing ring(count);
-    Picture truth(kSide * kSide, 0);
-    std::vector<Picture> buffers(count, truth);
+    Picture expected(kSide * kSide, 0);
+    std::vector<Picture> buffers(count, expected);
     int written = 0;
     for (int state = 1; state <= 60; ++state) {
       const auto index = static_cast<std::size_t>(state);
       PixelRect changed{{place(random), place(random)}, {place(random), place(random)}};
       if (changed.Empty()) changed = {};
-      Copy(Picture(kSide * kSide, state), changed, &truth);
+      Copy(Picture(kSide * kSide, state), changed, &expected);
       const PixelRect rect = ring.Write(index, changed);
-      Copy(truth, rect, &buffers[ring.Of(index)]);
-      EXPECT_EQ(buffers[ring.Of(index)], truth) << count << " buffers, state " << state;
+      Copy(expected, rect, &buffers[ring.Of(index)]);
+      EXPECT_EQ(buffers[ring.Of(index)], expected) << count << " buffers, state " << state;
       written += rect.Empty() ? 0 : (rect.high.x - rect.low.x) * (rect.high.y - rect.low.y);
     }
     EXPECT_LT(written, 60 * kSide * kSide) << "some of it was left as it was";

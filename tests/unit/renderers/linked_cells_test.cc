@@ -138,20 +138,20 @@ TEST(LinkedCells, SolveIsTheInverseOfTheirExchange) {
   const System system(box, numbered);
   std::mt19937 random(13);
   std::uniform_real_distribution<float> value(-1.0F, 1.0F);
-  std::vector<float> truth(numbered.Count());
-  for (float& v : truth) v = value(random);
-  std::vector<float> right(truth.size());
+  std::vector<float> expected(numbered.Count());
+  for (float& v : expected) v = value(random);
+  std::vector<float> right(expected.size());
   for (std::size_t n = 0; n < right.size(); ++n) {
-    right[n] = static_cast<float>(system.Needed(n, truth));
+    right[n] = static_cast<float>(system.Needed(n, expected));
   }
   LinkedCells linked(system.down, system.up, system.loss, numbered.Blocks());
-  std::vector<float> solution(truth.size(), 0.0F);
+  std::vector<float> solution(expected.size(), 0.0F);
   const int iterations = linked.Solve(right, 1e-6, &solution);
   EXPECT_GT(iterations, 2);
   EXPECT_LT(iterations, 100);
   float worst = 0.0F;
-  for (std::size_t n = 0; n < truth.size(); ++n) {
-    worst = std::max(worst, std::abs(solution[n] - truth[n]));
+  for (std::size_t n = 0; n < expected.size(); ++n) {
+    worst = std::max(worst, std::abs(solution[n] - expected[n]));
   }
   EXPECT_LT(worst, 1e-4F);
   // The solver starts from the solution, so it needs no iteration.

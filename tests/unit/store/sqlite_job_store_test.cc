@@ -12,8 +12,8 @@
 namespace thunderhead::testing {
 namespace {
 
+using jobs::ImageRecord;
 using jobs::JobRecord;
-using jobs::PictureRecord;
 using jobs::PictureState;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -27,7 +27,7 @@ JobRecord JobRecordOf(const std::string& id, int pictures) {
   job.label = "night \xff";
   job.created_at = jobs::Time(std::chrono::milliseconds(1'700'000'000'123));
   for (int i = 0; i < pictures; ++i) {
-    PictureRecord& picture = job.pictures.emplace_back();
+    ImageRecord& picture = job.pictures.emplace_back();
     picture.order = {"name " + std::to_string(i), std::string("a\0scene\xff", 8), "2013-05-20"};
   }
   return job;
@@ -63,7 +63,7 @@ TEST_F(SqliteJobStoreTest, KeepsEachStateOfAPictureButThatOfBeingDrawn) {
   JobRecord job = JobRecordOf("a", 3);
   const auto store = Open();
   ASSERT_TRUE(store->Add(job).ok());
-  PictureRecord& drawn = job.pictures[0];
+  ImageRecord& drawn = job.pictures[0];
   drawn.state = PictureState::kDrawn;
   drawn.attempts = 2;
   drawn.bytes = std::uint64_t{1} << 40;

@@ -11,14 +11,15 @@
 
 namespace thunderhead::measure {
 
-class AgainstTruth {
+class ReferenceComparison {
  public:
-  // Creates a comparison. `truth`, the reference picture, must be traced with `peak_cut_deg` and
-  // have a standard error. Returns INVALID_ARGUMENT if almost all of its pixels are next to the
+  // Creates a comparison. `reference`, the reference picture, must be traced with `peak_cut_deg`
+  // and have a standard error. Returns INVALID_ARGUMENT if almost all of its pixels are next to the
   // sun.
-  static absl::StatusOr<AgainstTruth> Of(const scene::Scene& scene,
-                                         const volume::HydrometeorFields& fields,
-                                         picture::LinearPicture truth, double peak_cut_deg);
+  static absl::StatusOr<ReferenceComparison> Of(const scene::Scene& scene,
+                                                const volume::HydrometeorFields& fields,
+                                                picture::LinearPicture reference,
+                                                double peak_cut_deg);
 
   // Return the errors of a picture of the reference's size, as defined in measure/image_error.h.
   double RelativeRmseWithoutNoise(const picture::LinearPicture& image) const;
@@ -27,12 +28,12 @@ class AgainstTruth {
   double Noise() const { return noise_; }
 
   // Returns the whole reference picture.
-  const picture::LinearPicture& Truth() const { return truth_; }
+  const picture::LinearPicture& Reference() const { return reference_; }
 
  private:
-  AgainstTruth(picture::LinearPicture truth, std::vector<bool> left_out);
+  ReferenceComparison(picture::LinearPicture reference, std::vector<bool> left_out);
 
-  picture::LinearPicture truth_;
+  picture::LinearPicture reference_;
   std::vector<bool> left_out_;
   picture::LinearPicture compared_;  // the reference without the left-out pixels
   double noise_;

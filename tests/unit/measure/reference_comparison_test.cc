@@ -1,4 +1,4 @@
-#include "measure/against_truth.h"
+#include "measure/reference_comparison.h"
 
 #include <algorithm>
 
@@ -30,11 +30,11 @@ picture::LinearPicture Even(float radiance) {
           std::vector<glm::vec3>(768, glm::vec3(0.0F))};
 }
 
-TEST(AgainstTruth, WhatIsNextToTheSunDoesNotCount) {
+TEST(ReferenceComparison, WhatIsNextToTheSunDoesNotCount) {
   const auto fields = support::MakeSlab(8000.0, 6000.0, 0.02);
   const scene::Scene scene = Towards(255.0, 35.0);
-  const auto truth = AgainstTruth::Of(scene, *fields, Even(2.0F), kPeakCut_deg);
-  ASSERT_TRUE(truth.ok()) << truth.status();
+  const auto comparison = ReferenceComparison::Of(scene, *fields, Even(2.0F), kPeakCut_deg);
+  ASSERT_TRUE(comparison.ok()) << comparison.status();
   picture::LinearPicture drawn = Even(2.5F);
   const std::vector<bool> near_sun =
       reference::NearSun(reference::CameraOf(scene, *fields),
@@ -44,28 +44,30 @@ TEST(AgainstTruth, WhatIsNextToTheSunDoesNotCount) {
   for (std::size_t i = 0; i < near_sun.size(); ++i) {
     if (near_sun[i]) drawn.radiance[i] = glm::vec3(1e4F);
   }
-  EXPECT_NEAR(truth->RelativeRmseWithoutNoise(drawn), 0.25, 1e-6);
-  EXPECT_NEAR(truth->RelativeBias(drawn), 0.25, 1e-6);
-  EXPECT_EQ(truth->Noise(), 0.0);
+  EXPECT_NEAR(comparison->RelativeRmseWithoutNoise(drawn), 0.25, 1e-6);
+  EXPECT_NEAR(comparison->RelativeBias(drawn), 0.25, 1e-6);
+  EXPECT_EQ(comparison->Noise(), 0.0);
 }
 
-TEST(AgainstTruth, AwayFromTheSunAllCounts) {
+TEST(ReferenceComparison, AwayFromTheSunAllCounts) {
   const auto fields = support::MakeSlab(8000.0, 6000.0, 0.02);
   picture::LinearPicture noisy = Even(2.0F);
   std::ranges::fill(noisy.standard_error, glm::vec3(0.5F));
-  const auto truth = AgainstTruth::Of(Towards(100.0, 35.0), *fields, noisy, kPeakCut_deg);
-  ASSERT_TRUE(truth.ok()) << truth.status();
-  EXPECT_NEAR(truth->Noise(), 0.25, 1e-6);
+  const auto comparison =
+      ReferenceComparison::Of(Towards(100.0, 35.0), *fields, noisy, kPeakCut_deg);
+  ASSERT_TRUE(comparison.ok()) << comparison.status();
+  EXPECT_NEAR(comparison->Noise(), 0.25, 1e-6);
   picture::LinearPicture drawn = Even(2.0F);
   drawn.radiance[0] += 1.0F;
-  EXPECT_NEAR(truth->RelativeBias(drawn), 0.5 / 768.0, 1e-9);
+  EXPECT_NEAR(comparison->RelativeBias(drawn), 0.5 / 768.0, 1e-9);
 }
 
-TEST(AgainstTruth, APictureOfTheSunAloneIsRefused) {
+TEST(ReferenceComparison, APictureOfTheSunAloneIsRefused) {
   const auto fields = support::MakeSlab(8000.0, 6000.0, 0.02);
-  const auto truth = AgainstTruth::Of(Towards(255.0, 1000.0), *fields, Even(2.0F), kPeakCut_deg);
-  EXPECT_TRUE(absl::IsInvalidArgument(truth.status())) << truth.status();
-  EXPECT_TRUE(AgainstTruth::Of(Towards(255.0, 1000.0), *fields, Even(2.0F), 0.0).ok());
+  const auto comparison =
+      ReferenceComparison::Of(Towards(255.0, 1000.0), *fields, Even(2.0F), kPeakCut_deg);
+  EXPECT_TRUE(absl::IsInvalidArgument(comparison.status())) << comparison.status();
+  EXPECT_TRUE(ReferenceComparison::Of(Towards(255.0, 1000.0), *fields, Even(2.0F), 0.0).ok());
 }
 
 }  // namespace

@@ -19,39 +19,40 @@
 #include "base/memory_budget.h"
 #include "base/time_source.h"
 #include "drawing/frame_source.h"
-#include "drawing/truth_source.h"
+#include "drawing/reference_source.h"
 #include "scene/scene.h"
 #include "volume/hydrometeor_fields.h"
 
 namespace thunderhead::drawing {
 
 // The newest picture that the Monte Carlo reference has traced for an owner.
-struct TruthPicture {
+struct ReferencePicture {
   picture::LinearPicture picture;
   delivery::Refinement refinement;
   double trace_ms = 0.0;  // since the request
   bool full_size = false;
 };
 
-class TruthTracer {
+class ReferenceTracer {
  public:
   // Each owner (a session) has its own source, whose buffers are reserved in `memory`. There are at
   // most `max_owners` owners. `on_picture` is called on the tracing thread when a picture can be
   // taken.
-  TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
-              std::shared_ptr<base::MemoryBudget> memory, std::function<void()> on_picture,
-              const base::TimeSource& time = base::SteadyTime());
+  ReferenceTracer(ReferenceSourceFactory make_source, std::size_t max_owners,
+                  std::shared_ptr<base::MemoryBudget> memory, std::function<void()> on_picture,
+                  const base::TimeSource& time = base::SteadyTime());
   // Ends tracing at once.
-  ~TruthTracer();
-  TruthTracer(const TruthTracer&) = delete;
-  TruthTracer& operator=(const TruthTracer&) = delete;
+  ~ReferenceTracer();
+  ReferenceTracer(const ReferenceTracer&) = delete;
+  ReferenceTracer& operator=(const ReferenceTracer&) = delete;
 
   // Begins the owner's picture. RESOURCE_EXHAUSTED if there are too many owners.
   absl::Status Trace(const std::string& owner, std::shared_ptr<const scene::Scene> scene,
                      std::shared_ptr<const volume::HydrometeorFields> fields);
   // Takes the owner's newest picture, or the error that ended its tracing. Returns none if there is
   // neither.
-  std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>> Take(const std::string& owner);
+  std::optional<absl::StatusOr<std::shared_ptr<const ReferencePicture>>> Take(
+      const std::string& owner);
   // Stops tracing the owner's picture but keeps its source for the next picture.
   void Stop(const std::string& owner);
   // Stops tracing and frees the owner's source.
@@ -59,10 +60,10 @@ class TruthTracer {
 
  private:
   struct Job;
-  using Found = std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>>;
+  using Found = std::optional<absl::StatusOr<std::shared_ptr<const ReferencePicture>>>;
   // The state of an owner. Only the tracing thread uses the source.
   struct Owned {
-    std::shared_ptr<TruthSource> source;
+    std::shared_ptr<ReferenceSource> source;
     std::shared_ptr<base::MemoryReservation> reserved;  // for the source's buffers
     std::shared_ptr<Job> job;
     Found found;
@@ -72,7 +73,7 @@ class TruthTracer {
   std::shared_ptr<Job> NextJob();  // needs mutex_
   void Keep(Job& job, Found found, bool ended);
 
-  const TruthSourceFactory make_source_;
+  const ReferenceSourceFactory make_source_;
   const std::size_t max_owners_;
   const std::shared_ptr<base::MemoryBudget> memory_;
   const std::function<void()> on_picture_;

@@ -1,5 +1,5 @@
 // Tests of the sizes at which a reference is refined and of when it is shown, on plain values.
-#include "drawing/truth_schedule.h"
+#include "drawing/reference_schedule.h"
 
 #include <cmath>
 #include <vector>
@@ -16,8 +16,8 @@ delivery::Refinement After(int samples) {
   return refinement;
 }
 
-TEST(TruthScheduleTest, BeginsSmallAndDoublesUpToTheFullSize) {
-  TruthSchedule schedule({1280, 720});
+TEST(ReferenceScheduleTest, BeginsSmallAndDoublesUpToTheFullSize) {
+  ReferenceSchedule schedule({1280, 720});
   std::vector<glm::ivec2> sizes;
   while (!schedule.IsFull()) {
     sizes.push_back(schedule.SizePx());
@@ -30,16 +30,16 @@ TEST(TruthScheduleTest, BeginsSmallAndDoublesUpToTheFullSize) {
   EXPECT_FALSE(schedule.GrowAt(After(1000)));
 }
 
-TEST(TruthScheduleTest, SmallPicturesAreFullAtOnce) {
-  EXPECT_TRUE(TruthSchedule({64, 36}).IsFull());
-  EXPECT_EQ(TruthSchedule({1, 1}).SizePx(), glm::ivec2(1, 1));
+TEST(ReferenceScheduleTest, SmallPicturesAreFullAtOnce) {
+  EXPECT_TRUE(ReferenceSchedule({64, 36}).IsFull());
+  EXPECT_EQ(ReferenceSchedule({1, 1}).SizePx(), glm::ivec2(1, 1));
   // The picture is so narrow that halving would leave no pixels.
-  const TruthSchedule line({8192, 1});
+  const ReferenceSchedule line({8192, 1});
   EXPECT_EQ(line.SizePx(), glm::ivec2(4096, 1));
 }
 
-TEST(TruthScheduleTest, ShowsTheFirstSampleThenEachDoubling) {
-  TruthSchedule schedule({64, 36});
+TEST(ReferenceScheduleTest, ShowsTheFirstSampleThenEachDoubling) {
+  ReferenceSchedule schedule({64, 36});
   std::vector<int> shown;
   for (int samples = 0; samples <= 64; ++samples) {
     if (schedule.ShowNow(After(samples), 0.1)) shown.push_back(samples);
@@ -47,15 +47,15 @@ TEST(TruthScheduleTest, ShowsTheFirstSampleThenEachDoubling) {
   EXPECT_EQ(shown, (std::vector<int>{1, 2, 4, 8, 16, 32, 64}));
 }
 
-TEST(TruthScheduleTest, ShowsAtLeastOnceASecond) {
-  TruthSchedule schedule({64, 36});
+TEST(ReferenceScheduleTest, ShowsAtLeastOnceASecond) {
+  ReferenceSchedule schedule({64, 36});
   ASSERT_TRUE(schedule.ShowNow(After(100), 0.1));
   EXPECT_FALSE(schedule.ShowNow(After(101), 0.9));
   EXPECT_TRUE(schedule.ShowNow(After(101), 1.0));
 }
 
-TEST(TruthScheduleTest, ALargerPictureIsShownFromTwoSamples) {
-  TruthSchedule schedule({160, 90});
+TEST(ReferenceScheduleTest, ALargerPictureIsShownFromTwoSamples) {
+  ReferenceSchedule schedule({160, 90});
   ASSERT_FALSE(schedule.IsFull());
   ASSERT_TRUE(schedule.ShowNow(After(8), 0.1));
   ASSERT_TRUE(schedule.GrowAt(After(8)));
@@ -64,15 +64,15 @@ TEST(TruthScheduleTest, ALargerPictureIsShownFromTwoSamples) {
   EXPECT_TRUE(schedule.ShowNow(After(2), 0.1));
 }
 
-TEST(TruthScheduleTest, TheLastOfASizeIsShown) {
-  TruthSchedule schedule({160, 90});
+TEST(ReferenceScheduleTest, TheLastOfASizeIsShown) {
+  ReferenceSchedule schedule({160, 90});
   ASSERT_TRUE(schedule.ShowNow(After(5), 0.1));
   EXPECT_FALSE(schedule.ShowNow(After(7), 0.1));
   EXPECT_TRUE(schedule.ShowNow(After(8), 0.1));
 }
 
-TEST(TruthScheduleTest, AsksForNoMoreThanTheNextPictureNeeds) {
-  TruthSchedule schedule({64, 36});
+TEST(ReferenceScheduleTest, AsksForNoMoreThanTheNextPictureNeeds) {
+  ReferenceSchedule schedule({64, 36});
   EXPECT_EQ(schedule.UntilSamples(), 1);
   ASSERT_TRUE(schedule.ShowNow(After(1), 0.1));
   EXPECT_EQ(schedule.UntilSamples(), 2);
@@ -80,8 +80,8 @@ TEST(TruthScheduleTest, AsksForNoMoreThanTheNextPictureNeeds) {
   EXPECT_EQ(schedule.UntilSamples(), 80);
 }
 
-TEST(TruthScheduleTest, EndsWhenNobodyCouldSeeADifference) {
-  const TruthSchedule schedule({64, 36});
+TEST(ReferenceScheduleTest, EndsWhenNobodyCouldSeeADifference) {
+  const ReferenceSchedule schedule({64, 36});
   EXPECT_FALSE(schedule.Finished(After(1000)));
   delivery::Refinement exact = After(1000);
   exact.relative_error = 0.0005;
@@ -91,7 +91,7 @@ TEST(TruthScheduleTest, EndsWhenNobodyCouldSeeADifference) {
   exact.samples_per_pixel = 2;
   EXPECT_FALSE(schedule.Finished(exact));
   EXPECT_TRUE(schedule.Finished(After(1 << 16)));
-  EXPECT_FALSE(TruthSchedule({1280, 720}).Finished(After(1 << 16)));
+  EXPECT_FALSE(ReferenceSchedule({1280, 720}).Finished(After(1 << 16)));
 }
 
 }  // namespace

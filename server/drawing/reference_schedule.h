@@ -8,9 +8,9 @@
 
 namespace thunderhead::drawing {
 
-class TruthSchedule {
+class ReferenceSchedule {
  public:
-  explicit TruthSchedule(const glm::ivec2& full_size_px);
+  explicit ReferenceSchedule(const glm::ivec2& full_size_px);
 
   // Returns the size of the picture to refine now.
   glm::ivec2 SizePx() const;

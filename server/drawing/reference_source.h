@@ -1,6 +1,6 @@
 // The interface through which the render loop refines a picture with the Monte Carlo reference. The
-// reference implements it; service tests use a fake. A TruthSource is used by one thread at a time.
-// Knows no sessions.
+// reference implements it; service tests use a fake. A ReferenceSource is used by one thread at a
+// time. Knows no sessions.
 #pragma once
 
 #include <functional>
@@ -15,9 +15,9 @@
 
 namespace thunderhead::drawing {
 
-class TruthSource {
+class ReferenceSource {
  public:
-  virtual ~TruthSource() = default;
+  virtual ~ReferenceSource() = default;
 
   // Begins a picture of `size_px`, which overrides the scene's size. The picture has no samples
   // yet.
@@ -33,10 +33,10 @@ class TruthSource {
   virtual picture::LinearPicture Snapshot() = 0;
 };
 
-using TruthSourceFactory = std::function<std::unique_ptr<TruthSource>()>;
+using ReferenceSourceFactory = std::function<std::unique_ptr<ReferenceSource>()>;
 
 // Returns the reference on `threads` threads. 0 means all cores except those left for other work,
 // which are a quarter of the cores and at least one.
-std::unique_ptr<TruthSource> MakeReferenceTruthSource(int threads = 0);
+std::unique_ptr<ReferenceSource> MakeReferenceSource(int threads = 0);
 
 }  // namespace thunderhead::drawing

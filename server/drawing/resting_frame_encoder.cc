@@ -1,4 +1,4 @@
-#include "drawing/still_maker.h"
+#include "drawing/resting_frame_encoder.h"
 
 #include <algorithm>
 #include <utility>
@@ -17,10 +17,10 @@ constexpr int kNiceness = 10;
 
 }  // namespace
 
-StillMaker::StillMaker(SerializeFrame serialize, const base::TimeSource& time)
+RestingFrameEncoder::RestingFrameEncoder(SerializeFrame serialize, const base::TimeSource& time)
     : serialize_(std::move(serialize)), time_(time), thread_([this] { Run(); }) {}
 
-StillMaker::~StillMaker() {
+RestingFrameEncoder::~RestingFrameEncoder() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -29,24 +29,24 @@ StillMaker::~StillMaker() {
   thread_.join();
 }
 
-void StillMaker::Make(StillToMake still) {
-  const auto session = still.session.lock();
+void RestingFrameEncoder::Encode(RestingFrame resting) {
+  const auto session = resting.session.lock();
   if (session == nullptr) return;
   const Time now = time_.Now();
-  Time due = still.described.at_rest ? now : std::max(now + kRestsAfter, still.rests_at);
+  Time due = resting.described.at_rest ? now : std::max(now + kRestsAfter, resting.rests_at);
   {
     const std::lock_guard lock(mutex_);
     // An improved picture at rest keeps the due time of the one that it replaces.
     const auto before = waiting_.find(session.get());
-    if (still.described.at_rest && before != waiting_.end()) {
+    if (resting.described.at_rest && before != waiting_.end()) {
       due = std::min(due, before->second.due);
     }
-    waiting_[session.get()] = {std::move(still), due};
+    waiting_[session.get()] = {std::move(resting), due};
   }
   changed_.notify_all();
 }
 
-void StillMaker::Run() {
+void RestingFrameEncoder::Run() {
   base::LowerPriority(kNiceness);
   std::unique_lock lock(mutex_);
   while (!stopping_) {
@@ -58,20 +58,20 @@ void StillMaker::Run() {
     } else if (const Time due = next->second.due; time_.Now() < due) {
       changed_.wait_until(lock, time_.LookAgainAt(due));
     } else {
-      const StillToMake still = std::move(next->second.still);
+      const RestingFrame resting = std::move(next->second.resting);
       waiting_.erase(next);
       lock.unlock();
-      MakeNow(still);
+      EncodeNow(resting);
       lock.lock();
     }
   }
 }
 
-absl::StatusOr<delivery::EncodedFrame> StillMaker::Encoded(const StillToMake& still,
-                                                           int tier) const {
+absl::StatusOr<delivery::EncodedFrame> RestingFrameEncoder::Encoded(const RestingFrame& resting,
+                                                                    int tier) const {
   const base::Stopwatch stopwatch;
-  const frame::FineImage& image = still.fine->At(tier);
-  delivery::EncodedFrame frame = still.described;
+  const frame::FineImage& image = resting.fine->At(tier);
+  delivery::EncodedFrame frame = resting.described;
   THUNDERHEAD_ASSIGN_OR_RETURN(frame.avif, codec::EncodeAvif(image));
   frame.width_px = image.width_px;
   frame.height_px = image.height_px;
@@ -81,25 +81,25 @@ absl::StatusOr<delivery::EncodedFrame> StillMaker::Encoded(const StillToMake& st
   return frame;
 }
 
-void StillMaker::MakeNow(const StillToMake& still) const {
-  const auto session = still.session.lock();
-  if (session == nullptr || !session->hub().IsNewest(still.sequence)) return;
-  session->hub().Rest(still.sequence);
-  if (still.fine == nullptr) return;
+void RestingFrameEncoder::EncodeNow(const RestingFrame& resting) const {
+  const auto session = resting.session.lock();
+  if (session == nullptr || !session->hub().IsNewest(resting.sequence)) return;
+  session->hub().Rest(resting.sequence);
+  if (resting.fine == nullptr) return;
   const std::array<bool, delivery::kTiers> wanted =
-      session->hub().StillTiers(delivery::WidthOf(still.described));
+      session->hub().RestingTiers(delivery::WidthOf(resting.described));
   for (int tier = 0; tier < delivery::kTiers; ++tier) {
     if (!wanted[static_cast<std::size_t>(tier)]) continue;
-    if (!session->hub().IsNewest(still.sequence)) return;
-    auto frame = base::Guarded([&] { return Encoded(still, tier); });
+    if (!session->hub().IsNewest(resting.sequence)) return;
+    auto frame = base::Guarded([&] { return Encoded(resting, tier); });
     if (!frame.ok()) {
-      base::LogError(base::Annotate(frame.status(), "making a still of higher quality"));
-      return session->hub().NoStills(still.sequence);
+      base::LogError(base::Annotate(frame.status(), "encoding a resting frame"));
+      return session->hub().NoRestingFrame(resting.sequence);
     }
-    session->hub().AddStill(still.sequence, tier, *std::move(frame));
+    session->hub().AddRestingFrame(resting.sequence, tier, *std::move(frame));
   }
-  // Viewers that now need a tier for which no still was made get no still of this frame.
-  session->hub().NoStills(still.sequence);
+  // Viewers that now need a tier that was not encoded get no resting frame.
+  session->hub().NoRestingFrame(resting.sequence);
 }
 
 }  // namespace thunderhead::drawing

@@ -1,4 +1,4 @@
-#include "app/kept_truth.h"
+#include "app/kept_reference.h"
 
 #include <filesystem>
 
@@ -10,25 +10,26 @@
 
 namespace thunderhead::app {
 
-absl::StatusOr<picture::LinearPicture> KeptTruth(const Truth& truth,
-                                                 const volume::HydrometeorFields& fields,
-                                                 const std::string& path,
-                                                 const Interruption& interruption) {
-  const std::string key = absl::StrCat(truth.scene_text, "\npeak cut: ", truth.options.peak_cut_deg,
-                                       "\nsamples a pixel: ", truth.samples_per_pixel, "\n");
+absl::StatusOr<picture::LinearPicture> KeptReference(const ReferenceRequest& request,
+                                                     const volume::HydrometeorFields& fields,
+                                                     const std::string& path,
+                                                     const Interruption& interruption) {
+  const std::string key =
+      absl::StrCat(request.scene_text, "\npeak cut: ", request.options.peak_cut_deg,
+                   "\nsamples a pixel: ", request.samples_per_pixel, "\n");
   const std::string key_path = path + ".scene";
   if (std::filesystem::exists(path) && base::ReadWholeFile(key_path).value_or("") == key) {
     return picture::ReadExr(path);
   }
   reference::RefineLimits limits;
-  limits.samples_per_pixel = truth.samples_per_pixel;
-  runs::ProgressBar bar(absl::StrCat("tracing ", truth.name));
+  limits.samples_per_pixel = request.samples_per_pixel;
+  runs::ProgressBar bar(absl::StrCat("tracing ", request.name));
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const reference::TracedScene traced,
       reference::TraceScene(
-          truth.scene, fields, truth.options, limits,
+          request.scene, fields, request.options, limits,
           [&](const reference::ImageProgress& progress) {
-            bar.Set(static_cast<double>(progress.samples_per_pixel) / truth.samples_per_pixel);
+            bar.Set(static_cast<double>(progress.samples_per_pixel) / request.samples_per_pixel);
           },
           interruption.Token()));
   if (traced.result.end == reference::RefineEnd::kStopped) {

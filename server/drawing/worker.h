@@ -1,5 +1,5 @@
 // A thread that draws alongside the render loop with its own frame source. A long drawing consists
-// of pieces, and other work is drawn between two pieces. The lane uses the device only in turns
+// of pieces, and other work is drawn between two pieces. The worker uses the device only in turns
 // that the render loop gives it, and the CPU at a low priority.
 #pragma once
 
@@ -20,10 +20,10 @@
 
 namespace thunderhead::drawing {
 
-class Lane {
+class Worker {
  public:
-  // The work of a lane. It is called on the lane's thread with the lane's source, which is created
-  // for the first work. If the source could not be created, it is called with the error.
+  // The work of a worker. It is called on the worker's thread with the worker's source, which is
+  // created for the first work. If the source could not be created, it is called with the error.
   using Work = std::function<void(const absl::StatusOr<FrameSource*>& source)>;
 
   struct Limits {
@@ -38,20 +38,21 @@ class Lane {
     absl::Status too_long = absl::OkStatus();
   };
 
-  // `on_change` is called on the lane's thread when the lane needs a turn or has finished its work.
-  Lane(FrameSourceFactory make_source, int niceness, std::function<void()> on_change,
-       const base::TimeSource& time = base::SteadyTime());
+  // `on_change` is called on the worker's thread when the worker needs a turn or has finished its
+  // work.
+  Worker(FrameSourceFactory make_source, int niceness, std::function<void()> on_change,
+         const base::TimeSource& time = base::SteadyTime());
   // Ends the work before its next piece and joins the thread.
-  ~Lane();
-  Lane(const Lane&) = delete;
-  Lane& operator=(const Lane&) = delete;
+  ~Worker();
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
 
-  // Returns true if the lane has no work.
+  // Returns true if the worker has no work.
   bool IsIdle() const;
-  // Starts the work. The lane must be idle.
+  // Starts the work. The worker must be idle.
   void Begin(Work work, Limits limits);
 
-  // If the lane is idle, frees what its source keeps but has not used during the last `unused_s`
+  // If the worker is idle, frees what its source keeps but has not used during the last `unused_s`
   // seconds. Returns when the memory is freed.
   void FreeUnused(double unused_s);
   // Discards the source after the device was lost. The current work ends with gl::DeviceLost before
@@ -61,25 +62,25 @@ class Lane {
   // Returns true if the work waits to draw a piece. If the work was cancelled, lets it run to its
   // end first.
   bool WantsTurn();
-  // Lets the lane draw a piece. Returns the time that the piece took, in milliseconds, once it is
+  // Lets the worker draw a piece. Returns the time that the piece took, in milliseconds, once it is
   // drawn.
   double GiveTurn();
 
-  // Returns how long the lane has worked since its last piece: computing on the CPU, or in a call
-  // that hangs. Returns 0 while the lane has no work or waits for its turn. Safe from any thread.
+  // Returns how long the worker has worked since its last piece: computing on the CPU, or in a call
+  // that hangs. Returns 0 while the worker has no work or waits for its turn. Safe from any thread.
   double StalledSeconds() const;
 
  private:
-  // Turns on the device for the lane's source.
+  // Turns on the device for the worker's source.
   class Turn final : public base::DeviceTurn {
    public:
-    explicit Turn(Lane& lane) : lane_(lane) {}
-    absl::Status Take() override { return lane_.Take(); }
-    void GiveBack() override { lane_.GiveBack(); }
-    absl::Status Wanted() const override { return lane_.Wanted(); }
+    explicit Turn(Worker& worker) : worker_(worker) {}
+    absl::Status Take() override { return worker_.Take(); }
+    void GiveBack() override { worker_.GiveBack(); }
+    absl::Status Wanted() const override { return worker_.Wanted(); }
 
    private:
-    Lane& lane_;
+    Worker& worker_;
   };
 
   enum class Device { kUnused, kWanted, kHeld };

@@ -3,7 +3,7 @@
 #include <thread>
 #include <utility>
 
-#include "drawing/truth_source.h"
+#include "drawing/reference_source.h"
 #include "reference/scene_tracer.h"
 #include "reference/trace_scene.h"
 
@@ -15,9 +15,9 @@ int DefaultThreads() {
   return std::max(cores - std::max(cores / 4, 1), 1);
 }
 
-class ReferenceTruthSource final : public TruthSource {
+class TracedReferenceSource final : public ReferenceSource {
  public:
-  explicit ReferenceTruthSource(int threads)
+  explicit TracedReferenceSource(int threads)
       : tracer_(reference::kPeakCut_deg, {.threads = threads}) {}
 
   absl::Status Begin(const scene::Scene& scene,
@@ -53,8 +53,8 @@ class ReferenceTruthSource final : public TruthSource {
 
 }  // namespace
 
-std::unique_ptr<TruthSource> MakeReferenceTruthSource(int threads) {
-  return std::make_unique<ReferenceTruthSource>(threads > 0 ? threads : DefaultThreads());
+std::unique_ptr<ReferenceSource> MakeReferenceSource(int threads) {
+  return std::make_unique<TracedReferenceSource>(threads > 0 ? threads : DefaultThreads());
 }
 
 }  // namespace thunderhead::drawing

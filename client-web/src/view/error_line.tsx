@@ -8,13 +8,13 @@ import type { AccuracyReport, Refinement } from "../gen/thunderhead/v1/frame_pb"
 // Relative error (0.5 is 50 %) at which the error bar is full.
 const LARGE_ERROR = 0.5;
 
-export function Truth({ state }: { state: PageState }) {
+export function ErrorLine({ state }: { state: PageState }) {
   const frame = state.frame.value;
   if (frame === undefined) return null;
   const { accuracy, refinement, refined } = frame;
   const preset = state.preset.value;
   return (
-    <p class="truth" data-testid="truth">
+    <p class="error-line" data-testid="error-line">
       {refinement !== undefined && <RefinementBrief refinement={refinement} />}
       {refinement === undefined && accuracy !== undefined && (
         <>

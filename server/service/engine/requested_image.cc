@@ -1,4 +1,4 @@
-#include "service/engine/picture_job.h"
+#include "service/engine/requested_image.h"
 
 #include <limits>
 #include <utility>
@@ -75,7 +75,7 @@ absl::Status OfScene(const absl::Status& status) {
 
 }  // namespace
 
-void PictureJob::Begin() {
+void RequestedImage::Begin() {
   if (const absl::Status late = counted_.Check(); !late.ok()) return End(late);
   if (const absl::Status wrong = CompleteScene(); !wrong.ok()) return End(wrong);
   engine_.loop.RenderImage(
@@ -88,12 +88,12 @@ void PictureJob::Begin() {
        RenderedTooLong(engine_.limits.max_render_time), owner_});
 }
 
-void PictureJob::Cancel() {
+void RequestedImage::Cancel() {
   *cancelled_ = true;
   engine_.wake.Notify();
 }
 
-absl::Status PictureJob::CompleteScene() {
+absl::Status RequestedImage::CompleteScene() {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request_));
   v1::Scene& scene = *response_.mutable_scene();
   scene = request_.scene();
@@ -106,7 +106,7 @@ absl::Status PictureJob::CompleteScene() {
                             "TECHNIQUE_FOR_SESSIONS_ONLY");
 }
 
-absl::StatusOr<drawing::ImageInput> PictureJob::Read() {
+absl::StatusOr<drawing::ImageInput> RequestedImage::Read() {
   v1::Scene& scene = *response_.mutable_scene();
   THUNDERHEAD_ASSIGN_OR_RETURN(
       auto fields, ReadFields(engine_.store, scene.storm_id(), static_cast<int>(scene.time_index()),
@@ -118,7 +118,7 @@ absl::StatusOr<drawing::ImageInput> PictureJob::Read() {
   return drawing::ImageInput{std::move(fields), value.camera};
 }
 
-absl::Status PictureJob::EncodeTimed(drawing::DisplayFrame& picture) {
+absl::Status RequestedImage::EncodeTimed(drawing::DisplayFrame& picture) {
   const base::Stopwatch stopwatch;
   response_.set_width_px(static_cast<std::uint32_t>(picture.width_px));
   response_.set_height_px(static_cast<std::uint32_t>(picture.height_px));
@@ -137,7 +137,7 @@ absl::Status PictureJob::EncodeTimed(drawing::DisplayFrame& picture) {
   return absl::OkStatus();
 }
 
-void PictureJob::Drawn(const absl::StatusOr<drawing::DisplayFrame>& picture) {
+void RequestedImage::Drawn(const absl::StatusOr<drawing::DisplayFrame>& picture) {
   if (!picture.ok()) return End(OfScene(picture.status()));
   memory_ = picture->memory;
   Describe(*picture, encode_ms_, response_);
@@ -145,6 +145,6 @@ void PictureJob::Drawn(const absl::StatusOr<drawing::DisplayFrame>& picture) {
   End(absl::OkStatus());
 }
 
-void PictureJob::End(const absl::Status& status) { listener_.Ended(status); }
+void RequestedImage::End(const absl::Status& status) { listener_.Ended(status); }
 
 }  // namespace thunderhead::service

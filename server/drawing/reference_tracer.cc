@@ -1,4 +1,4 @@
-#include "drawing/truth_tracer.h"
+#include "drawing/reference_tracer.h"
 
 #include <algorithm>
 #include <utility>
@@ -8,7 +8,7 @@
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/thread_priority.h"
-#include "drawing/truth_schedule.h"
+#include "drawing/reference_schedule.h"
 #include "reference/scene_problem.h"
 
 namespace thunderhead::drawing {
@@ -30,7 +30,7 @@ std::size_t BytesFor(const volume::HydrometeorFields& fields, const glm::ivec2& 
 }  // namespace
 
 // A picture that is being traced. Only the tracing thread uses it, except for `stop`.
-struct TruthTracer::Job {
+struct ReferenceTracer::Job {
   Job(std::string of_owner, std::shared_ptr<const scene::Scene> of_scene,
       std::shared_ptr<const volume::HydrometeorFields> of_fields, const Owned& of,
       const base::TimeSource& by_time)
@@ -54,17 +54,18 @@ struct TruthTracer::Job {
   const std::string owner;
   const std::shared_ptr<const scene::Scene> scene;
   const std::shared_ptr<const volume::HydrometeorFields> fields;
-  const std::shared_ptr<TruthSource> source;
+  const std::shared_ptr<ReferenceSource> source;
   const std::shared_ptr<base::MemoryReservation> reserved;
   const base::TimeSource& time;
   std::stop_source stop;
-  TruthSchedule schedule;
+  ReferenceSchedule schedule;
   bool begun = false;
   double trace_ms = 0.0;
   base::TimeSource::Clock::time_point shown_at;
 };
 
-absl::StatusOr<TruthTracer::Job::Turn> TruthTracer::Job::Refine(base::MemoryBudget& memory) {
+absl::StatusOr<ReferenceTracer::Job::Turn> ReferenceTracer::Job::Refine(
+    base::MemoryBudget& memory) {
   const base::Stopwatch stopwatch;
   if (!begun) {
     THUNDERHEAD_RETURN_IF_ERROR(memory.Resize(*reserved, BytesFor(*fields, schedule.SizePx()),
@@ -79,17 +80,17 @@ absl::StatusOr<TruthTracer::Job::Turn> TruthTracer::Job::Refine(base::MemoryBudg
   Found found;
   const bool full_size = schedule.IsFull();
   if (schedule.ShowNow(refinement, base::MsSince(time, shown_at) * 1e-3)) {
-    found = std::make_shared<const TruthPicture>(
-        TruthPicture{source->Snapshot(), refinement, trace_ms, full_size});
+    found = std::make_shared<const ReferencePicture>(
+        ReferencePicture{source->Snapshot(), refinement, trace_ms, full_size});
     shown_at = time.Now();
   }
   if (schedule.GrowAt(refinement)) begun = false;
   return Turn{std::move(found), full_size && schedule.Finished(refinement)};
 }
 
-TruthTracer::TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
-                         std::shared_ptr<base::MemoryBudget> memory,
-                         std::function<void()> on_picture, const base::TimeSource& time)
+ReferenceTracer::ReferenceTracer(ReferenceSourceFactory make_source, std::size_t max_owners,
+                                 std::shared_ptr<base::MemoryBudget> memory,
+                                 std::function<void()> on_picture, const base::TimeSource& time)
     : make_source_(std::move(make_source)),
       max_owners_(max_owners),
       memory_(std::move(memory)),
@@ -97,7 +98,7 @@ TruthTracer::TruthTracer(TruthSourceFactory make_source, std::size_t max_owners,
       time_(time),
       thread_([this] { Run(); }) {}
 
-TruthTracer::~TruthTracer() {
+ReferenceTracer::~ReferenceTracer() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -109,8 +110,9 @@ TruthTracer::~TruthTracer() {
   thread_.join();
 }
 
-absl::Status TruthTracer::Trace(const std::string& owner, std::shared_ptr<const scene::Scene> scene,
-                                std::shared_ptr<const volume::HydrometeorFields> fields) {
+absl::Status ReferenceTracer::Trace(const std::string& owner,
+                                    std::shared_ptr<const scene::Scene> scene,
+                                    std::shared_ptr<const volume::HydrometeorFields> fields) {
   Stop(owner);
   {
     const std::lock_guard lock(mutex_);
@@ -131,7 +133,7 @@ absl::Status TruthTracer::Trace(const std::string& owner, std::shared_ptr<const 
   return absl::OkStatus();
 }
 
-std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>> TruthTracer::Take(
+std::optional<absl::StatusOr<std::shared_ptr<const ReferencePicture>>> ReferenceTracer::Take(
     const std::string& owner) {
   const std::lock_guard lock(mutex_);
   const auto found = owned_.find(owner);
@@ -139,7 +141,7 @@ std::optional<absl::StatusOr<std::shared_ptr<const TruthPicture>>> TruthTracer::
   return std::exchange(found->second.found, std::nullopt);
 }
 
-void TruthTracer::Stop(const std::string& owner) {
+void ReferenceTracer::Stop(const std::string& owner) {
   const std::lock_guard lock(mutex_);
   const auto found = owned_.find(owner);
   if (found == owned_.end()) return;
@@ -148,14 +150,14 @@ void TruthTracer::Stop(const std::string& owner) {
   if (job != nullptr) job->stop.request_stop();
 }
 
-void TruthTracer::Forget(const std::string& owner) {
+void ReferenceTracer::Forget(const std::string& owner) {
   Stop(owner);
   const std::lock_guard lock(mutex_);
   owned_.erase(owner);
 }
 
 // Returns the job of the next owner after the one that was served last (round robin).
-std::shared_ptr<TruthTracer::Job> TruthTracer::NextJob() {
+std::shared_ptr<ReferenceTracer::Job> ReferenceTracer::NextJob() {
   const auto after_last = owned_.upper_bound(last_served_);
   const auto has_job = [](const auto& entry) { return entry.second.job != nullptr; };
   auto next = std::find_if(after_last, owned_.end(), has_job);
@@ -164,7 +166,7 @@ std::shared_ptr<TruthTracer::Job> TruthTracer::NextJob() {
 }
 
 // Keeps the result for its owner, unless the owner's job has been replaced.
-void TruthTracer::Keep(Job& job, Found found, bool ended) {
+void ReferenceTracer::Keep(Job& job, Found found, bool ended) {
   {
     const std::lock_guard lock(mutex_);
     const auto entry = owned_.find(job.owner);
@@ -176,7 +178,7 @@ void TruthTracer::Keep(Job& job, Found found, bool ended) {
   on_picture_();
 }
 
-void TruthTracer::Run() {
+void ReferenceTracer::Run() {
   // Threads that this thread starts inherit its low priority.
   base::LowerPriority(base::kLowestPriority);
   std::unique_lock lock(mutex_);

@@ -15,7 +15,7 @@
 namespace thunderhead::service {
 
 // The recipient of a picture and its progress.
-class PictureListener {
+class ImageListener {
  public:
   // Reports the progress of path tracing. It must not block.
   virtual void Progressed(const drawing::ImageProgress& /*progress*/) {}
@@ -24,20 +24,20 @@ class PictureListener {
   virtual void Ended(const absl::Status& status) = 0;
 
  protected:
-  ~PictureListener() = default;
+  ~ImageListener() = default;
 };
 
 // Whether a call waits for the picture. Pictures with a waiting call are drawn first.
 enum class Awaited { kByACall, kByNobody };
 
-// Reads, draws and encodes a picture in a lane of the render loop. All arguments must live until
-// PictureListener::Ended is called. `owner` is the identity to whose share of drawing time the
+// Reads, draws and encodes a picture by a worker of the render loop. All arguments must live until
+// ImageListener::Ended is called. `owner` is the identity to whose share of drawing time the
 // picture counts.
-class PictureJob {
+class RequestedImage {
  public:
-  PictureJob(Engine& engine, const v1::RenderImageRequest& request,
-             v1::RenderImageResponse& response, PictureListener& listener, Awaited awaited,
-             std::string owner = "")
+  RequestedImage(Engine& engine, const v1::RenderImageRequest& request,
+                 v1::RenderImageResponse& response, ImageListener& listener, Awaited awaited,
+                 std::string owner = "")
       : engine_(engine),
         request_(request),
         response_(response),
@@ -60,7 +60,7 @@ class PictureJob {
   const rpc_port::Drain::Picture counted_{engine_.drain};
   const v1::RenderImageRequest& request_;
   v1::RenderImageResponse& response_;
-  PictureListener& listener_;
+  ImageListener& listener_;
   const Awaited awaited_;
   const std::string owner_;
   double encode_ms_ = 0.0;

@@ -23,7 +23,7 @@ namespace {
 using std::chrono::steady_clock;
 using ::testing::HasSubstr;
 
-v1::RenderImageRequest Still(std::uint32_t width_px, std::uint32_t height_px, std::uint32_t slices,
+v1::RenderImageRequest Image(std::uint32_t width_px, std::uint32_t height_px, std::uint32_t slices,
                              std::uint32_t time_index = 0) {
   v1::RenderImageRequest request;
   v1::Scene& scene = *request.mutable_scene();
@@ -36,10 +36,10 @@ v1::RenderImageRequest Still(std::uint32_t width_px, std::uint32_t height_px, st
 }
 
 // Returns a picture that takes 3 s, in 300 pieces, if a million samples take 200 ms.
-v1::RenderImageRequest LongStill() { return Still(640, 360, 64); }
+v1::RenderImageRequest LongImage() { return Image(640, 360, 64); }
 
 // Returns a picture that takes half an hour at that speed. It does not end while a test runs.
-v1::RenderImageRequest EndlessStill() { return Still(8192, 1024, 1024); }
+v1::RenderImageRequest EndlessImage() { return Image(8192, 1024, 1024); }
 
 v1::Scene SeenFrom(double azimuth_deg) {
   v1::Scene scene = SmallScene();
@@ -84,7 +84,7 @@ class Asked {
   grpc::Status status_;
 };
 
-TEST(StillsTest, ALongOneHoldsUpNoSession) {
+TEST(ImagesTest, ALongOneHoldsUpNoSession) {
   ManualTime time;
   service::ServerOptions options = Patient(time);
   FakeService service(options);
@@ -95,7 +95,7 @@ TEST(StillsTest, ALongOneHoldsUpNoSession) {
   ASSERT_TRUE(watcher.AwaitFrame(1, false));
   service.machine->next_piece.Close();
   service.machine->next_piece.LetPass(4);
-  Asked still(service, LongStill());
+  Asked image(service, LongImage());
   ASSERT_TRUE(service.machine->next_piece.AwaitWaiting(1));
   for (int i = 0; i < 20; ++i) {
     const double azimuth_deg = 10.0 + i;
@@ -108,19 +108,19 @@ TEST(StillsTest, ALongOneHoldsUpNoSession) {
     EXPECT_LE(pieces, 2) << "of 300, before a moving frame";
     ASSERT_TRUE(watcher.AwaitFrame(revision, false));
   }
-  EXPECT_FALSE(still.HasEnded());
+  EXPECT_FALSE(image.HasEnded());
   service.machine->next_piece.Open();
-  const grpc::Status end = still.End();
+  const grpc::Status end = image.End();
   EXPECT_TRUE(end.ok()) << end.error_message();
 }
 
-TEST(StillsBenchmark, MovingFramesBesideALongStill) {
+TEST(ImagesBenchmark, MovingFramesBesideALongImage) {
   FakeService service;
   service.machine->ms_per_mega_sample = 200.0;  // 7 ms for each frame, pieces of 10 ms
   const std::string id = service.Open(SmallScene());
   Watcher watcher(service.stub(), id);
   ASSERT_TRUE(watcher.AwaitFrame(1, true));
-  Asked still(service, EndlessStill());
+  Asked image(service, EndlessImage());
   ASSERT_TRUE(WaitFor([&] { return service.machine->pieces > 3; }));
   std::vector<double> latencies_ms;
   for (int i = 0; i < 50; ++i) {
@@ -130,32 +130,32 @@ TEST(StillsBenchmark, MovingFramesBesideALongStill) {
         std::chrono::duration<double, std::milli>(steady_clock::now() - updated).count());
   }
   std::ranges::sort(latencies_ms);
-  Figure("moving frame beside a long still, median", latencies_ms[latencies_ms.size() / 2], "ms");
-  Figure("moving frame beside a long still, longest", latencies_ms.back(), "ms");
-  still.Cancel();
+  Figure("moving frame beside a long image, median", latencies_ms[latencies_ms.size() / 2], "ms");
+  Figure("moving frame beside a long image, longest", latencies_ms.back(), "ms");
+  image.Cancel();
 }
 
-TEST(StillsTest, OneThatNobodyWantsIsDrawnNoFurther) {
+TEST(ImagesTest, OneThatNobodyWantsIsDrawnNoFurther) {
   FakeService service;
   service.machine->ms_per_mega_sample = 200.0;
-  Asked still(service, EndlessStill());
+  Asked image(service, EndlessImage());
   ASSERT_TRUE(WaitFor([&] { return service.machine->pieces > 3; }));
-  still.Cancel();
-  EXPECT_EQ(still.End().error_code(), grpc::StatusCode::CANCELLED);
+  image.Cancel();
+  EXPECT_EQ(image.End().error_code(), grpc::StatusCode::CANCELLED);
   ASSERT_TRUE(WaitFor([&] { return service.server().Load().pictures == 0; }));
   const int pieces = service.machine->pieces;
-  Asked next(service, Still(64, 36, 16));
+  Asked next(service, Image(64, 36, 16));
   EXPECT_TRUE(next.End().ok());
   EXPECT_EQ(service.machine->pieces, pieces + 1) << "the next has one";
 }
 
-TEST(StillsTest, OneThatWouldTakeTooLongIsRefusedAtOnceByName) {
+TEST(ImagesTest, OneThatWouldTakeTooLongIsRefusedAtOnceByName) {
   service::ServerOptions options = Patient();
   options.render_loop.image_limits.max_predicted_s = 10.0;
   FakeService service(options);
   service.machine->drawing.Close();
-  Asked drawn(service, Still(64, 36, 16));
-  Asked huge(service, Still(8192, 4096, 4096));
+  Asked drawn(service, Image(64, 36, 16));
+  Asked huge(service, Image(8192, 4096, 4096));
   // A small picture is delayed only by the current piece of the picture being drawn.
   ASSERT_TRUE(service.machine->drawing.AwaitWaiting(1));
   service.machine->drawing.Open();
@@ -169,7 +169,7 @@ TEST(StillsTest, OneThatWouldTakeTooLongIsRefusedAtOnceByName) {
   EXPECT_EQ(service.store->Reads(), 1) << "it was read";
 }
 
-TEST(StillsTest, OneThatTakesLongerThanPredictedEnds) {
+TEST(ImagesTest, OneThatTakesLongerThanPredictedEnds) {
   ManualTime time;
   service::ServerOptions options = Patient(time);
   options.render_loop.image_limits.max_predicted_s = 0.1;
@@ -177,51 +177,51 @@ TEST(StillsTest, OneThatTakesLongerThanPredictedEnds) {
   service.machine->time = &time;
   // Milliseconds per million samples; before its first frame the server assumes 2 ms.
   service.machine->ms_per_mega_sample = 200.0;
-  Asked still(service, LongStill());
-  const grpc::Status end = still.End();
+  Asked image(service, LongImage());
+  const grpc::Status end = image.End();
   EXPECT_EQ(end.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << end.error_message();
   EXPECT_THAT(end.error_message(), HasSubstr("drawing took more than"));
   EXPECT_LE(service.machine->pieces, 21) << "of 300: twice the limit";
 }
 
-TEST(StillsTest, HundredsAtOnceWaitAndAllAreDrawn) {
+TEST(ImagesTest, HundredsAtOnceWaitAndAllAreDrawn) {
   FakeService service;
-  std::deque<Asked> stills;
-  for (std::uint32_t i = 0; i < 400; ++i) stills.emplace_back(service, Still(64, 36, 16, i % 4));
-  for (Asked& still : stills) {
-    const grpc::Status end = still.End();
+  std::deque<Asked> images;
+  for (std::uint32_t i = 0; i < 400; ++i) images.emplace_back(service, Image(64, 36, 16, i % 4));
+  for (Asked& image : images) {
+    const grpc::Status end = image.End();
     ASSERT_TRUE(end.ok()) << end.error_message();
   }
 }
 
-TEST(StillsTest, ThoseThatWaitHoldNoFields) {
+TEST(ImagesTest, ThoseThatWaitHoldNoFields) {
   FakeService service;
   service.machine->ms_per_mega_sample = 0.01;
-  // The server expects each picture to take 9 s, so all of them wait for the same lane (drawing
+  // The server expects each picture to take 9 s, so all of them wait for the same worker (drawing
   // thread). In fact they take 43 ms.
-  const auto long_still = [](std::uint32_t time) { return Still(1024, 1024, 4096, time); };
+  const auto long_image = [](std::uint32_t time) { return Image(1024, 1024, 4096, time); };
   service.machine->next_piece.Close();
-  std::deque<Asked> stills;
-  stills.emplace_back(service, long_still(0));
+  std::deque<Asked> images;
+  images.emplace_back(service, long_image(0));
   ASSERT_TRUE(service.machine->next_piece.AwaitWaiting(1));
-  for (std::uint32_t time = 1; time < 4; ++time) stills.emplace_back(service, long_still(time));
+  for (std::uint32_t time = 1; time < 4; ++time) images.emplace_back(service, long_image(time));
   ASSERT_TRUE(WaitFor([&] { return service.server().Load().waiting_pictures == 3; }));
   // The render loop handles the new requests between two pieces.
   service.machine->next_piece.LetPass(3);
   ASSERT_TRUE(service.machine->next_piece.AwaitWaiting(1));
   EXPECT_EQ(service.store->Reads(), 1);
   service.machine->next_piece.Open();
-  for (Asked& still : stills) EXPECT_TRUE(still.End().ok());
+  for (Asked& image : images) EXPECT_TRUE(image.End().ok());
 }
 
-TEST(StillsTest, QuickOnesPassThoseThatTakeLong) {
+TEST(ImagesTest, QuickOnesPassThoseThatTakeLong) {
   FakeService service;
   service.machine->ms_per_mega_sample = 200.0;
-  Asked first(service, EndlessStill());
-  Asked second(service, EndlessStill());
+  Asked first(service, EndlessImage());
+  Asked second(service, EndlessImage());
   ASSERT_TRUE(WaitFor([&] { return service.machine->pieces > 3; }));
   for (int i = 0; i < 5; ++i) {
-    Asked quick(service, Still(64, 36, 16));
+    Asked quick(service, Image(64, 36, 16));
     EXPECT_TRUE(quick.End().ok());
   }
   EXPECT_FALSE(first.HasEnded());

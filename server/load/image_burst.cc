@@ -1,4 +1,4 @@
-#include "load/stills.h"
+#include "load/image_burst.h"
 
 #include <string>
 
@@ -7,16 +7,16 @@
 
 namespace thunderhead::load {
 
-void Stills::Begin() {
+void ImageBurst::Begin() {
   for (int i = 0; i < options_.count; ++i) threads_.emplace_back([this, i] { Ask(i); });
 }
 
-void Stills::Join() {
+void ImageBurst::Join() {
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
 }
 
-void Stills::Ask(int index) {
+void ImageBurst::Ask(int index) {
   v1::RenderImageRequest request;
   v1::Scene& scene = *request.mutable_scene();
   scene.mutable_output()->set_width_px(static_cast<std::uint32_t>(options_.width_px));

@@ -1,4 +1,4 @@
-#include "drawing/truth_schedule.h"
+#include "drawing/reference_schedule.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ constexpr int kMaxSamples = 1 << 16;
 
 }  // namespace
 
-TruthSchedule::TruthSchedule(const glm::ivec2& full_size_px) : full_size_px_(full_size_px) {
+ReferenceSchedule::ReferenceSchedule(const glm::ivec2& full_size_px) : full_size_px_(full_size_px) {
   const auto pixels = [this] {
     const glm::ivec2 size = SizePx();
     return std::int64_t{size.x} * size.y;
@@ -32,17 +32,17 @@ TruthSchedule::TruthSchedule(const glm::ivec2& full_size_px) : full_size_px_(ful
   while (pixels() > kFirstPixels) ++halvings_;
 }
 
-glm::ivec2 TruthSchedule::SizePx() const {
+glm::ivec2 ReferenceSchedule::SizePx() const {
   const double share = std::exp2(-halvings_);
   return glm::max(glm::ivec2(glm::round(share * glm::dvec2(full_size_px_))), glm::ivec2(1));
 }
 
-int TruthSchedule::UntilSamples() const {
+int ReferenceSchedule::UntilSamples() const {
   const int next_shown = std::max(2 * shown_samples_, any_shown_ ? kMinShownSamples : 1);
   return std::min(next_shown, IsFull() ? kMaxSamples : kSamplesOfSize);
 }
 
-bool TruthSchedule::ShowNow(const delivery::Refinement& refinement, double shown_ago_s) {
+bool ReferenceSchedule::ShowNow(const delivery::Refinement& refinement, double shown_ago_s) {
   const int samples = refinement.samples_per_pixel;
   const bool enough = samples >= (any_shown_ ? kMinShownSamples : 1);
   const bool last_of_size = !IsFull() && samples >= kSamplesOfSize;
@@ -53,14 +53,14 @@ bool TruthSchedule::ShowNow(const delivery::Refinement& refinement, double shown
   return true;
 }
 
-bool TruthSchedule::GrowAt(const delivery::Refinement& refinement) {
+bool ReferenceSchedule::GrowAt(const delivery::Refinement& refinement) {
   if (IsFull() || refinement.samples_per_pixel < kSamplesOfSize) return false;
   --halvings_;
   shown_samples_ = 0;
   return true;
 }
 
-bool TruthSchedule::Finished(const delivery::Refinement& refinement) const {
+bool ReferenceSchedule::Finished(const delivery::Refinement& refinement) const {
   if (!IsFull()) return false;
   const bool exact =
       refinement.samples_per_pixel >= 16 && refinement.relative_error.value_or(1.0) <= kFinished;

@@ -1,4 +1,4 @@
-#include "drawing/session_lane.h"
+#include "drawing/session_worker.h"
 
 #include <utility>
 
@@ -8,9 +8,9 @@
 namespace thunderhead::drawing {
 namespace {
 
-absl::StatusOr<SessionLane::Picture> Drawn(FrameSource& source,
-                                           const SessionLane::Request& request) {
-  SessionLane::Picture picture;
+absl::StatusOr<SessionWorker::Picture> Drawn(FrameSource& source,
+                                             const SessionWorker::Request& request) {
+  SessionWorker::Picture picture;
   if (request.checked) {
     THUNDERHEAD_ASSIGN_OR_RETURN(CheckedFrame checked,
                                  source.DrawChecked(*request.scene, request.fields));
@@ -28,13 +28,13 @@ absl::StatusOr<SessionLane::Picture> Drawn(FrameSource& source,
 
 }  // namespace
 
-void SessionLane::Begin(Request request) {
+void SessionWorker::Begin(Request request) {
   THUNDERHEAD_CHECK(IsFree(), "a frame of a session is being drawn");
   request_ = std::move(request);
   last_drawn_.reset();
   outcome_ = std::make_shared<Outcome>();
   cancelled_ = std::make_shared<std::atomic<bool>>(false);
-  lane_.Begin(
+  worker_.Begin(
       [outcome = outcome_, request = request_](const absl::StatusOr<FrameSource*>& source) {
         auto picture = base::Guarded([&]() -> absl::StatusOr<Picture> {
           if (!source.ok()) return source.status();
@@ -46,12 +46,12 @@ void SessionLane::Begin(Request request) {
       {.cancelled = cancelled_});
 }
 
-void SessionLane::Cancel() {
+void SessionWorker::Cancel() {
   if (!IsFree()) *cancelled_ = true;
 }
 
-std::optional<absl::StatusOr<SessionLane::Picture>> SessionLane::Take() {
-  if (IsFree() || !lane_.IsIdle()) return std::nullopt;
+std::optional<absl::StatusOr<SessionWorker::Picture>> SessionWorker::Take() {
+  if (IsFree() || !worker_.IsIdle()) return std::nullopt;
   const std::shared_ptr<Outcome> outcome = std::exchange(outcome_, nullptr);
   const std::lock_guard lock(outcome->mutex);
   if (outcome->picture->ok()) {

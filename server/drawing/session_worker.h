@@ -1,4 +1,4 @@
-// Draws sessions' long frames one after another in a lane, so that they do not delay the render
+// Lets a worker draw sessions' long frames one after another, so that they do not delay the render
 // loop. A frame is drawn in pieces, and other work gets its turn on the device between two pieces.
 // The drawing can be cancelled when the scene has changed. Used by the render loop's thread only.
 #pragma once
@@ -15,18 +15,18 @@
 #include "absl/status/statusor.h"
 #include "drawing/frame_planner.h"
 #include "drawing/frame_source.h"
-#include "drawing/lane.h"
+#include "drawing/worker.h"
 #include "frame/fine_image.h"
 
 namespace thunderhead::drawing {
 
-class SessionLane {
+class SessionWorker {
  public:
   // `has_room` returns true if that many more bytes fit on the device without making other sources
-  // free memory. The lane must outlive this object, and the lane's work must have ended before this
-  // object is destroyed.
-  SessionLane(Lane& lane, std::function<bool(std::uint64_t bytes)> has_room)
-      : lane_(lane), has_room_(std::move(has_room)) {}
+  // free memory. The worker must outlive this object, and the worker's work must have ended before
+  // this object is destroyed.
+  SessionWorker(Worker& worker, std::function<bool(std::uint64_t bytes)> has_room)
+      : worker_(worker), has_room_(std::move(has_room)) {}
 
   struct Request {
     std::string session_id;
@@ -42,7 +42,7 @@ class SessionLane {
     std::optional<frame::FineImage> fine;        // absent if not requested or not available
   };
 
-  // Returns true if the lane's source already holds the scene's extinction, or if the device has
+  // Returns true if the worker's source already holds the scene's extinction, or if the device has
   // room for its size of `bytes`.
   bool HasRoomFor(const scene::Scene& scene, std::uint64_t bytes) const {
     return FirstDirty(last_drawn_, scene) > scene::Stage::kExtinction || has_room_(bytes);
@@ -55,21 +55,21 @@ class SessionLane {
   }
   // Returns the session of the last request.
   const std::string& For() const { return request_.session_id; }
-  // Starts drawing. The lane must be free.
+  // Starts drawing. The worker must be free.
   void Begin(Request request);
   // Cancels the drawing before its next piece. Its outcome is then CANCELLED.
   void Cancel();
   // Returns the outcome of the request once the drawing has ended; none before.
   std::optional<absl::StatusOr<Picture>> Take();
 
-  bool WantsTurn() { return lane_.WantsTurn(); }
-  // Lets the lane draw one piece. Returns when it is drawn.
-  void GiveTurn() { lane_.GiveTurn(); }
+  bool WantsTurn() { return worker_.WantsTurn(); }
+  // Lets the worker draw one piece. Returns when it is drawn.
+  void GiveTurn() { worker_.GiveTurn(); }
 
-  // Returns the frame that the lane's source drew last, whose stages it can reuse; none after a
+  // Returns the frame that the worker's source drew last, whose stages it can reuse; none after a
   // failure.
   const std::optional<LastDrawn>& Last() const { return last_drawn_; }
-  // Forgets the last frame. Call it when the lane gets a new source.
+  // Forgets the last frame. Call it when the worker gets a new source.
   void Forget() { last_drawn_.reset(); }
 
  private:
@@ -78,7 +78,7 @@ class SessionLane {
     std::optional<absl::StatusOr<Picture>> picture;
   };
 
-  Lane& lane_;
+  Worker& worker_;
   std::function<bool(std::uint64_t bytes)> has_room_;
   Request request_;
   std::shared_ptr<Outcome> outcome_;

@@ -1,4 +1,4 @@
-#include "measure/against_truth.h"
+#include "measure/reference_comparison.h"
 
 #include <algorithm>
 #include <utility>
@@ -9,33 +9,35 @@
 
 namespace thunderhead::measure {
 
-absl::StatusOr<AgainstTruth> AgainstTruth::Of(const scene::Scene& scene,
-                                              const volume::HydrometeorFields& fields,
-                                              picture::LinearPicture truth, double peak_cut_deg) {
+absl::StatusOr<ReferenceComparison> ReferenceComparison::Of(const scene::Scene& scene,
+                                                            const volume::HydrometeorFields& fields,
+                                                            picture::LinearPicture reference,
+                                                            double peak_cut_deg) {
   std::vector<bool> left_out =
       reference::NearSun(reference::CameraOf(scene, fields),
                          scene::Direction(scene.sun.azimuth_deg, scene.sun.elevation_deg),
-                         truth.size_px, peak_cut_deg);
+                         reference.size_px, peak_cut_deg);
   const auto compared = static_cast<double>(std::ranges::count(left_out, false));
   if (compared < reference::kLeastAwayFromSun * static_cast<double>(left_out.size())) {
     return absl::InvalidArgumentError(
         "the camera shows little except the sun, and the reference shows no aureole around it; "
         "turn the camera away, widen its field of view or lower --peak-cut");
   }
-  return AgainstTruth(std::move(truth), std::move(left_out));
+  return ReferenceComparison(std::move(reference), std::move(left_out));
 }
 
-AgainstTruth::AgainstTruth(picture::LinearPicture truth, std::vector<bool> left_out)
-    : truth_(std::move(truth)),
+ReferenceComparison::ReferenceComparison(picture::LinearPicture reference,
+                                         std::vector<bool> left_out)
+    : reference_(std::move(reference)),
       left_out_(std::move(left_out)),
-      compared_(Without(left_out_, truth_)),
+      compared_(Without(left_out_, reference_)),
       noise_(RelativeNoise(compared_)) {}
 
-double AgainstTruth::RelativeRmseWithoutNoise(const picture::LinearPicture& image) const {
+double ReferenceComparison::RelativeRmseWithoutNoise(const picture::LinearPicture& image) const {
   return RelativeRmseWithout(noise_, Without(left_out_, image), compared_);
 }
 
-double AgainstTruth::RelativeBias(const picture::LinearPicture& image) const {
+double ReferenceComparison::RelativeBias(const picture::LinearPicture& image) const {
   return measure::RelativeBias(Without(left_out_, image), compared_);
 }
 

@@ -13,7 +13,7 @@
 
 namespace thunderhead::load {
 
-struct StillOptions {
+struct ImageBurstOptions {
   int count = 0;
   int width_px = 640;
   int height_px = 360;
@@ -21,14 +21,15 @@ struct StillOptions {
   double patience_s = 3600.0;
 };
 
-class Stills {
+class ImageBurst {
  public:
   // `stop` ends waiting for the pictures. `transport` and `errors` must outlive this object.
-  Stills(const StillOptions& options, Transport& transport, std::stop_token stop, Errors& errors)
+  ImageBurst(const ImageBurstOptions& options, Transport& transport, std::stop_token stop,
+             Errors& errors)
       : options_(options), transport_(transport), stop_(std::move(stop)), errors_(errors) {}
-  ~Stills() { Join(); }
-  Stills(const Stills&) = delete;
-  Stills& operator=(const Stills&) = delete;
+  ~ImageBurst() { Join(); }
+  ImageBurst(const ImageBurst&) = delete;
+  ImageBurst& operator=(const ImageBurst&) = delete;
 
   // Requests all pictures. Storm and light are the server's defaults. The camera of each picture is
   // turned a little further than that of the one before.
@@ -36,12 +37,12 @@ class Stills {
   // Waits until each picture has arrived, was refused or has timed out.
   void Join();
   // Returns the times from the request to each picture. Must be called after Join.
-  StillRecord Record() const { return {options_.count, came_ms_}; }
+  ImageBurstRecord Record() const { return {options_.count, came_ms_}; }
 
  private:
   void Ask(int index);
 
-  const StillOptions options_;
+  const ImageBurstOptions options_;
   Transport& transport_;
   const std::stop_token stop_;
   Errors& errors_;

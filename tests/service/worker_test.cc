@@ -1,6 +1,6 @@
-// Tests of a lane, a thread that draws single pictures by OpenGL in the turns that it is given. The
-// lane must draw in pieces, and must end when its picture is no longer wanted.
-#include "drawing/lane.h"
+// Tests of a worker, a thread that draws single pictures by OpenGL in the turns that it is given.
+// The worker must draw in pieces, and must end when its picture is no longer wanted.
+#include "drawing/worker.h"
 
 #include <algorithm>
 #include <atomic>
@@ -22,10 +22,10 @@
 namespace thunderhead::drawing {
 namespace {
 
-class LaneTest : public ::testing::Test {
+class WorkerTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    lane_ = std::make_unique<Lane>(GlFrameSources(test_support::Device()), 0, [] {});
+    worker_ = std::make_unique<Worker>(GlFrameSources(test_support::Device()), 0, [] {});
     auto store = storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"},
                                                {.read_ahead = 0});
     ASSERT_TRUE(store.ok()) << store.status();
@@ -43,7 +43,7 @@ class LaneTest : public ::testing::Test {
   }
 
   void Begin(const scene::Scene& scene, const FrameQuality& quality = {}) {
-    lane_->Begin(
+    worker_->Begin(
         [this, scene, quality](const absl::StatusOr<FrameSource*>& source) {
           auto picture = source.ok() ? (*source)->Draw(scene, fields_, quality) : source.status();
           drawn_ = picture.status();
@@ -60,9 +60,9 @@ class LaneTest : public ::testing::Test {
   // Gives turns until the work has ended; returns the duration of each piece in milliseconds.
   std::vector<double> Finish() {
     std::vector<double> pieces_ms;
-    while (!lane_->IsIdle()) {
-      if (lane_->WantsTurn()) {
-        pieces_ms.push_back(lane_->GiveTurn());
+    while (!worker_->IsIdle()) {
+      if (worker_->WantsTurn()) {
+        pieces_ms.push_back(worker_->GiveTurn());
       } else {
         std::this_thread::yield();
       }
@@ -73,11 +73,11 @@ class LaneTest : public ::testing::Test {
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
   absl::Status drawn_ = absl::UnknownError("not drawn");
   std::vector<std::uint8_t> rgb_;
-  std::unique_ptr<Lane> lane_;
+  std::unique_ptr<Worker> worker_;
   std::shared_ptr<const volume::HydrometeorFields> fields_;
 };
 
-TEST_F(LaneTest, AFrameOfASmallerOutputIsTheSmallerPicture) {
+TEST_F(WorkerTest, AFrameOfASmallerOutputIsTheSmallerPicture) {
   for (const bool sparse : {false, true}) {
     const auto half = DrawWhole(SceneOf(320, 180, 64), {.sparse = sparse, .output_scale = 0.5});
     const auto small = DrawWhole(SceneOf(160, 90, 64), {.sparse = sparse});
@@ -89,7 +89,7 @@ TEST_F(LaneTest, AFrameOfASmallerOutputIsTheSmallerPicture) {
   }
 }
 
-class LaneBenchmark : public LaneTest {
+class WorkerBenchmark : public WorkerTest {
  protected:
   void TellPieces(const scene::Scene& scene, const FrameQuality& quality) {
     Begin(SceneOf(320, 180, 128), quality);
@@ -109,21 +109,21 @@ class LaneBenchmark : public LaneTest {
   }
 };
 
-TEST_F(LaneBenchmark, PiecesOfALargePicture) { TellPieces(SceneOf(1920, 1080, 512), {}); }
+TEST_F(WorkerBenchmark, PiecesOfALargePicture) { TellPieces(SceneOf(1920, 1080, 512), {}); }
 
 // Most of the drawing time is spent on the CPU, which completes the picture. The graphics device is
 // free for other work meanwhile.
-TEST_F(LaneBenchmark, PiecesOfALargePictureWithFewerRays) {
+TEST_F(WorkerBenchmark, PiecesOfALargePictureWithFewerRays) {
   TellPieces(SceneOf(1920, 1080, 256), {.sparse = true});
 }
 
-TEST_F(LaneTest, LargePicturesAreDrawnInPieces) {
+TEST_F(WorkerTest, LargePicturesAreDrawnInPieces) {
   Begin(SceneOf(1280, 720, 512));
   EXPECT_GT(Finish().size(), 20U);
   EXPECT_TRUE(drawn_.ok()) << drawn_;
 }
 
-TEST_F(LaneTest, APictureWithFewerRaysIsTheSameInPieces) {
+TEST_F(WorkerTest, APictureWithFewerRaysIsTheSameInPieces) {
   const FrameQuality sparse{.sparse = true};
   const scene::Scene large = SceneOf(1280, 720, 256);
   Begin(large, sparse);
@@ -136,7 +136,7 @@ TEST_F(LaneTest, APictureWithFewerRaysIsTheSameInPieces) {
 
 // The version of the picture with more bits a channel is kept for the high-quality encoding at
 // rest, until another picture is drawn. It can be taken once.
-TEST_F(LaneTest, APictureWithFewerRaysIsThereWithMoreBitsOnce) {
+TEST_F(WorkerTest, APictureWithFewerRaysIsThereWithMoreBitsOnce) {
   const auto source = GlFrameSources(test_support::Device())(nullptr);
   ASSERT_TRUE(source.ok()) << source.status();
   const auto picture = (*source)->Draw(SceneOf(320, 180, 64), fields_, {.sparse = true});
@@ -147,19 +147,19 @@ TEST_F(LaneTest, APictureWithFewerRaysIsThereWithMoreBitsOnce) {
   EXPECT_FALSE((*source)->Fine().ok());
 }
 
-TEST_F(LaneTest, WhatNobodyWantsFreesTheDeviceAtOnce) {
+TEST_F(WorkerTest, WhatNobodyWantsFreesTheDeviceAtOnce) {
   for (const int after_pieces : {1, 10, 40}) {
     *cancelled_ = false;
     Begin(SceneOf(3840, 2160, 512));
-    for (int pieces = 0; pieces < after_pieces && !lane_->IsIdle();) {
-      if (lane_->WantsTurn()) {
-        lane_->GiveTurn();
+    for (int pieces = 0; pieces < after_pieces && !worker_->IsIdle();) {
+      if (worker_->WantsTurn()) {
+        worker_->GiveTurn();
         ++pieces;
       } else {
         std::this_thread::yield();
       }
     }
-    ASSERT_FALSE(lane_->IsIdle()) << "it has few pieces";
+    ASSERT_FALSE(worker_->IsIdle()) << "it has few pieces";
     *cancelled_ = true;
     const base::Stopwatch since_cancelled;
     EXPECT_TRUE(Finish().empty()) << "it drew on";
@@ -171,10 +171,10 @@ TEST_F(LaneTest, WhatNobodyWantsFreesTheDeviceAtOnce) {
 
 // Paths are traced without the device. Tracing cannot end at the next drawn piece, so it must check
 // on its own.
-TEST_F(LaneTest, TracingEndsWhenNobodyWantsItAnyMore) {
+TEST_F(WorkerTest, TracingEndsWhenNobodyWantsItAnyMore) {
   absl::StatusOr<accuracy::LightProgress> light = absl::UnknownError("not traced");
   absl::StatusOr<accuracy::ErrorProgress> error = absl::UnknownError("not measured");
-  lane_->Begin(
+  worker_->Begin(
       [&](const absl::StatusOr<FrameSource*>& source) {
         const scene::Scene scene = SceneOf(160, 90, 64);
         drawn_ = (*source)->MeasureError(scene, fields_).status();
@@ -189,8 +189,8 @@ TEST_F(LaneTest, TracingEndsWhenNobodyWantsItAnyMore) {
   EXPECT_TRUE(absl::IsCancelled(light.status())) << light.status();
 }
 
-TEST_F(LaneTest, MoreTimeThanItsLimitEndsTheWork) {
-  lane_->Begin(
+TEST_F(WorkerTest, MoreTimeThanItsLimitEndsTheWork) {
+  worker_->Begin(
       [this](const absl::StatusOr<FrameSource*>& source) {
         drawn_ = (*source)->Draw(SceneOf(1280, 720, 512), fields_, {}).status();
       },

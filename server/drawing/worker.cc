@@ -1,4 +1,4 @@
-#include "drawing/lane.h"
+#include "drawing/worker.h"
 
 #include <cmath>
 #include <utility>
@@ -11,15 +11,15 @@
 
 namespace thunderhead::drawing {
 
-Lane::Lane(FrameSourceFactory make_source, int niceness, std::function<void()> on_change,
-           const base::TimeSource& time)
+Worker::Worker(FrameSourceFactory make_source, int niceness, std::function<void()> on_change,
+               const base::TimeSource& time)
     : make_source_(std::move(make_source)),
       niceness_(niceness),
       on_change_(std::move(on_change)),
       time_(time),
       thread_([this] { Run(); }) {}
 
-Lane::~Lane() {
+Worker::~Worker() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -28,15 +28,15 @@ Lane::~Lane() {
   thread_.join();
 }
 
-bool Lane::IsIdle() const {
+bool Worker::IsIdle() const {
   const std::lock_guard lock(mutex_);
   return !busy_;
 }
 
-void Lane::Begin(Work work, Limits limits) {
+void Worker::Begin(Work work, Limits limits) {
   {
     const std::lock_guard lock(mutex_);
-    THUNDERHEAD_CHECK(!busy_, "a lane does one piece of work at a time");
+    THUNDERHEAD_CHECK(!busy_, "a worker does one piece of work at a time");
     busy_ = true;
     work_ = std::move(work);
     limits_ = std::move(limits);
@@ -48,7 +48,7 @@ void Lane::Begin(Work work, Limits limits) {
   changed_.notify_all();
 }
 
-void Lane::FreeUnused(double unused_s) {
+void Worker::FreeUnused(double unused_s) {
   std::unique_lock lock(mutex_);
   if (busy_) return;
   busy_ = true;
@@ -57,7 +57,7 @@ void Lane::FreeUnused(double unused_s) {
   changed_.wait(lock, [this] { return !frees_.has_value(); });
 }
 
-void Lane::RenewSource() {
+void Worker::RenewSource() {
   {
     const std::lock_guard lock(mutex_);
     source_is_lost_ = true;
@@ -65,7 +65,7 @@ void Lane::RenewSource() {
   changed_.notify_all();
 }
 
-bool Lane::WantsTurn() {
+bool Worker::WantsTurn() {
   const std::lock_guard lock(mutex_);
   if (device_ != Device::kWanted) return false;
   if (Ended().ok()) return true;
@@ -73,7 +73,7 @@ bool Lane::WantsTurn() {
   return false;
 }
 
-double Lane::GiveTurn() {
+double Worker::GiveTurn() {
   const Time given_at = time_.Now();
   std::unique_lock lock(mutex_);
   if (device_ != Device::kWanted || !Ended().ok()) return 0.0;
@@ -88,13 +88,13 @@ double Lane::GiveTurn() {
   return took_ms;
 }
 
-double Lane::StalledSeconds() const {
+double Worker::StalledSeconds() const {
   const std::lock_guard lock(mutex_);
   if (!busy_ || device_ == Device::kWanted) return 0.0;
   return 1e-3 * base::MsSince(time_, progress_at_);
 }
 
-absl::Status Lane::Ended() const {
+absl::Status Worker::Ended() const {
   if (stopping_) return base::ShuttingDown();
   if (source_is_lost_) return gl::DeviceLost();
   if (limits_.cancelled != nullptr && *limits_.cancelled) {
@@ -111,12 +111,12 @@ absl::Status Lane::Ended() const {
        .permanent = true});
 }
 
-double Lane::WorkedMs() const {
+double Worker::WorkedMs() const {
   const double waiting_ms = device_ == Device::kWanted ? base::MsSince(time_, wanted_at_) : 0.0;
   return base::MsSince(time_, begun_at_) - waited_ms_ - waiting_ms;
 }
 
-absl::Status Lane::Take() {
+absl::Status Worker::Take() {
   std::unique_lock lock(mutex_);
   THUNDERHEAD_RETURN_IF_ERROR(Ended());
   device_ = Device::kWanted;
@@ -130,7 +130,7 @@ absl::Status Lane::Take() {
   return Ended();
 }
 
-void Lane::GiveBack() {
+void Worker::GiveBack() {
   {
     const std::lock_guard lock(mutex_);
     device_ = Device::kUnused;
@@ -138,12 +138,12 @@ void Lane::GiveBack() {
   changed_.notify_all();
 }
 
-absl::Status Lane::Wanted() const {
+absl::Status Worker::Wanted() const {
   const std::lock_guard lock(mutex_);
   return Ended();
 }
 
-void Lane::Run() {
+void Worker::Run() {
   base::LowerPriority(niceness_);
   const auto not_made = [] { return absl::UnavailableError("not made yet"); };
   absl::StatusOr<std::unique_ptr<FrameSource>> source = not_made();

@@ -12,7 +12,7 @@
 
 namespace thunderhead::app {
 
-struct Truth {
+struct ReferenceRequest {
   std::string name;  // for the progress bar
   scene::Scene scene;
   std::string scene_text;  // text with every setting that affects the picture
@@ -23,9 +23,9 @@ struct Truth {
 // Returns the picture stored at `path`, if it has the same scene text, peak cut and number of
 // samples. Otherwise traces a new picture and stores it there. Returns CANCELLED if it is
 // interrupted, and then writes nothing.
-absl::StatusOr<picture::LinearPicture> KeptTruth(const Truth& truth,
-                                                 const volume::HydrometeorFields& fields,
-                                                 const std::string& path,
-                                                 const Interruption& interruption);
+absl::StatusOr<picture::LinearPicture> KeptReference(const ReferenceRequest& request,
+                                                     const volume::HydrometeorFields& fields,
+                                                     const std::string& path,
+                                                     const Interruption& interruption);
 
 }  // namespace thunderhead::app

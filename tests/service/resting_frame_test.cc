@@ -1,5 +1,5 @@
-// Tests of the still images that are sent at rest, compared with the picture before its rounding to
-// 8 bits. They measure the error of the default spotter's sky in blocks of 8 x 8 pixels, where
+// Tests of the resting frames that viewers are sent, compared with the picture before its rounding
+// to 8 bits. They measure the error of the default spotter's sky in blocks of 8 x 8 pixels, where
 // steps show as bands. Prints a table; with THUNDERHEAD_SIZE=1280x720 it is the table of decision
 // 28.
 #include <cmath>
@@ -52,8 +52,8 @@ double BlockMean(const Pixels& pixels, int width_px, int x, int y, int channel) 
   return sum / (kBlock_px * kBlock_px);
 }
 
-// A fixture with the still of the sample storm's default spotter, drawn once.
-class StillQuality : public ::testing::Test {
+// A fixture with the resting frame of the sample storm's default spotter, drawn once.
+class RestingFrameTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     int width = 640;
@@ -83,13 +83,13 @@ class StillQuality : public ::testing::Test {
     ASSERT_TRUE(fine.ok()) << fine.status();
     drawn_ = new drawing::DisplayFrame(*std::move(drawn));
     fine_ = new frame::FineImage(*std::move(fine));
-    truth_ = new Pixels(LevelsOf(fine_->rgb));
+    exact_ = new Pixels(LevelsOf(fine_->rgb));
   }
 
   static void TearDownTestSuite() {
     delete drawn_;
     delete fine_;
-    delete truth_;
+    delete exact_;
   }
 
   // Returns whether a block is of blue that hardly varies.
@@ -117,7 +117,7 @@ class StillQuality : public ::testing::Test {
         if (!IsSky(x, y)) continue;
         for (int channel = 0; channel < 3; ++channel) {
           const double difference = BlockMean(pixels, fine_->width_px, x, y, channel) -
-                                    BlockMean(*truth_, fine_->width_px, x, y, channel);
+                                    BlockMean(*exact_, fine_->width_px, x, y, channel);
           sum += difference * difference;
           ++count;
         }
@@ -130,7 +130,7 @@ class StillQuality : public ::testing::Test {
   // Returns the root mean square of all pixels' differences, in levels of 255.
   static double Rmse(const Pixels& pixels) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < pixels.size(); ++i) sum += std::pow(pixels[i] - (*truth_)[i], 2);
+    for (std::size_t i = 0; i < pixels.size(); ++i) sum += std::pow(pixels[i] - (*exact_)[i], 2);
     return std::sqrt(sum / static_cast<double>(pixels.size()));
   }
 
@@ -165,27 +165,27 @@ class StillQuality : public ::testing::Test {
 
   static drawing::DisplayFrame* drawn_;
   static frame::FineImage* fine_;
-  static Pixels* truth_;
+  static Pixels* exact_;
 };
 
-drawing::DisplayFrame* StillQuality::drawn_ = nullptr;
-frame::FineImage* StillQuality::fine_ = nullptr;
-Pixels* StillQuality::truth_ = nullptr;
+drawing::DisplayFrame* RestingFrameTest::drawn_ = nullptr;
+frame::FineImage* RestingFrameTest::fine_ = nullptr;
+Pixels* RestingFrameTest::exact_ = nullptr;
 
 // The 8-bit picture equals the picture with 16 bits a channel, plus rounding noise of up to half a
 // step.
-TEST_F(StillQuality, TheFinePictureIsTheOneDrawn) {
+TEST_F(RestingFrameTest, TheFinePictureIsTheOneDrawn) {
   const Pixels drawn = LevelsOf(drawn_->rgb);
   double most = 0.0;
   for (std::size_t i = 0; i < drawn.size(); ++i) {
-    most = std::max(most, std::abs(drawn[i] - (*truth_)[i]));
+    most = std::max(most, std::abs(drawn[i] - (*exact_)[i]));
   }
   EXPECT_LT(most, 1.01);
   Tell("8 bits with noise, as drawn", drawn.size(), 0.0, drawn);
-  Tell("8 bits without noise", drawn.size(), 0.0, Rounded(*truth_));
+  Tell("8 bits without noise", drawn.size(), 0.0, Rounded(*exact_));
 }
 
-TEST_F(StillQuality, AvifBandsLessThanJpegInFewerBytes) {
+TEST_F(RestingFrameTest, AvifBandsLessThanJpegInFewerBytes) {
   const Sent jpeg = Jpeg(scene::Output().jpeg_quality);
   Jpeg(95);
   const Sent avif = Avif({});
