@@ -1,5 +1,6 @@
-// The columns of a storm's regular grid, and values of a source's columns at them: resampled if the
-// source's columns are not even in true metres, and averaged over blocks if a stride is wanted.
+// The columns of a storm's regular grid, and the values of a source's columns at them. Values are
+// resampled if the source's columns are not even in true metres, and averaged over blocks if a
+// stride is wanted.
 #pragma once
 
 #include <cstddef>
