@@ -126,6 +126,7 @@ class Finder {
   absl::Status FindCells();
   absl::StatusOr<GribLayers> FindTime(absl::Time time);
   absl::Status FindHydrometeors(absl::Time time, GribLayers& layers, std::vector<Found>& needed);
+  absl::Status CheckOtherGrids(GribKind kind) const;
   absl::Status FindState(absl::Time time, std::vector<Found>& needed);
   absl::Status ShareLevels(std::vector<Found>& needed, std::size_t amounts, GribLayers& layers);
   absl::Status ShareModelLevels(const std::vector<Found>& needed, const std::set<double>& all,
@@ -282,7 +283,8 @@ absl::Status Finder::CheckOneRun() {
   if (!grid.ok()) return base::Annotate(grid.status(), Where());
   contents_.grid = *std::move(grid);
   for (const std::string& assumption : contents_.grid.assumptions) Assume(assumption);
-  return contents_.grid.IsUnstructured() ? FindCells() : absl::OkStatus();
+  const grib::Grid& read = contents_.grid;
+  return read.IsUnstructured() && read.cell_rows.empty() ? FindCells() : absl::OkStatus();
 }
 
 // Finds the places of the cells, which are fields on the same grid.
@@ -382,10 +384,25 @@ absl::Status Finder::FindHydrometeors(absl::Time time, GribLayers& layers,
   return absl::OkStatus();
 }
 
+// Returns an error if the field is there on the storm's levels, but on another grid.
+absl::Status Finder::CheckOtherGrids(GribKind kind) const {
+  for (const Candidate& candidate : candidates_) {
+    const grib::Field& field = candidate.Field();
+    if (candidate.meaning.kind != kind || field.first.type != type_) continue;
+    if (*field.grid == *first_->grid) continue;
+    const auto other = grib::ReadGrid(*field.grid);
+    return Refused(absl::StrCat("has ", NameOf(field), " on another grid than the hydrometeors",
+                                other.ok() ? "; put all fields on one grid"
+                                           : absl::StrCat(": ", other.status().message())));
+  }
+  return absl::OkStatus();
+}
+
 // Adds temperature, humidity and, on model levels that need it, pressure to `needed`.
 absl::Status Finder::FindState(absl::Time time, std::vector<Found>& needed) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Found temperature, LevelsOf(GribKind::kTemperature, time));
   if (temperature.levels.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckOtherGrids(GribKind::kTemperature));
     return Missing(GribKindName(GribKind::kTemperature), time);
   }
   needed.push_back(std::move(temperature));
@@ -417,6 +434,10 @@ std::set<double> Finder::LevelsOfState(absl::Time time) const {
   for (const Candidate& candidate : candidates_) {
     if (std::ranges::find(kState, candidate.meaning.kind) == kState.end()) continue;
     const grib::Field& field = candidate.Field();
+    // These are on half levels, of which there is one more.
+    const bool is_half_level =
+        type_ == kGeneralized && candidate.meaning.kind == GribKind::kGeometricHeight;
+    if (is_half_level) continue;
     if (IsOnLevel(field, false) && field.Valid() == time) levels.insert(field.first.value);
   }
   return levels;
@@ -582,9 +603,18 @@ absl::Status Finder::FindHalfHeights(GribLayers& layers) {
   if (found.levels.empty()) return absl::OkStatus();
   std::vector<double> half_levels = layers.levels;
   half_levels.push_back(layers.levels.back() + 1.0);
+  // Some programs write one number for a level, so that its height cannot be told from that of a
+  // half level.
+  if (!has_layers_) {
+    Assume(absl::StrCat("Each of the ", contents_.level_kind,
+                        " has one number k, and is taken to lie between the half levels k and k + "
+                        "1, whose heights are given."));
+  }
   for (const double level : half_levels) {
     if (found.levels.contains(level)) continue;
-    return Missing(absl::StrCat(Described(found), " of half level ", level), layers.time);
+    return Missing(absl::StrCat("the heights of half levels are incomplete: ", Described(found),
+                                " of half level ", level),
+                   layers.time);
   }
   if (found.levels.rbegin()->first > half_levels.back()) {
     return Missing(absl::StrCat("every field of ", LevelName(type_, half_levels.back())),
@@ -662,7 +692,9 @@ absl::Status Finder::FindHydrostatic(absl::Time time, GribLayers& layers) {
 
 absl::Status Finder::FindHeights(absl::Time time, GribLayers& layers) {
   if (type_ == kIsobaricSurface) return FindIsobaricHeights(time, layers);
-  if (has_layers_) THUNDERHEAD_RETURN_IF_ERROR(FindHalfHeights(layers));
+  if (has_layers_ || type_ == kGeneralized) {
+    THUNDERHEAD_RETURN_IF_ERROR(FindHalfHeights(layers));
+  }
   if (layers.heights.Empty()) {
     for (const GribKind kind :
          {GribKind::kGeometricHeight, GribKind::kGeopotentialHeight, GribKind::kGeopotential}) {
