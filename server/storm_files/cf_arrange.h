@@ -24,6 +24,8 @@ struct CfVariable {
   // 1 along an axis on which the variable has a value for each face between cells instead of each
   // cell.
   std::array<int, 3> more = {0, 0, 0};
+  // The index along z of the first value that is read.
+  std::size_t first_level = 0;
 };
 
 // A dimension of a field, and the variable with its coordinate.

@@ -44,6 +44,8 @@ struct CfHeights {
   std::optional<CfVariable> array;  // of kMiddles and kFaces
   double scale = 1.0;               // of the array, to m
   bool above_ground = false;        // of the array
+  // The ground, if it is the lowest face of the array and the layers end above it.
+  std::optional<CfColumnValue> ground;
   // The term a of kLinear and kPressure at the faces, upwards, one more than layers.
   std::vector<double> a;                // in m or Pa
   std::vector<CfSurfaceTerm> surfaces;  // of kLinear: heights of the ground, or parts of them

@@ -362,6 +362,7 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root) {
       !metadata.terrain.has_value() && surfaces.size() == 1) {
     metadata.terrain = surfaces.front().surface;
   }
+  if (!metadata.terrain.has_value()) metadata.terrain = metadata.heights.ground;
   THUNDERHEAD_RETURN_IF_ERROR(CheckArrayAgainstTerrain(file, &metadata));
   THUNDERHEAD_RETURN_IF_ERROR(FindCfAir(file, variables, &metadata));
   ApplyModel(file, &metadata);
