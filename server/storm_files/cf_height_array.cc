@@ -116,14 +116,15 @@ std::string RangeText(const std::vector<double>& numbers) {
 // Matches the levels of one array to the layers.
 class Match {
  public:
-  Match(const netcdf::NetcdfFile& file, const CfDimensions& dimensions, std::string array,
-        CfDimension levels, Kind kind)
+  Match(const netcdf::NetcdfFile& file, const CfDimensions& dimensions,
+        const netcdf::NetcdfFile& fields, std::string array, CfDimension levels, Kind kind)
       : file_(file),
+        fields_(fields),
         layers_(dimensions.axes[2]),
         array_(std::move(array)),
         levels_(std::move(levels)),
         kind_(kind),
-        of_layers_(NumbersOf(file, layers_)),
+        of_layers_(NumbersOf(fields, layers_)),
         of_levels_(NumbersOf(file, levels_)) {
     has_faces_ = kind == Kind::kHalfLevels ||
                  (kind == Kind::kUnknown && levels_.length == layers_.length + 1);
@@ -148,6 +149,7 @@ class Match {
   std::string LevelWord() const { return has_faces_ ? "half levels" : "levels"; }
 
   const netcdf::NetcdfFile& file_;
+  const netcdf::NetcdfFile& fields_;
   const CfDimension& layers_;
   const std::string array_;
   const CfDimension levels_;
@@ -159,7 +161,7 @@ class Match {
 };
 
 absl::StatusOr<std::size_t> Match::First() {
-  if (levels_.name == layers_.name) {
+  if (&file_ == &fields_ && levels_.name == layers_.name) {
     if (!has_faces_) return 0;
     return Unread(absl::StrCat("it has only ", levels_.length, " half levels, on ", levels_.name,
                                ", where ", layers_.length, " layers need ", layers_.length + 1,
@@ -173,7 +175,7 @@ absl::StatusOr<std::size_t> Match::First() {
   }
   if (of_layers_.empty() || of_levels_.empty()) return ByPosition();
   const std::vector<double> wanted =
-      has_faces_ ? HalfLevelsAround(file_, layers_, of_layers_) : of_layers_;
+      has_faces_ ? HalfLevelsAround(fields_, layers_, of_layers_) : of_layers_;
   if (const auto first = IndexIn(of_levels_, wanted); first.has_value()) return *first;
   if (NumbersFacesOtherwise(wanted)) return 0;
   std::vector<double> turned = wanted;
@@ -275,8 +277,19 @@ bool CountsLevels(const CfDescription& coordinate) {
                {"level", "levels", "layer", "sigma_level"});
 }
 
+std::string NameOfHalfLevels(const netcdf::NetcdfFile& file) {
+  for (const std::string& name : file.Variables()) {
+    const CfDescription described = DescribeCf(file, name);
+    if (KindOf(described) == Kind::kHalfLevels && HeightScale(described.units).has_value()) {
+      return name;
+    }
+  }
+  return "";
+}
+
 absl::StatusOr<CfHeightArray> FindHeightArray(const netcdf::NetcdfFile& file,
-                                              const CfDimensions& dimensions) {
+                                              const CfDimensions& dimensions,
+                                              const netcdf::NetcdfFile& fields) {
   CfHeightArray found;
   std::size_t levels_of_found = 0;
   for (const std::string& name : file.Variables()) {
@@ -293,7 +306,7 @@ absl::StatusOr<CfHeightArray> FindHeightArray(const netcdf::NetcdfFile& file,
         array->more != std::array<int, 3>{0, 0, 0}) {
       continue;
     }
-    Match match(file, dimensions, name, *levels, kind);
+    Match match(file, dimensions, fields, name, *levels, kind);
     const absl::StatusOr<std::size_t> first = match.First();
     if (!first.ok()) {
       found.unread.Update(first.status());
@@ -306,6 +319,7 @@ absl::StatusOr<CfHeightArray> FindHeightArray(const netcdf::NetcdfFile& file,
     }
     array->more[2] = match.HasFaces() ? 1 : 0;
     array->first_level = *first;
+    array->of_heights_file = &file != &fields;
     CfHeights& heights = found.heights.emplace();
     heights.kind = match.HasFaces() ? CfHeightKind::kFaces : CfHeightKind::kMiddles;
     heights.name = name;

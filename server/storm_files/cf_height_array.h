@@ -36,10 +36,16 @@ struct CfHeightArray {
 };
 
 // Returns the heights of the layers by an array on the fields' columns. Half levels are preferred
-// to middles. Level k of COSMO and ICON lies between the half levels k and k + 1. An array whose
-// levels cannot be matched is not used, and `unread` names it, its levels and those that are
-// needed. Errors are those of reading the file.
+// to middles. Level k of COSMO and ICON lies between the half levels k and k + 1. An array is not
+// used if its levels cannot be matched, and the error `unread` says why. `dimensions` are those of
+// the fields in `fields`. The array is in `file`, which may be another file. Errors are those of
+// reading the files.
 absl::StatusOr<CfHeightArray> FindHeightArray(const netcdf::NetcdfFile& file,
-                                              const CfDimensions& dimensions);
+                                              const CfDimensions& dimensions,
+                                              const netcdf::NetcdfFile& fields);
+
+// Returns the variable with the heights of COSMO's or ICON's half levels (HHL, z_ifc), or an empty
+// text.
+std::string NameOfHalfLevels(const netcdf::NetcdfFile& file);
 
 }  // namespace thunderhead::storm_files

@@ -359,6 +359,8 @@ absl::StatusOr<CfHeights> ReadParametric(const netcdf::NetcdfFile& file,
                    ", whose formula is not read here"));
 }
 
+std::string NameOfPath(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+
 // Returns what a vertical coordinate counts that is not metres, or nothing if it is a height.
 std::optional<std::string> WhyNoHeight(const netcdf::NetcdfFile& file, const std::string& name) {
   const CfDescription described = DescribeCf(file, name);
@@ -418,13 +420,19 @@ absl::StatusOr<CfHeights> ReadHeightsOfAxis(const netcdf::NetcdfFile& file,
 }  // namespace
 
 absl::StatusOr<CfHeights> ReadCfHeights(const netcdf::NetcdfFile& file,
+                                        const netcdf::NetcdfFile* heights_file,
                                         const CfDimensions& dimensions,
                                         const std::optional<CfColumnValue>& terrain,
                                         std::vector<std::string>& assumptions) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(CfHeightArray array, FindHeightArray(file, dimensions));
+  THUNDERHEAD_ASSIGN_OR_RETURN(CfHeightArray array, FindHeightArray(file, dimensions, file));
+  if (!array.heights.has_value() && heights_file != nullptr) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(array, FindHeightArray(*heights_file, dimensions, file));
+  }
   if (array.heights.has_value()) {
-    assumptions.push_back(
-        absl::StrCat("The heights of the layers are those of ", array.heights->name, "."));
+    const bool is_elsewhere = array.heights->array->of_heights_file;
+    assumptions.push_back(absl::StrCat(
+        "The heights of the layers are those of ", array.heights->name,
+        is_elsewhere ? absl::StrCat(" in ", NameOfPath(heights_file->Path())) : "", "."));
     std::ranges::copy(array.assumptions, std::back_inserter(assumptions));
     if (array.heights->ground.has_value() && !terrain.has_value()) {
       assumptions.push_back(absl::StrCat("The ground is the lowest half level of ",

@@ -57,9 +57,10 @@ struct CfHeights {
 };
 
 // Returns the heights of the layers of `dimensions`. `terrain` is the file's height of the ground,
-// if it has one. Adds sentences to `assumptions`. Errors name the file, the coordinate and what is
-// needed.
+// if it has one. An array of heights may be in `heights_file`, which is null if there is none. Adds
+// sentences to `assumptions`. Errors name the file, the coordinate and what is needed.
 absl::StatusOr<CfHeights> ReadCfHeights(const netcdf::NetcdfFile& file,
+                                        const netcdf::NetcdfFile* heights_file,
                                         const CfDimensions& dimensions,
                                         const std::optional<CfColumnValue>& terrain,
                                         std::vector<std::string>& assumptions);

@@ -395,15 +395,22 @@ fs::path FileOfStorm(const fs::path& path) {
   return fs::is_regular_file(file, error) ? file : path;
 }
 
+// Returns the error for a file that alone is no storm, with what it lacks.
+absl::Status IsPartOfTime(const std::string& path, const fs::path& at, const StormSearch& search) {
+  const std::string advice =
+      absl::StrCat(path, ": is one of several files of a time; give the folder with all of them");
+  if (!search.describe_together) return absl::InvalidArgumentError(advice);
+  const absl::Status alone = search.describe_together({at.string()}).status();
+  return absl::InvalidArgumentError(
+      alone.ok() ? advice : absl::StrCat(advice, ". Alone it lacks this: ", alone.message()));
+}
+
 // Appends the storms of one file, or the one that the path names.
 absl::Status SearchFile(const std::string& path, const StormSearch& search,
                         std::vector<NamedStorm>& storms) {
   const fs::path at = FileOfStorm(path);
   THUNDERHEAD_ASSIGN_OR_RETURN(storm_files::StormFile file, search.describe({at.string()}).front());
-  if (!file.part.of.empty()) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        path, ": is one of several files of a time; give the folder with all of them"));
-  }
+  if (!file.part.of.empty()) return IsPartOfTime(path, at, search);
   const std::string wanted = fs::path(path).lexically_relative(at).string();
   std::vector<storm_files::StormFile> files = StormsOf(std::move(file));
   std::set<std::string> runs;

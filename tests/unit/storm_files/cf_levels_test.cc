@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "tests/unit/storm_files/cf_file_test.h"
 
@@ -190,6 +191,87 @@ TEST_F(CfLevels, FacesMayBeNumberedFromZero) {
   // A part of such levels cannot be told from one of other levels.
   SyntheticCf part = Part(From(4, 6), From(1, 9), 5.0, "altitude");
   ExpectError(part, "its name does not say whether these are half levels");
+}
+
+// COSMO and ICON write the heights of half levels once, to a file of their own.
+class CfHeightsFile : public CfLevels {
+ protected:
+  // Writes a file of the run with these coordinates and variables of `from`.
+  void WritePart(const SyntheticCf& from, const std::vector<std::string>& coordinates,
+                 const std::vector<std::string>& variables, double hours, const std::string& name) {
+    SyntheticCf file;
+    for (const testing::CfCoordinate& each : from.coordinates) {
+      if (std::ranges::find(coordinates, each.name) != coordinates.end()) {
+        file.coordinates.push_back(each);
+      }
+    }
+    file.coordinates.push_back({"time", {hours}, {{"units", "hours since 2013-05-20"}}, {}});
+    for (testing::CfContent each : from.variables) {
+      if (std::ranges::find(variables, each.name) == variables.end()) continue;
+      each.dimensions.insert(each.dimensions.begin(), "time");
+      file.variables.push_back(std::move(each));
+    }
+    testing::WriteCf(file, run_ + "/" + name);
+  }
+  void WriteHeights(const SyntheticCf& from, const std::string& name = "lfff00000000c.nc") {
+    WritePart(from, {"x", "y", "lev_2"}, {"HHL", "HSURF"}, 0.0, name);
+  }
+  void WriteTime(const SyntheticCf& from, double hours, const std::string& name) {
+    WritePart(from, {"x", "y", "lev"}, {"qc"}, hours, name);
+  }
+  std::string ErrorOf(const std::string& path) {
+    return std::string(storm_store::StormStore::Open({path}, {.read_ahead = 0}).status().message());
+  }
+
+  const std::string run_ = [this] {
+    const std::string path = folder_.File("run");
+    std::filesystem::create_directory(path);
+    return path;
+  }();
+};
+
+TEST_F(CfHeightsFile, IsReadWithEachTime) {
+  SyntheticCf merged = Part(From(4, 6), From(1, 9), 5.0);
+  merged.variables.push_back({"HSURF", {"y", "x"}, {{"units", "m"}}, Ground_m});
+  const auto expected = Read(merged);
+  ASSERT_TRUE(expected.ok()) << expected.status();
+  WriteHeights(merged);
+  WriteTime(merged, 1.0, "lfff00010000.nc");
+  WriteTime(Part(From(4, 6), From(1, 9), 6.0), 2.0, "lfff00020000.nc");
+  auto store = storm_store::StormStore::Open({run_}, {.read_ahead = 0});
+  ASSERT_TRUE(store.ok()) << store.status();
+  ASSERT_EQ((*store)->Storms().size(), 1U);
+  const storm_store::StormInfo& storm = *(*store)->Storms().front();
+  EXPECT_EQ(storm.times.size(), 2U);
+  EXPECT_THAT(storm.assumptions, Contains(HasSubstr("lfff00000000c.nc")));
+  const auto first = (*store)->Get(storm.id, 0, {});
+  ASSERT_TRUE(first.ok()) << first.status();
+  EXPECT_EQ((*first)->grid.low_corner_m.z, (*expected)->grid.low_corner_m.z);
+  EXPECT_EQ((*first)->terrain_height_m, (*expected)->terrain_height_m);
+  EXPECT_EQ((*first)->fields[0].concentration_kg_per_m3,
+            (*expected)->fields[0].concentration_kg_per_m3);
+  const auto second = (*store)->Get(storm.id, 1, {});
+  ASSERT_TRUE(second.ok()) << second.status();
+  EXPECT_NEAR((*second)->fields[0].statistics.mean_water_path_kg_per_m2,
+              kCloud_kg_per_m3 * Thickness_m(6.0), 1e-6);
+}
+
+TEST_F(CfHeightsFile, IsNamedIfItIsMissingOrAmbiguous) {
+  const SyntheticCf merged = Part(From(4, 6), From(1, 9), 5.0);
+  WriteTime(merged, 1.0, "lfff00010000.nc");
+  EXPECT_THAT(ErrorOf(run_ + "/lfff00010000.nc"),
+              ::testing::AllOf(HasSubstr("give the folder with all of them"), HasSubstr("HHL")));
+  EXPECT_THAT(ErrorOf(run_), HasSubstr("HHL"));
+  WriteHeights(merged);
+  EXPECT_EQ(ErrorOf(run_), "");
+  WriteHeights(merged, "other_c.nc");
+  EXPECT_THAT(ErrorOf(run_), HasSubstr("both have the heights of one time"));
+  // Heights on other columns are of another run.
+  SyntheticCf other = merged;
+  for (double& x_m : other.coordinates[0].values) x_m += 500.0;
+  std::filesystem::remove(run_ + "/other_c.nc");
+  WriteHeights(other);
+  EXPECT_THAT(ErrorOf(run_), HasSubstr("no file of this run with a time is beside it"));
 }
 
 }  // namespace
