@@ -11,165 +11,15 @@
 #include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "glm/trigonometric.hpp"
+#include "grib/gaussian.h"
+#include "grib/grid_parts.h"
 #include "grib/octets.h"
 #include "volume/map_projection.h"
 
 namespace thunderhead::grib {
 namespace {
 
-constexpr double kMicrodegrees = 1e-6;
 constexpr double kMillimetres = 1e-3;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-absl::Status UnreadGrid(std::string_view what) {
-  return absl::InvalidArgumentError(
-      absl::StrCat("its grid ", std::string(what),
-                   "; put the data on a grid of latitudes and longitudes, for example with "
-                   "wgrib2 -new_grid or cdo remap"));
-}
-
-absl::Status BadGrid(std::string_view what) {
-  return absl::DataLossError(
-      absl::StrCat("its grid ", std::string(what), "; the file is damaged: copy it again"));
-}
-
-// The shape of the Earth (code table 3.2).
-struct Earth {
-  double equator_m = 0.0;  // radius at the equator
-  double pole_m = 0.0;     // radius at the poles
-
-  bool IsSphere() const { return equator_m == pole_m; }
-  // Returns the parameters for PROJ.
-  std::string Text() const {
-    return IsSphere() ? absl::StrFormat("+R=%.10g", equator_m)
-                      : absl::StrFormat("+a=%.12g +b=%.12g", equator_m, pole_m);
-  }
-};
-
-absl::StatusOr<Earth> EarthOf(const Octets& section) {
-  constexpr double kLeast_m = 1e6;
-  constexpr double kMost_m = 1e8;
-  const auto shape = section.Unsigned(15, 1);
-  const double unit_m = shape == 3 ? 1000.0 : 1.0;
-  Earth earth;
-  switch (shape) {
-    case 0:
-      earth = {6'367'470.0, 6'367'470.0};
-      break;
-    case 1: {
-      const double radius_m = section.Scaled(16, 4);
-      earth = {radius_m, radius_m};
-      break;
-    }
-    case 2:
-      earth = {6'378'160.0, 6'356'775.0};
-      break;
-    case 3:
-    case 7:
-      earth = {unit_m * section.Scaled(21, 4), unit_m * section.Scaled(26, 4)};
-      break;
-    case 4:
-      earth = {6'378'137.0, 6'356'752.314};
-      break;
-    case 5:
-      earth = {6'378'137.0, 6'356'752.3142};
-      break;
-    case 6:
-      earth = {6'371'229.0, 6'371'229.0};
-      break;
-    case 8:
-      earth = {6'371'200.0, 6'371'200.0};
-      break;
-    case 9:
-      earth = {6'377'563.396, 6'356'256.909};
-      break;
-    default:
-      return UnreadGrid(absl::StrCat("has the shape of the Earth ", shape, ", which is not known"));
-  }
-  if (earth.pole_m > kLeast_m && earth.equator_m < kMost_m && earth.pole_m <= earth.equator_m) {
-    return earth;
-  }
-  return BadGrid("has an impossible radius of the Earth");
-}
-
-// Reads the scanning mode (flag table 3.4).
-absl::Status ReadScanning(std::uint64_t mode, Grid& grid) {
-  constexpr std::uint64_t kWestwards = 0x80;
-  constexpr std::uint64_t kNorthwards = 0x40;
-  constexpr std::uint64_t kColumnsFirst = 0x20;
-  constexpr std::uint64_t kAlternates = 0x10;
-  constexpr std::uint64_t kStaggered = 0x0F;
-  if ((mode & kStaggered) != 0) return UnreadGrid("has rows that are offset against one another");
-  grid.from_east = (mode & kWestwards) != 0;
-  grid.from_south = (mode & kNorthwards) != 0;
-  grid.columns_first = (mode & kColumnsFirst) != 0;
-  grid.alternates = (mode & kAlternates) != 0;
-  return absl::OkStatus();
-}
-
-absl::Status ReadSize(const Octets& section, Grid& grid) {
-  if (section.Unsigned(11, 1) != 0 || section.IsMissing(31, 4) || section.IsMissing(35, 4)) {
-    return UnreadGrid("has rows of different lengths (a reduced grid)");
-  }
-  const std::uint64_t columns = section.Unsigned(31, 4);
-  const std::uint64_t rows = section.Unsigned(35, 4);
-  const std::uint64_t points = section.Unsigned(7, 4);
-  if (columns == 0 || rows == 0 || columns > points || columns * rows != points) {
-    return BadGrid(absl::StrCat("has ", columns, " x ", rows, " cells but ", points, " points"));
-  }
-  constexpr std::uint64_t kMost = 1'000'000;
-  if (columns > kMost || rows > kMost) {
-    return UnreadGrid(absl::StrCat("has ", columns, " x ", rows, " cells, which are too many"));
-  }
-  grid.columns = static_cast<int>(columns);
-  grid.rows = static_cast<int>(rows);
-  return absl::OkStatus();
-}
-
-// Sets south_west from the first point in the file.
-void SetCorner(const glm::dvec2& first, Grid& grid) {
-  grid.south_west = first;
-  if (grid.from_east) grid.south_west.x -= grid.step.x * (grid.columns - 1);
-  if (!grid.from_south) grid.south_west.y -= grid.step.y * (grid.rows - 1);
-}
-
-constexpr std::uint64_t kAlongGrid = 0x08;  // flag table 3.3, bit 5
-
-// Returns the step between two coordinates of a grid of latitudes and longitudes in degrees. It is
-// given, or follows from the last coordinate. It is 0 if it is not given for the only coordinate.
-absl::StatusOr<double> StepOf(const Octets& section, std::size_t octet, double unit,
-                              double range_deg, int count, const char* name) {
-  const double from_range_deg = count > 1 ? range_deg / (count - 1) : kNaN;
-  const bool is_given = !section.IsMissing(octet, 4) && section.Unsigned(octet, 4) != 0;
-  const double step_deg =
-      is_given ? unit * static_cast<double>(section.Unsigned(octet, 4)) : from_range_deg;
-  if (count == 1 && !is_given) return 0.0;
-  if (!(step_deg > 0.0)) return BadGrid(absl::StrCat("has no distance of its ", name));
-  // Coordinates are rounded to the unit, and longitudes may go around the Earth.
-  if (count > 1 && std::abs(step_deg - from_range_deg) * (count - 1) > step_deg / 2.0) {
-    return BadGrid(absl::StrFormat("has %s %.6g degrees apart, but its corners say %.6g", name,
-                                   step_deg, from_range_deg));
-  }
-  // The range is exact where the step is a rounded number.
-  return count > 1 ? from_range_deg : step_deg;
-}
-
-// Gives the only row or column of a grid, if its width is not given, that of the other axis.
-absl::Status CompleteSteps(Grid& grid) {
-  for (const int axis : {0, 1}) {
-    if (grid.step[axis] > 0.0) continue;
-    const double other_deg = grid.step[1 - axis];
-    if (!(other_deg > 0.0)) {
-      return UnreadGrid("has one point and no distance of its latitudes and longitudes");
-    }
-    grid.step[axis] = other_deg;
-    grid.assumptions.push_back(absl::StrFormat(
-        "The grid has one %s without a width; its cells are taken to be %g degrees wide, as along "
-        "the other axis.",
-        axis == 0 ? "column" : "row", other_deg));
-  }
-  return absl::OkStatus();
-}
 
 absl::StatusOr<Grid> ReadLatitudeLongitude(const Octets& section, bool is_rotated) {
   if (section.Count() < (is_rotated ? 84U : 72U)) return BadGrid("has too few numbers");
@@ -177,13 +27,7 @@ absl::StatusOr<Grid> ReadLatitudeLongitude(const Octets& section, bool is_rotate
   THUNDERHEAD_RETURN_IF_ERROR(ReadSize(section, grid));
   THUNDERHEAD_RETURN_IF_ERROR(ReadScanning(section.Unsigned(72, 1), grid));
   THUNDERHEAD_ASSIGN_OR_RETURN(const Earth earth, EarthOf(section));
-  double unit = kMicrodegrees;
-  if (section.Unsigned(39, 4) != 0 && !section.IsMissing(39, 4)) {
-    const std::uint64_t parts = section.Unsigned(43, 4);
-    if (parts == 0 || section.IsMissing(43, 4))
-      return BadGrid("has a unit of angles without parts");
-    unit = static_cast<double>(section.Unsigned(39, 4)) / static_cast<double>(parts);
-  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const double unit, AngleUnit_deg(section));
   const auto angle = [&](std::size_t octet) {
     return unit * static_cast<double>(section.Signed(octet, 4));
   };
@@ -198,16 +42,13 @@ absl::StatusOr<Grid> ReadLatitudeLongitude(const Octets& section, bool is_rotate
   if (grid.rows > 1 && (northwards_deg > 0.0) != grid.from_south) {
     return BadGrid("has rows in another direction than its corners");
   }
-  double eastwards_deg = angle(60) - first_longitude_deg;
-  if (grid.from_east) eastwards_deg = -eastwards_deg;
-  eastwards_deg = std::fmod(eastwards_deg, 360.0);
-  if (eastwards_deg < 0.0 || (eastwards_deg == 0.0 && grid.columns > 1)) eastwards_deg += 360.0;
+  const double eastwards_deg = LongitudeRange_deg(section, unit, grid);
   THUNDERHEAD_ASSIGN_OR_RETURN(
       grid.step.x, StepOf(section, 64, unit, eastwards_deg, grid.columns, "longitudes"));
   THUNDERHEAD_ASSIGN_OR_RETURN(
       grid.step.y, StepOf(section, 68, unit, std::abs(northwards_deg), grid.rows, "latitudes"));
   THUNDERHEAD_RETURN_IF_ERROR(CompleteSteps(grid));
-  grid.wind_along_grid = (section.Unsigned(55, 1) & kAlongGrid) != 0;
+  grid.wind_along_grid = IsWindAlongGrid(section, 55);
   SetCorner({first_longitude_deg, first_latitude_deg}, grid);
   if (!is_rotated) {
     grid.projection = absl::StrCat("+proj=longlat ", earth.Text(), " +no_defs");
@@ -271,7 +112,7 @@ absl::StatusOr<Grid> ReadRotatedByMiddle(const Octets& section) {
   THUNDERHEAD_ASSIGN_OR_RETURN(
       grid.step.y, StepOf(section, 68, kMicrodegrees, range_deg.y, grid.rows, "latitudes"));
   THUNDERHEAD_RETURN_IF_ERROR(CompleteSteps(grid));
-  grid.wind_along_grid = (section.Unsigned(55, 1) & kAlongGrid) != 0;
+  grid.wind_along_grid = IsWindAlongGrid(section, 55);
   SetCorner(first_deg, grid);
   grid.projection =
       absl::StrFormat("+proj=ob_tran +o_proj=longlat +o_lat_p=%.10g +o_lon_p=0 +lon_0=%.10g %s",
@@ -301,7 +142,7 @@ absl::StatusOr<Grid> ReadProjected(const Octets& section, const ProjectedLayout&
   }
   grid.step = {kMillimetres * static_cast<double>(section.Unsigned(layout.dx, 4)),
                kMillimetres * static_cast<double>(section.Unsigned(layout.dy, 4))};
-  grid.wind_along_grid = (section.Unsigned(47, 1) & kAlongGrid) != 0;
+  grid.wind_along_grid = IsWindAlongGrid(section, 47);
   const std::optional<glm::dvec2> first =
       map->WorldOf({kMicrodegrees * static_cast<double>(section.Signed(39, 4)),
                     kMicrodegrees * static_cast<double>(section.Signed(43, 4))});
@@ -352,38 +193,64 @@ absl::StatusOr<Grid> ReadLambert(const Octets& section) {
   return grid;
 }
 
+// The templates of code table 3.1 that are not read, and NCEP's own.
 std::string NameOfTemplate(std::uint64_t number) {
   switch (number) {
+    case 2:
+      return "is stretched";
+    case 3:
+      return "is stretched and rotated";
     case 4:
     case 5:
       return "has latitudes or longitudes at uneven distances";
     case 12:
       return "is on a transverse Mercator map";
+    case 13:
+    case 23:
+    case 33:
+      return "has a modelling subdomain on a map";
     case 31:
       return "is on an Albers map";
-    case 40:
     case 41:
+      return "is Gaussian with a rotated pole";
     case 42:
     case 43:
-      return "is Gaussian";
-    case 50:
-    case 51:
-    case 52:
-    case 53:
-      return "is spectral (spherical harmonics)";
+      return "is Gaussian and stretched";
+    case 61:
+    case 62:
+    case 63:
+      return "is spectral on a map";
     case 90:
       return "is a satellite's view";
     case 100:
       return "is unstructured (triangles of an icosahedron)";
+    case 110:
+      return "is on an azimuthal map of equal distances";
+    case 120:
+      return "has azimuths and ranges of a radar";
     case 140:
       return "is on a Lambert map of equal areas";
     case 150:
       return "is HEALPix";
+    case 204:
+      return "is curvilinear";
+    case 1000:
+      return "is a vertical section";
+    case 1100:
+    case 1200:
+      return "is a section through time";
     case 32768:
       return "is NCEP's rotated Arakawa E grid, whose rows are offset";
     default:
       return "is of a kind that is not known";
   }
+}
+
+absl::Status SpectralGrid(std::uint64_t number) {
+  return absl::InvalidArgumentError(absl::StrCat(
+      "its grid is spectral (spherical harmonics, template 3.", number,
+      "), which is not read; compute its values on the hydrometeors' grid, for example with "
+      "cdo sp2gpl"));
 }
 
 // Reads the grid of ICON's triangles, which has no places.
@@ -424,6 +291,13 @@ absl::StatusOr<Grid> ReadGrid(std::span<const std::byte> section3) {
       return ReadPolarStereographic(section);
     case 30:
       return ReadLambert(section);
+    case 40:
+      return ReadGaussian(section);
+    case 50:
+    case 51:
+    case 52:
+    case 53:
+      return SpectralGrid(number);
     case 101:
       return ReadTriangles(section);
     case 32769:

@@ -12,6 +12,16 @@
 
 namespace thunderhead::grib {
 
+// A row of cells on one parallel, from west to east.
+struct CellRow {
+  double latitude_deg = 0.0;
+  double first_longitude_deg = 0.0;
+  double step_deg = 0.0;
+  int cells = 0;
+
+  bool operator==(const CellRow&) const = default;
+};
+
 struct Grid {
   int columns = 0;  // from west to east
   int rows = 0;     // from south to north
@@ -21,8 +31,10 @@ struct Grid {
   glm::dvec2 south_west{0.0};  // coordinates of the centre of the south-west cell
   glm::dvec2 step{0.0};        // distances of neighbours in these coordinates
   // Names an unstructured grid: "grid 44 (uuidOfHGrid a27b8de6-...)". It is empty for others. The
-  // cells are columns of one row, in the file's order. Their places are in other fields.
+  // cells are columns of one row, in the file's order. Their places are those of `cell_rows`, or in
+  // other fields.
   std::string cells;
+  std::vector<CellRow> cell_rows;        // of a reduced Gaussian grid, in the file's order
   bool wind_along_grid = false;          // true if winds are along x and y, false if east and north
   std::vector<std::string> assumptions;  // each one sentence
 

@@ -106,6 +106,12 @@ void WatchedFolder::ForgetGone(const std::set<std::string>& there) {
 
 void WatchedFolder::Open(const std::string& path, File& file, RunProgress& progress) const {
   absl::StatusOr<storm_files::StormFile> storm = storm_store::DescribeFile(path, formats_);
+  if (storm.ok() && !storm->part.of.empty()) {
+    storm = absl::InvalidArgumentError(absl::StrCat(
+        path,
+        ": is one of several files of a time, which are not watched; give the folder to "
+        "thunderhead sequence when all files of the time are there"));
+  }
   if (storm.ok()) {
     file.storm = *std::move(storm);
     file.state = State::kReady;

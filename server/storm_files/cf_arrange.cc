@@ -249,6 +249,9 @@ absl::StatusOr<std::vector<float>> ReadOnAxes(const netcdf::NetcdfFile& file,
     std::size_t& along = count[static_cast<std::size_t>(variable.places[axis])];
     along = std::max(along, lengths[axis]);
   }
+  if (variable.places[2] >= 0) {
+    start[static_cast<std::size_t>(variable.places[2])] = variable.first_level;
+  }
   if (variable.time >= 0) start[static_cast<std::size_t>(variable.time)] = record;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> read,
                                file.ReadPart(variable.name, start, count));

@@ -24,6 +24,10 @@ struct CfVariable {
   // 1 along an axis on which the variable has a value for each face between cells instead of each
   // cell.
   std::array<int, 3> more = {0, 0, 0};
+  // The index along z of the first value that is read.
+  std::size_t first_level = 0;
+  // True if the variable is in the run's file of heights, which is another one than the fields'.
+  bool of_heights_file = false;
 };
 
 // A dimension of a field, and the variable with its coordinate.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -10,6 +11,7 @@
 #include "base/status.h"
 #include "netcdf/netcdf_file.h"
 #include "storm_files/cf_metadata.h"
+#include "storm_files/cf_parts.h"
 #include "storm_files/cf_reader.h"
 #include "storm_files/fields_on_heights.h"
 #include "storm_files/units.h"
@@ -73,13 +75,45 @@ class CfFormat final : public StormFormat {
   absl::Status PrepareBeforeConfinement() const override { return LoadUnits(); }
 
   FormatFit Sniff(const UnknownFile& file) const override {
-    const bool fits = file.Netcdf().ok() && LooksLikeCf(*file.Netcdf());
+    const bool fits =
+        file.Netcdf().ok() && (LooksLikeCf(*file.Netcdf()) || HasOnlyHeights(*file.Netcdf()));
     return fits ? FormatFit::kConvention : FormatFit::kNone;
   }
 
   absl::StatusOr<StormFile> Describe(const UnknownFile& unknown) const override {
     THUNDERHEAD_RETURN_IF_ERROR(unknown.Netcdf().status());
-    THUNDERHEAD_ASSIGN_OR_RETURN(CfMetadata metadata, ReadCfMetadata(*unknown.Netcdf()));
+    absl::StatusOr<CfMetadata> metadata = ReadCfMetadata(*unknown.Netcdf());
+    if (metadata.ok()) return Described(*std::move(metadata));
+    if (std::optional<StormFile> part = PartOfCf(*unknown.Netcdf())) return *std::move(part);
+    return metadata.status();
+  }
+
+  // One file has the fields of a time. Another one may have the heights.
+  absl::StatusOr<StormFile> DescribeTogether(const std::vector<UnknownFile>& files) const override {
+    const netcdf::NetcdfFile* fields = nullptr;
+    const netcdf::NetcdfFile* heights = nullptr;
+    for (const UnknownFile& each : files) {
+      THUNDERHEAD_RETURN_IF_ERROR(each.Netcdf().status());
+      const netcdf::NetcdfFile& file = *each.Netcdf();
+      const netcdf::NetcdfFile*& place = HasOnlyHeights(file) ? heights : fields;
+      if (place != nullptr) {
+        return absl::InvalidArgumentError(
+            absl::StrCat(file.Path(), " and ", place->Path(), " both have the ",
+                         place == heights ? "heights" : "fields",
+                         " of one time; put each run into a separate folder"));
+      }
+      place = &file;
+    }
+    if (fields == nullptr) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(files.front().Path(), ": has heights but no fields; give it with a time"));
+    }
+    THUNDERHEAD_ASSIGN_OR_RETURN(CfMetadata metadata, ReadCfMetadata(*fields, heights));
+    return Described(std::move(metadata));
+  }
+
+ private:
+  static StormFile Described(CfMetadata metadata) {
     StormFile file;
     file.path = metadata.path;
     const CfPlaces& places = metadata.places;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
+#include <iterator>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -13,93 +13,14 @@
 #include "spdlog/spdlog.h"
 #include "storm_files/cell_methods.h"
 #include "storm_files/cf_formula.h"
+#include "storm_files/cf_height_array.h"
 #include "storm_files/cf_origin.h"
 #include "storm_files/units.h"
 
 namespace thunderhead::storm_files {
 namespace {
 
-bool OneOf(std::string_view text, std::initializer_list<std::string_view> list) {
-  return std::ranges::find(list, text) != list.end();
-}
-
-// The gravity by which geopotential is divided to get geopotential height.
-constexpr double kGeopotentialGravity_m_per_s2 = 9.80665;
-
-// Returns the metres in a unit of height or of geopotential.
-std::optional<double> HeightScale(const std::string& units) {
-  if (HasNoUnits(units)) return std::nullopt;
-  if (const auto metres = MetresIn(units); metres.has_value()) return metres;
-  const auto geopotential = ConversionOf(units, "m2 s-2");
-  if (!geopotential.has_value()) return std::nullopt;
-  return geopotential->scale / kGeopotentialGravity_m_per_s2;
-}
-
-// Returns whether a variable holds heights of layers, by its standard name or by the name that a
-// model gives it.
-bool HoldsHeights(const CfDescription& variable) {
-  const std::string& standard = variable.standard_name;
-  if (!standard.empty()) {
-    return OneOf(standard,
-                 {"altitude", "height", "height_above_mean_sea_level",
-                  "height_above_reference_ellipsoid", "geopotential_height", "geopotential",
-                  "height_above_geopotential_datum", "geometric_height_at_half_level_center",
-                  "geometric_height_at_full_level_center", "geometric_height_at_cell_center"});
-  }
-  const std::string name = absl::AsciiStrToLower(variable.name);
-  return OneOf(
-      name, {"hhl", "hfl", "z_ifc", "z_mc", "zhval", "zghalf", "zgfull", "zg", "zgeo", "altitude",
-             "alt", "height", "geopotential_height", "geopotential", "zgrid", "zh"});
-}
-
-bool IsAboveGround(const netcdf::NetcdfFile& file, const std::string& variable,
-                   const CfDescription& described) {
-  if (described.standard_name == "height") return true;
-  const std::string name = absl::AsciiStrToLower(file.TextOrEmpty(variable, "long_name"));
-  return absl::StrContains(name, "above ground") || absl::StrContains(name, "above surface") ||
-         absl::StrContains(name, "above the surface") || absl::StrContains(name, "agl");
-}
-
-// Returns an array of heights on the fields' columns, if the file has one.
-std::optional<CfHeights> FindHeightArray(const netcdf::NetcdfFile& file,
-                                         const CfDimensions& dimensions) {
-  std::optional<CfHeights> found;
-  for (const std::string& name : file.Variables()) {
-    const CfDescription described = DescribeCf(file, name);
-    if (!HoldsHeights(described) || HoldsNoAmount(file, name)) continue;
-    const auto array = Arrange(file, name, dimensions);
-    if (!array.ok() || array->places[0] < 0 || array->places[1] < 0 || array->places[2] < 0 ||
-        array->more[0] != 0 || array->more[1] != 0) {
-      continue;
-    }
-    const auto scale = HeightScale(described.units);
-    if (!scale.has_value()) continue;
-    // Faces are better than middles.
-    if (found.has_value() && (found->kind == CfHeightKind::kFaces || array->more[2] == 0)) continue;
-    found.emplace();
-    found->kind = array->more[2] == 1 ? CfHeightKind::kFaces : CfHeightKind::kMiddles;
-    found->name = name;
-    found->array = *array;
-    found->scale = *scale;
-    found->above_ground = IsAboveGround(file, name, described);
-  }
-  return found;
-}
-
-// Finds out whether the layers of an array run downwards, from one column of the first record.
-absl::Status OrientArray(const netcdf::NetcdfFile& file, CfHeights& heights) {
-  const CfVariable& array = *heights.array;
-  const auto rank = static_cast<std::size_t>(array.dimensions);
-  const auto z = static_cast<std::size_t>(array.places[2]);
-  THUNDERHEAD_ASSIGN_OR_RETURN(const auto shape, file.Shape(array.name));
-  const std::vector<std::size_t> start(rank, 0);
-  std::vector<std::size_t> count(rank, 1);
-  count[z] = shape[z];
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> column,
-                               file.ReadPart(array.name, start, count));
-  heights.reversed = column.front() > column.back();
-  return absl::OkStatus();
-}
+std::string NameOfPath(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
 // Returns what a vertical coordinate counts that is not metres, or nothing if it is a height.
 std::optional<std::string> WhyNoHeight(const netcdf::NetcdfFile& file, const std::string& name) {
@@ -119,8 +40,7 @@ std::optional<std::string> WhyNoHeight(const netcdf::NetcdfFile& file, const std
       OneOf(lower, {"z", "zh", "zc", "zt", "zm", "zu_3d", "altitude", "alt"}) &&
       !absl::StrContains(long_name, "level") && !absl::StrContains(long_name, "eta");
   if (plain_height) return std::nullopt;
-  if (HasNoUnits(described.units) || ConversionOf(described.units, "1").has_value() ||
-      OneOf(absl::AsciiStrToLower(described.units), {"level", "levels", "layer", "sigma_level"})) {
+  if (CountsLevels(described)) {
     return absl::StrCat("has ",
                         HasNoUnits(described.units) ? std::string("no units")
                                                     : absl::StrCat("units '", described.units, "'"),
@@ -191,25 +111,39 @@ absl::StatusOr<CfHeights> ReadHeightsOfAxis(const netcdf::NetcdfFile& file,
 }  // namespace
 
 absl::StatusOr<CfHeights> ReadCfHeights(const netcdf::NetcdfFile& file,
+                                        const netcdf::NetcdfFile* heights_file,
                                         const CfDimensions& dimensions,
                                         const std::optional<CfColumnValue>& terrain,
                                         std::vector<std::string>& assumptions) {
-  if (std::optional<CfHeights> array = FindHeightArray(file, dimensions); array.has_value()) {
-    if (array->kind == CfHeightKind::kMiddles && dimensions.axes[2].length == 1) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(CfHeightArray array, FindHeightArray(file, dimensions, file));
+  if (!array.heights.has_value() && heights_file != nullptr) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(array, FindHeightArray(*heights_file, dimensions, file));
+  }
+  if (array.heights.has_value()) {
+    if (array.heights->kind == CfHeightKind::kMiddles && dimensions.axes[2].length == 1) {
       return absl::InvalidArgumentError(absl::StrCat(
-          file.Path(), ": ", array->name,
+          file.Path(), ": ", array.heights->name,
           " has the height of one layer and not of its interfaces, so its thickness is not known; "
           "give at least two layers, or heights of the interfaces"));
     }
-    THUNDERHEAD_RETURN_IF_ERROR(OrientArray(file, *array));
-    assumptions.push_back(
-        absl::StrCat("The heights of the layers are those of ", array->name, "."));
-    return *std::move(array);
+    const bool is_elsewhere = array.heights->array->of_heights_file;
+    assumptions.push_back(absl::StrCat(
+        "The heights of the layers are those of ", array.heights->name,
+        is_elsewhere ? absl::StrCat(" in ", NameOfPath(heights_file->Path())) : "", "."));
+    std::ranges::copy(array.assumptions, std::back_inserter(assumptions));
+    if (array.heights->ground.has_value() && !terrain.has_value()) {
+      assumptions.push_back(absl::StrCat("The ground is the lowest half level of ",
+                                         array.heights->name,
+                                         ", because the file has no other height of it."));
+    }
+    return *std::move(array.heights);
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(std::optional<CfHeights> formula,
                                ReadFormulaHeights(file, dimensions, terrain, assumptions));
   if (formula.has_value()) return *std::move(formula);
   const CfDimension& z = dimensions.axes[2];
+  const bool has_heights = !z.coordinate.empty() && !WhyNoHeight(file, z.coordinate).has_value();
+  if (!has_heights && !array.unread.ok()) return array.unread;
   if (z.coordinate.empty()) {
     return NoCfHeights(
         file, z.name,

@@ -45,6 +45,8 @@ struct CfHeights {
   double scale = 1.0;               // of the array, to m
   bool above_ground = false;        // of the array
   std::optional<double> ground_m;   // the height of flat ground, if the file gives it as a number
+  // The ground, if it is the lowest face of the array and the layers end above it.
+  std::optional<CfColumnValue> ground;
   // The term a of kLinear and kPressure at the faces, upwards, one more than layers.
   std::vector<double> a;                // in m or Pa
   std::vector<CfSurfaceTerm> surfaces;  // of kLinear: heights of the ground, or parts of them
@@ -56,9 +58,10 @@ struct CfHeights {
 };
 
 // Returns the heights of the layers of `dimensions`. `terrain` is the file's height of the ground,
-// if it has one. Adds sentences to `assumptions`. Errors name the file, the coordinate and what is
-// needed.
+// if it has one. An array of heights may be in `heights_file`, which is null if there is none. Adds
+// sentences to `assumptions`. Errors name the file, the coordinate and what is needed.
 absl::StatusOr<CfHeights> ReadCfHeights(const netcdf::NetcdfFile& file,
+                                        const netcdf::NetcdfFile* heights_file,
                                         const CfDimensions& dimensions,
                                         const std::optional<CfColumnValue>& terrain,
                                         std::vector<std::string>& assumptions);

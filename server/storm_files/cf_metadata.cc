@@ -337,7 +337,8 @@ bool LooksLikeCf(const netcdf::NetcdfFile& file) {
   });
 }
 
-absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root) {
+absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root,
+                                          const netcdf::NetcdfFile* heights_file) {
   THUNDERHEAD_RETURN_IF_ERROR(base::Annotate(LoadUnits(), root.Path()));
   CfMetadata metadata;
   metadata.path = root.Path();
@@ -355,14 +356,22 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root) {
   }
   THUNDERHEAD_RETURN_IF_ERROR(ReadColumns(file, &metadata));
   metadata.terrain = FindTerrain(file, metadata.dimensions, metadata.assumptions);
+  if (heights_file != nullptr) {
+    metadata.heights_path = heights_file->Path();
+    if (!metadata.terrain.has_value()) {
+      metadata.terrain = FindTerrain(*heights_file, metadata.dimensions, metadata.assumptions);
+      if (metadata.terrain.has_value()) metadata.terrain->variable.of_heights_file = true;
+    }
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(
-      metadata.heights,
-      ReadCfHeights(file, metadata.dimensions, metadata.terrain, metadata.assumptions));
+      metadata.heights, ReadCfHeights(file, heights_file, metadata.dimensions, metadata.terrain,
+                                      metadata.assumptions));
   metadata.order.reversed[2] = metadata.heights.reversed;
   if (const auto& surfaces = metadata.heights.surfaces;
       !metadata.terrain.has_value() && surfaces.size() == 1) {
     metadata.terrain = surfaces.front().surface;
   }
+  if (!metadata.terrain.has_value()) metadata.terrain = metadata.heights.ground;
   THUNDERHEAD_RETURN_IF_ERROR(CheckArrayAgainstTerrain(file, &metadata));
   THUNDERHEAD_RETURN_IF_ERROR(FindCfAir(file, variables, &metadata));
   ApplyModel(file, metadata);

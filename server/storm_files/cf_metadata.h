@@ -38,7 +38,8 @@ struct CfWindField {
 
 struct CfMetadata {
   std::string path;
-  std::string group;  // the group with the fields, e.g. "/les"; empty for the root
+  std::string heights_path;  // of the run's file of heights; empty if it has none
+  std::string group;         // the group with the fields, e.g. "/les"; empty for the root
   CfDimensions dimensions;
   CfAxis x;
   CfAxis y;
@@ -66,7 +67,9 @@ struct CfMetadata {
 // can be drawn, in the root or in a group.
 bool LooksLikeCf(const netcdf::NetcdfFile& file);
 
-// Reads and checks the metadata. Errors name the file, the variable and what is missing.
-absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& file);
+// Reads and checks the metadata. `heights_file` has the heights of layers and of the ground if
+// `file` lacks them, or is null. Errors name the file, the variable and what is missing.
+absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& file,
+                                          const netcdf::NetcdfFile* heights_file = nullptr);
 
 }  // namespace thunderhead::storm_files

@@ -18,8 +18,11 @@ namespace {
 
 class CfSource final : public LayerSource {
  public:
-  CfSource(std::shared_ptr<const CfMetadata> metadata, std::size_t record, netcdf::NetcdfFile file)
-      : shared_metadata_(std::move(metadata)), file_(std::move(file)) {
+  CfSource(std::shared_ptr<const CfMetadata> metadata, std::size_t record, netcdf::NetcdfFile file,
+           std::optional<netcdf::NetcdfFile> heights_file)
+      : shared_metadata_(std::move(metadata)),
+        file_(std::move(file)),
+        heights_file_(std::move(heights_file)) {
     const CfHeights& heights = metadata_.heights;
     domain_.path = metadata_.path;
     domain_.record = record;
@@ -55,6 +58,8 @@ class CfSource final : public LayerSource {
   absl::StatusOr<ModelWind> Wind() override;
 
  private:
+  absl::StatusOr<std::vector<float>> ReadOrdered(const CfVariable& variable,
+                                                 const CfOrder& order) const;
   absl::StatusOr<std::vector<float>> ReadScaled(const CfVariable& variable, double scale,
                                                 double offset = 0.0) const;
   absl::StatusOr<std::vector<float>> ReadColumns(const CfColumnValue& value) const;
@@ -70,12 +75,19 @@ class CfSource final : public LayerSource {
   const CfMetadata& metadata_ = *shared_metadata_;
   LayerDomain domain_;
   netcdf::NetcdfFile file_;
+  std::optional<netcdf::NetcdfFile> heights_file_;
 };
+
+// Reads one record from the file that the variable is in. A file of heights has one time only.
+absl::StatusOr<std::vector<float>> CfSource::ReadOrdered(const CfVariable& variable,
+                                                         const CfOrder& order) const {
+  return variable.of_heights_file ? ReadOnAxes(*heights_file_, variable, order, 0)
+                                  : ReadOnAxes(file_, variable, order, domain_.record);
+}
 
 absl::StatusOr<std::vector<float>> CfSource::ReadScaled(const CfVariable& variable, double scale,
                                                         double offset) const {
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> values,
-                               ReadOnAxes(file_, variable, metadata_.order, domain_.record));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> values, ReadOrdered(variable, metadata_.order));
   if (scale == 1.0 && offset == 0.0) return values;
   for (float& value : values) value = static_cast<float>(value * scale + offset);
   return values;
@@ -85,8 +97,7 @@ absl::StatusOr<std::vector<float>> CfSource::ReadScaled(const CfVariable& variab
 absl::StatusOr<std::vector<float>> CfSource::ReadColumns(const CfColumnValue& value) const {
   CfOrder flat = metadata_.order;
   flat.cells[2] = 1;
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> values,
-                               ReadOnAxes(file_, value.variable, flat, domain_.record));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> values, ReadOrdered(value.variable, flat));
   for (float& each : values) each = static_cast<float>(each * value.scale);
   return values;
 }
@@ -325,7 +336,12 @@ absl::StatusOr<std::unique_ptr<LayerSource>> OpenCfTime(std::shared_ptr<const Cf
                                                         std::size_t record) {
   THUNDERHEAD_ASSIGN_OR_RETURN(netcdf::NetcdfFile file,
                                netcdf::NetcdfFile::Open(metadata->path, metadata->group));
-  return std::make_unique<CfSource>(std::move(metadata), record, std::move(file));
+  std::optional<netcdf::NetcdfFile> heights_file;
+  if (!metadata->heights_path.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(heights_file, netcdf::NetcdfFile::Open(metadata->heights_path));
+  }
+  return std::make_unique<CfSource>(std::move(metadata), record, std::move(file),
+                                    std::move(heights_file));
 }
 
 }  // namespace thunderhead::storm_files

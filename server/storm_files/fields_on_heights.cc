@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <limits>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -60,6 +61,7 @@ class TimeReader {
   void RemapSizes(const std::vector<float>& concentration, std::vector<float> radii, double factor,
                   volume::HydrometeorField& field) const;
   volume::AirDensity MeanDensity(const std::vector<float>& density_kg_per_m3) const;
+  double Highest_m() const;
   void SetGrid();
   std::vector<float> OntoHeights(const std::vector<float>& values) const;
   std::vector<std::uint8_t> BytesOntoGrid(const std::vector<float>& values) const;
@@ -123,6 +125,14 @@ bool RunDownwards(const LayerAir& air) {
   return any;
 }
 
+// Returns the height at which a grid for uneven layers ends. Extinction may be that of anything.
+double TimeReader::Highest_m() const {
+  const bool is_cloud = std::ranges::none_of(domain_.fields, [](const LayerField& field) {
+    return field.quantity == volume::Quantity::kExtinction;
+  });
+  return is_cloud ? kHighestCloud_m : std::numeric_limits<double>::infinity();
+}
+
 absl::StatusOr<VerticalGrid> TimeReader::ReadHeights() {
   THUNDERHEAD_RETURN_IF_ERROR(Advance());
   THUNDERHEAD_ASSIGN_OR_RETURN(air_.interface_height_m, source_.InterfaceHeights_m());
@@ -139,7 +149,7 @@ absl::StatusOr<VerticalGrid> TimeReader::ReadHeights() {
                   ? GridOfEvenLayers(air_.interface_height_m, air_.levels, air_.columns)
                   : VerticalGrid{};
   if (own_grid_.cells > 0) return own_grid_;
-  own_grid_ = ChooseVerticalGrid(air_.interface_height_m, air_.levels, air_.columns);
+  own_grid_ = ChooseVerticalGrid(air_.interface_height_m, air_.levels, air_.columns, Highest_m());
   if (own_grid_.cells == 0) {
     return absl::DataLossError(
         absl::StrCat(domain_.path, ": ", domain_.heights_from, " of record ", domain_.record,
@@ -151,7 +161,7 @@ absl::StatusOr<VerticalGrid> TimeReader::ReadHeights() {
 absl::StatusOr<VerticalGrid> TimeReader::GridFor(
     const std::optional<VerticalGrid>& storm_grid) const {
   if (!storm_grid.has_value()) return own_grid_;
-  const VerticalGrid grid = Extended(*storm_grid, air_.interface_height_m);
+  const VerticalGrid grid = Extended(*storm_grid, air_.interface_height_m, Highest_m());
   constexpr int kFewCells = 8;
   if (grid.cells <= 2 * storm_grid->cells + kFewCells) return grid;
   return absl::DataLossError(absl::StrCat(

@@ -3,39 +3,39 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <map>
-#include <optional>
-#include <set>
-#include <span>
-#include <tuple>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "absl/strings/str_join.h"
 #include "base/status.h"
+#include "storm_files/grib_finder.h"
 #include "storm_files/grib_parts.h"
 #include "storm_files/storm_file.h"
 
 namespace thunderhead::storm_files {
+namespace grib_finder {
 namespace {
 
 using physics::Hydrometeor;
-
-// Types of surfaces (code table 4.5).
-constexpr int kGround = 1;
-constexpr int kIsobaricSurface = 100;
-constexpr int kHybrid = 105;
-constexpr int kHybridHeight = 118;
-constexpr int kHybridPressure = 119;
-constexpr int kGeneralized = 150;
 
 // The types of levels that a storm may have. If two have equally many levels, the first is used.
 constexpr std::array kLevelTypes = {kHybrid, kGeneralized, kHybridHeight, kHybridPressure,
                                     kIsobaricSurface};
 
-// Returns the name of the storm's levels, "hybrid levels".
+// Returns whether a storm may have levels of this type.
+bool IsLevelType(int type) { return std::ranges::find(kLevelTypes, type) != kLevelTypes.end(); }
+
+// Splits cloud water that holds liquid and ice into two hydrometeors.
+void SplitCloud(GribLayers& layers) {
+  GribHydrometeor ice = layers.hydrometeors.front();
+  layers.hydrometeors.front().is_split = true;
+  ice.hydrometeor = Hydrometeor::kIce;
+  ice.is_split = true;
+  layers.hydrometeors.push_back(std::move(ice));
+}
+
+}  // namespace
+
 std::string LevelKind(int type) {
   switch (type) {
     case kIsobaricSurface:
@@ -53,7 +53,6 @@ std::string LevelKind(int type) {
   }
 }
 
-// Returns the name of one level, "hybrid level 5" or "850 hPa".
 std::string LevelName(int type, double value) {
   if (type == kIsobaricSurface) return absl::StrFormat("%.6g hPa", value / 100.0);
   std::string kind = LevelKind(type);
@@ -66,7 +65,6 @@ bool IsHeight(GribKind kind) {
          kind == GribKind::kGeopotentialHeight;
 }
 
-// Returns whether the field is a mean between two pressures.
 bool IsBetweenPressures(const grib::Field& field) {
   return field.first.type == kIsobaricSurface && field.second.type == kIsobaricSurface;
 }
@@ -74,116 +72,6 @@ bool IsBetweenPressures(const grib::Field& field) {
 std::string TimeText(absl::Time time) {
   return absl::FormatTime("%Y-%m-%d %H:%M UTC", time, absl::UTCTimeZone());
 }
-
-struct Candidate {
-  GribPlace place;
-  GribMeaning meaning;
-
-  const grib::Field& Field() const { return *place.field; }
-};
-
-using Candidates = std::vector<Candidate>;
-using ByLevel = std::map<double, GribPlace>;
-
-// A field with the levels on which it is.
-struct Found {
-  GribKind kind = GribKind::kNone;
-  std::string name;
-  ByLevel levels;
-};
-
-// The run and member of a storm. Runs are in order of time.
-struct Selection {
-  grib::Origin origin;
-  std::optional<int> member;
-
-  bool operator<(const Selection& other) const {
-    const auto key = [](const Selection& of) {
-      return std::tuple(of.origin.reference, of.origin.centre, of.origin.subcentre, of.member);
-    };
-    return key(*this) < key(other);
-  }
-};
-
-// The storms of the files. It is empty if they have no hydrometeors.
-using Selections = std::set<Selection>;
-
-class Finder {
- public:
-  // `wanted` is null if the files have no hydrometeors.
-  Finder(const std::string& path, const GribIndexes& files, const Selections& all,
-         const Selection* wanted)
-      : files_(files), all_(all), wanted_(wanted) {
-    contents_.path = path;
-  }
-
-  absl::StatusOr<GribContents> Find();
-
- private:
-  void Collect();
-  absl::Status ChooseLevels();
-  absl::Status CheckOneRun();
-  absl::Status FindCells();
-  absl::StatusOr<GribLayers> FindTime(absl::Time time);
-  absl::Status FindHydrometeors(absl::Time time, GribLayers& layers, std::vector<Found>& needed);
-  absl::Status FindState(absl::Time time, std::vector<Found>& needed);
-  absl::Status ShareLevels(std::vector<Found>& needed, std::size_t amounts, GribLayers& layers);
-  absl::Status ShareModelLevels(const std::vector<Found>& needed, const std::set<double>& all,
-                                GribLayers& layers);
-  std::set<double> LevelsOfState(absl::Time time) const;
-  absl::Status CheckLastLevel(const GribLayers& layers) const;
-  absl::Status FindHeights(absl::Time time, GribLayers& layers);
-  absl::Status FindIsobaricHeights(absl::Time time, GribLayers& layers);
-  absl::Status FindHydrostatic(absl::Time time, GribLayers& layers);
-  absl::Status FindHalfHeights(GribLayers& layers);
-  GribSeries Optional(const Found& found, const std::vector<double>& levels,
-                      const GribLayers& layers);
-  absl::Status FindSurface(absl::Time time, GribLayers& layers);
-  absl::Status FindMotion(absl::Time time, GribLayers& layers);
-
-  // Returns the levels of the fields that fulfil `is_wanted`. It is an error if a level has two.
-  // `time` is absent for fields that do not change with time.
-  using IsWanted = std::function<bool(const Candidate&)>;
-  absl::StatusOr<Found> Levels(const std::optional<absl::Time>& time, bool on_half_levels,
-                               const IsWanted& is_wanted) const;
-  absl::StatusOr<Found> LevelsOf(GribKind kind, const std::optional<absl::Time>& time,
-                                 bool on_half_levels = false) const;
-  absl::StatusOr<std::optional<GribPlace>> AtGround(GribKind kind, absl::Time time,
-                                                    bool at_any_time) const;
-
-  bool IsOfStorm(const grib::Field& field, const GribMeaning& meaning) const;
-  bool IsOnLevel(const grib::Field& field, bool on_half_level) const;
-  std::string Where() const;
-  std::string NameOf(const grib::Field& field) const {
-    return GribNameOf(field.parameter, field.origin.centre);
-  }
-  std::string Described(const Found& found) const {
-    if (found.levels.empty()) return found.name;
-    return absl::StrCat(found.name, " (",
-                        grib::NumbersOf(found.levels.begin()->second.field->parameter), ")");
-  }
-  absl::Status Refused(std::string_view what) const {
-    return absl::InvalidArgumentError(absl::StrCat(Where(), ": ", std::string(what)));
-  }
-  absl::Status Missing(std::string_view what, absl::Time time) const {
-    return absl::DataLossError(absl::StrCat(Where(), ": ", std::string(what), " is missing at ",
-                                            TimeText(time), "; get the complete set of fields"));
-  }
-  void Assume(std::string sentence) {
-    std::vector<std::string>& all = contents_.assumptions;
-    if (std::ranges::find(all, sentence) == all.end()) all.push_back(std::move(sentence));
-  }
-  GribSeries Series(const Found& found, const std::vector<double>& levels) const;
-
-  const GribIndexes& files_;
-  const Selections& all_;
-  const Selection* const wanted_;
-  GribContents contents_;
-  Candidates candidates_;
-  int type_ = 0;                        // the type of the storm's levels
-  bool has_layers_ = false;             // true if amounts lie between two half levels
-  const grib::Field* first_ = nullptr;  // the first field of a hydrometeor
-};
 
 // Returns the files' path, with the run and member if there are several.
 std::string Finder::Where() const {
@@ -282,7 +170,8 @@ absl::Status Finder::CheckOneRun() {
   if (!grid.ok()) return base::Annotate(grid.status(), Where());
   contents_.grid = *std::move(grid);
   for (const std::string& assumption : contents_.grid.assumptions) Assume(assumption);
-  return contents_.grid.IsUnstructured() ? FindCells() : absl::OkStatus();
+  const grib::Grid& read = contents_.grid;
+  return read.IsUnstructured() && read.cell_rows.empty() ? FindCells() : absl::OkStatus();
 }
 
 // Finds the places of the cells, which are fields on the same grid.
@@ -350,386 +239,6 @@ GribSeries Finder::Series(const Found& found, const std::vector<double>& levels)
   return series;
 }
 
-// Finds the hydrometeors at `time`, and adds one element to `needed` for each.
-absl::Status Finder::FindHydrometeors(absl::Time time, GribLayers& layers,
-                                      std::vector<Found>& needed) {
-  for (const Hydrometeor hydrometeor : physics::kHydrometeors) {
-    // If there are several parameters for one hydrometeor, the one on the most levels is used.
-    std::map<grib::Parameter, GribMeaning> parameters;
-    for (const Candidate& candidate : candidates_) {
-      const GribMeaning& meaning = candidate.meaning;
-      if (meaning.kind == GribKind::kAmount && meaning.hydrometeor == hydrometeor) {
-        parameters.emplace(candidate.Field().parameter, meaning);
-      }
-    }
-    Found best;
-    GribHydrometeor found;
-    for (const auto& [parameter, meaning] : parameters) {
-      THUNDERHEAD_ASSIGN_OR_RETURN(
-          Found levels, Levels(time, false, [&wanted = parameter](const Candidate& candidate) {
-            return candidate.Field().parameter == wanted;
-          }));
-      if (levels.levels.size() <= best.levels.size()) continue;
-      best = std::move(levels);
-      found.hydrometeor = hydrometeor;
-      found.quantity = meaning.quantity;
-      found.per = meaning.is_specific ? AirMass::kWhole : contents_.model.mixing_ratios_per;
-    }
-    if (best.levels.empty()) continue;
-    layers.hydrometeors.push_back(std::move(found));
-    needed.push_back(std::move(best));
-  }
-  return absl::OkStatus();
-}
-
-// Adds temperature, humidity and, on model levels that need it, pressure to `needed`.
-absl::Status Finder::FindState(absl::Time time, std::vector<Found>& needed) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(Found temperature, LevelsOf(GribKind::kTemperature, time));
-  if (temperature.levels.empty()) {
-    return Missing(GribKindName(GribKind::kTemperature), time);
-  }
-  needed.push_back(std::move(temperature));
-  Found humidity;
-  for (const GribKind kind :
-       {GribKind::kSpecificHumidity, GribKind::kVapourRatio, GribKind::kRelativeHumidity}) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(Found found, LevelsOf(kind, time));
-    if (found.levels.size() > humidity.levels.size()) humidity = std::move(found);
-  }
-  if (humidity.levels.empty()) {
-    Assume("The air is treated as dry, because the file has no humidity.");
-  } else {
-    if (humidity.kind == GribKind::kRelativeHumidity) {
-      Assume("Vapour is computed from the relative humidity over water.");
-    }
-    needed.push_back(std::move(humidity));
-  }
-  return absl::OkStatus();
-}
-
-// Returns the levels of temperature, humidity, pressure and heights at `time`. If a file was cut
-// short between two messages, these may have more levels than the hydrometeors.
-std::set<double> Finder::LevelsOfState(absl::Time time) const {
-  constexpr std::array kState = {GribKind::kTemperature,       GribKind::kSpecificHumidity,
-                                 GribKind::kVapourRatio,       GribKind::kRelativeHumidity,
-                                 GribKind::kPressure,          GribKind::kGeometricHeight,
-                                 GribKind::kGeopotentialHeight};
-  std::set<double> levels;
-  for (const Candidate& candidate : candidates_) {
-    if (std::ranges::find(kState, candidate.meaning.kind) == kState.end()) continue;
-    const grib::Field& field = candidate.Field();
-    if (IsOnLevel(field, false) && field.Valid() == time) levels.insert(field.first.value);
-  }
-  return levels;
-}
-
-// Model levels must be complete, because each is a part of the column.
-absl::Status Finder::ShareModelLevels(const std::vector<Found>& needed, const std::set<double>& all,
-                                      GribLayers& layers) {
-  double expected = *all.begin();
-  for (const double level : all) {
-    if (level != expected) {
-      return Missing(absl::StrCat("every field of ", LevelName(type_, expected)), layers.time);
-    }
-    expected += 1.0;
-    for (const Found& found : needed) {
-      if (found.levels.contains(level)) continue;
-      return Missing(absl::StrCat(Described(found), " of ", LevelName(type_, level)), layers.time);
-    }
-  }
-  layers.levels.assign(all.begin(), all.end());
-  return absl::OkStatus();
-}
-
-// Sets the levels that all needed fields share. The first `amounts` of them are hydrometeors.
-absl::Status Finder::ShareLevels(std::vector<Found>& needed, std::size_t amounts,
-                                 GribLayers& layers) {
-  std::set<double> all;
-  for (std::size_t i = 0; i < amounts; ++i) {
-    for (const auto& [level, place] : needed[i].levels) all.insert(level);
-  }
-  const std::set<double> of_state = LevelsOfState(layers.time);
-  if (type_ != kIsobaricSurface) {
-    all.insert(of_state.begin(), of_state.end());
-    return ShareModelLevels(needed, all, layers);
-  }
-  std::set<double> shared = all;
-  for (const Found& found : needed) {
-    std::erase_if(shared, [&](double level) { return !found.levels.contains(level); });
-  }
-  if (shared.size() < 2) {
-    return Refused("has hydrometeors, temperature and humidity together on fewer than two levels");
-  }
-  std::vector<std::string> left_out;
-  // Between the shared levels, temperature may be on levels that no hydrometeor is on.
-  for (const double level : of_state) {
-    if (level < *shared.begin() || level > *shared.rbegin()) all.insert(level);
-  }
-  for (const double level : all) {
-    if (shared.contains(level)) continue;
-    if (level < *shared.begin() || level > *shared.rbegin()) {
-      left_out.push_back(LevelName(type_, level));
-      continue;
-    }
-    for (const Found& found : needed) {
-      if (found.levels.contains(level)) continue;
-      return Missing(absl::StrCat(Described(found), " of ", LevelName(type_, level)), layers.time);
-    }
-  }
-  if (!left_out.empty()) {
-    Assume(absl::StrCat(
-        "Levels that not all fields have are left out: ", absl::StrJoin(left_out, ", "), "."));
-  }
-  // Pressure falls upwards.
-  layers.levels.assign(shared.rbegin(), shared.rend());
-  return absl::OkStatus();
-}
-
-absl::StatusOr<std::optional<GribPlace>> Finder::AtGround(GribKind kind, absl::Time time,
-                                                          bool at_any_time) const {
-  std::optional<GribPlace> any;
-  for (const Candidate& candidate : candidates_) {
-    const grib::Field& field = candidate.Field();
-    // IFS codes the surface pressure and geopotential as its hybrid level 1.
-    const bool is_first_hybrid =
-        field.first.type == kHybrid && field.first.value == 1.0 &&
-        (kind == GribKind::kLogPressure || kind == GribKind::kGeopotential);
-    if (candidate.meaning.kind != kind) continue;
-    if (field.first.type != kGround && !is_first_hybrid) continue;
-    if (*field.grid != *first_->grid) continue;
-    if (field.Valid() == time) return candidate.place;
-    if (at_any_time && !any.has_value()) any = candidate.place;
-  }
-  return any;
-}
-
-absl::Status Finder::FindSurface(absl::Time time, GribLayers& layers) {
-  const auto find = [&](std::initializer_list<GribKind> kinds, bool at_any_time,
-                        GribSeries& series) -> absl::Status {
-    for (const GribKind kind : kinds) {
-      THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<GribPlace> place,
-                                   AtGround(kind, time, at_any_time));
-      if (!place.has_value()) continue;
-      series.kind = kind;
-      series.name = NameOf(*place->field);
-      series.levels = {*place};
-      return absl::OkStatus();
-    }
-    return absl::OkStatus();
-  };
-  THUNDERHEAD_RETURN_IF_ERROR(
-      find({GribKind::kGeopotentialHeight, GribKind::kGeometricHeight, GribKind::kGeopotential},
-           true, layers.surface_height));
-  THUNDERHEAD_RETURN_IF_ERROR(
-      find({GribKind::kPressure, GribKind::kLogPressure}, false, layers.surface_pressure));
-  THUNDERHEAD_RETURN_IF_ERROR(find({GribKind::kLandUse}, true, layers.land_use));
-  if (layers.land_use.Empty()) return absl::OkStatus();
-  if (!HasModisClasses(*layers.land_use.levels[0].field)) {
-    layers.land_use = {};
-    return absl::OkStatus();
-  }
-  Assume(absl::StrCat(layers.land_use.name, " has classes of MODIS (IGBP)."));
-  THUNDERHEAD_RETURN_IF_ERROR(find({GribKind::kLandShare}, true, layers.land_share));
-  THUNDERHEAD_RETURN_IF_ERROR(find({GribKind::kSnowCover}, false, layers.snow_cover));
-  THUNDERHEAD_RETURN_IF_ERROR(find({GribKind::kAlbedo}, false, layers.albedo));
-  return find({GribKind::kGreenCover}, true, layers.green_cover);
-}
-
-absl::Status Finder::FindIsobaricHeights(absl::Time time, GribLayers& layers) {
-  layers.vertical = GribVertical::kIsobaric;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Found heights, LevelsOf(GribKind::kGeopotentialHeight, time));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Found geopotential, LevelsOf(GribKind::kGeopotential, time));
-  const Found& found = heights.levels.size() >= geopotential.levels.size() ? heights : geopotential;
-  layers.heights = Series(found, layers.levels);
-  std::vector<std::string> computed;
-  for (std::size_t i = 0; i < layers.levels.size(); ++i) {
-    if (layers.heights.levels[i].field == nullptr) {
-      computed.push_back(LevelName(type_, layers.levels[i]));
-    }
-  }
-  if (computed.size() == layers.levels.size()) {
-    if (layers.surface_height.Empty() || layers.surface_pressure.Empty()) {
-      return Refused(
-          "has neither the height (0/3/5, 0/3/4) of its isobaric levels nor height and pressure of "
-          "the ground; give a file with one of them");
-    }
-    layers.heights = {};
-    Assume("Heights of levels are computed from pressure, temperature and humidity (hydrostatic).");
-  } else if (!computed.empty()) {
-    Assume(
-        absl::StrCat("Heights of these levels are computed from the next level's (hydrostatic): ",
-                     absl::StrJoin(computed, ", "), "."));
-  }
-  if (layers.surface_pressure.Empty() && layers.surface_height.Empty()) {
-    Assume(
-        "Levels below the ground are not recognised, because the file has neither height nor "
-        "pressure of the ground.");
-  } else {
-    Assume("Levels below the ground are left out.");
-  }
-  return absl::OkStatus();
-}
-
-absl::Status Finder::FindHalfHeights(GribLayers& layers) {
-  const auto is_height = [this](const Candidate& candidate) {
-    if (candidate.meaning.kind != GribKind::kGeometricHeight) return false;
-    const auto& mine = candidate.Field().vertical;
-    const auto& storms = first_->vertical;
-    const bool both =
-        mine != nullptr && storms != nullptr && mine->has_grid_id && storms->has_grid_id;
-    return !both || mine->grid_id == storms->grid_id;
-  };
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Found found, Levels(std::nullopt, true, is_height));
-  if (found.levels.empty()) return absl::OkStatus();
-  std::vector<double> half_levels = layers.levels;
-  half_levels.push_back(layers.levels.back() + 1.0);
-  for (const double level : half_levels) {
-    if (found.levels.contains(level)) continue;
-    return Missing(absl::StrCat(Described(found), " of half level ", level), layers.time);
-  }
-  if (found.levels.rbegin()->first > half_levels.back()) {
-    return Missing(absl::StrCat("every field of ", LevelName(type_, half_levels.back())),
-                   layers.time);
-  }
-  // The first of the levels is the highest. A file may have the lower levels only.
-  if (found.levels.begin()->first < half_levels.front()) {
-    Assume(absl::StrCat("The storm ends at ", LevelName(type_, layers.levels.front()),
-                        ", because no field is on the levels above, whose heights are given."));
-  }
-  layers.heights = Series(found, half_levels);
-  layers.heights.on_half_levels = true;
-  layers.vertical = GribVertical::kHalfHeights;
-  return absl::OkStatus();
-}
-
-// Returns an error if the coefficients of hybrid levels (pv) have more levels than the fields. They
-// are those of half levels, with the share of the surface pressure from 0 to 1.
-absl::Status Finder::CheckLastLevel(const GribLayers& layers) const {
-  if ((type_ != kHybrid && type_ != kHybridPressure) || first_->vertical == nullptr) {
-    return absl::OkStatus();
-  }
-  const std::vector<float>& numbers = first_->vertical->numbers;
-  const std::size_t half_levels = numbers.size() / 2;
-  if (half_levels < 2 || numbers.size() % 2 != 0) return absl::OkStatus();
-  const std::span shares = std::span(numbers).subspan(half_levels);
-  const bool are_shares =
-      std::ranges::all_of(shares, [](float share) { return share >= 0.0F && share <= 1.0F; }) &&
-      std::max(shares.front(), shares.back()) == 1.0F;
-  const double next = layers.levels.back() + 1.0;
-  if (!are_shares || next >= static_cast<double>(half_levels)) return absl::OkStatus();
-  return Missing(absl::StrCat("every field of ", LevelName(type_, next)), layers.time);
-}
-
-absl::Status Finder::FindHydrostatic(absl::Time time, GribLayers& layers) {
-  const auto& vertical = first_->vertical;
-  if (vertical == nullptr || vertical->numbers.empty() || type_ == kHybridHeight ||
-      type_ == kGeneralized) {
-    const std::string levels = LevelName(type_, layers.levels.front());
-    if (type_ == kGeneralized) {
-      return Refused(absl::StrCat(
-          levels,
-          " and the others have no heights; add the files with the heights of half levels "
-          "(HHL, 0/3/6), which match the fields' uuidOfVGrid"));
-    }
-    return Refused(absl::StrCat(
-        levels,
-        " and the others have neither heights (0/3/5, 0/3/6) nor coefficients (pv) with "
-        "surface pressure and geopotential; add one of them"));
-  }
-  const std::vector<float>& numbers = vertical->numbers;
-  const std::size_t half_levels = numbers.size() / 2;
-  if (numbers.size() % 2 != 0 || layers.levels.back() + 1.0 > static_cast<double>(half_levels) ||
-      layers.levels.front() < 1.0) {
-    return Refused(absl::StrCat("has ", numbers.size(),
-                                " coefficients of hybrid levels (pv), which do not fit level ",
-                                layers.levels.back()));
-  }
-  if (layers.levels.back() + 1.0 != static_cast<double>(half_levels)) {
-    return Missing(absl::StrCat("every field of ", LevelName(type_, layers.levels.back() + 1.0)),
-                   time);
-  }
-  if (layers.surface_pressure.Empty()) {
-    return Missing("the surface pressure (0/3/25 or 0/3/0), which the heights of levels need,",
-                   time);
-  }
-  if (layers.surface_height.Empty()) {
-    return Missing("the ground's geopotential (0/3/4), which the heights of levels need,", time);
-  }
-  layers.half_level_coefficients = numbers;
-  layers.vertical = GribVertical::kHydrostatic;
-  Assume("Heights of levels are computed from pressure, temperature and humidity (hydrostatic).");
-  return absl::OkStatus();
-}
-
-absl::Status Finder::FindHeights(absl::Time time, GribLayers& layers) {
-  if (type_ == kIsobaricSurface) return FindIsobaricHeights(time, layers);
-  if (has_layers_) THUNDERHEAD_RETURN_IF_ERROR(FindHalfHeights(layers));
-  if (layers.heights.Empty()) {
-    for (const GribKind kind :
-         {GribKind::kGeometricHeight, GribKind::kGeopotentialHeight, GribKind::kGeopotential}) {
-      THUNDERHEAD_ASSIGN_OR_RETURN(const Found found, LevelsOf(kind, time));
-      // One level is the ground's geopotential of IFS.
-      if (found.levels.size() < 2) continue;
-      for (const double level : layers.levels) {
-        if (found.levels.contains(level)) continue;
-        return Missing(absl::StrCat(Described(found), " of ", LevelName(type_, level)), time);
-      }
-      layers.heights = Series(found, layers.levels);
-      break;
-    }
-  }
-  if (layers.heights.Empty()) return FindHydrostatic(time, layers);
-  if (layers.vertical == GribVertical::kHeights) {
-    THUNDERHEAD_RETURN_IF_ERROR(CheckLastLevel(layers));
-  }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Found pressure, LevelsOf(GribKind::kPressure, time));
-  if (pressure.levels.empty()) {
-    return Missing(absl::StrCat(GribKindName(GribKind::kPressure), " of ",
-                                LevelName(type_, layers.levels.front()), " and the others"),
-                   time);
-  }
-  for (const double level : layers.levels) {
-    if (pressure.levels.contains(level)) continue;
-    return Missing(absl::StrCat(Described(pressure), " of ", LevelName(type_, level)), time);
-  }
-  layers.pressure = Series(pressure, layers.levels);
-  return absl::OkStatus();
-}
-
-// Returns a field that a storm does not need. It is left out if a level is missing.
-GribSeries Finder::Optional(const Found& found, const std::vector<double>& levels,
-                            const GribLayers& layers) {
-  for (const double level : levels) {
-    if (found.levels.empty() || found.levels.contains(level)) continue;
-    Assume(absl::StrCat(Described(found), " is not used, because ", LevelName(type_, level),
-                        " is missing at ", TimeText(layers.time), "."));
-    return GribSeries();
-  }
-  return found.levels.empty() ? GribSeries() : Series(found, levels);
-}
-
-// Finds wind and turbulence, which a storm does not need. They are left out if a level is missing.
-// ICON has the vertical wind and the turbulence on half levels.
-absl::Status Finder::FindMotion(absl::Time time, GribLayers& layers) {
-  std::vector<double> half_levels = layers.levels;
-  half_levels.push_back(layers.levels.back() + 1.0);
-  const auto find = [&](GribKind kind, bool on_half_levels, GribSeries& series) -> absl::Status {
-    if (!series.Empty()) return absl::OkStatus();
-    const std::vector<double>& levels = on_half_levels ? half_levels : layers.levels;
-    THUNDERHEAD_ASSIGN_OR_RETURN(const Found found, LevelsOf(kind, time, on_half_levels));
-    series = Optional(found, levels, layers);
-    series.on_half_levels = on_half_levels;
-    return absl::OkStatus();
-  };
-  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kWindX, false, layers.wind_x));
-  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kWindY, false, layers.wind_y));
-  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kAscent, false, layers.ascent));
-  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kOmega, false, layers.ascent));
-  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kTurbulentEnergy, false, layers.energy));
-  if (!has_layers_) return absl::OkStatus();
-  THUNDERHEAD_RETURN_IF_ERROR(find(GribKind::kAscent, true, layers.ascent));
-  return find(GribKind::kTurbulentEnergy, true, layers.energy);
-}
-
 absl::StatusOr<GribLayers> Finder::FindTime(absl::Time time) {
   GribLayers layers;
   layers.time = time;
@@ -754,15 +263,6 @@ absl::StatusOr<GribLayers> Finder::FindTime(absl::Time time) {
   THUNDERHEAD_RETURN_IF_ERROR(FindHeights(time, layers));
   THUNDERHEAD_RETURN_IF_ERROR(FindMotion(time, layers));
   return layers;
-}
-
-// Splits cloud water that holds liquid and ice into two hydrometeors.
-void SplitCloud(GribLayers& layers) {
-  GribHydrometeor ice = layers.hydrometeors.front();
-  layers.hydrometeors.front().is_split = true;
-  ice.hydrometeor = Hydrometeor::kIce;
-  ice.is_split = true;
-  layers.hydrometeors.push_back(std::move(ice));
 }
 
 absl::StatusOr<GribContents> Finder::Find() {
@@ -817,15 +317,14 @@ absl::StatusOr<GribContents> Finder::Find() {
   return std::move(contents_);
 }
 
-}  // namespace
+}  // namespace grib_finder
 
 absl::StatusOr<std::vector<GribContents>> FindGribStorms(const std::string& path,
                                                          const GribIndexes& files) {
-  Selections all;
+  grib_finder::Selections all;
   for (const auto& file : files) {
     for (const grib::Field& field : file->fields) {
-      const bool is_on_level =
-          std::ranges::find(kLevelTypes, field.first.type) != kLevelTypes.end();
+      const bool is_on_level = grib_finder::IsLevelType(field.first.type);
       if (!field.is_instant || !is_on_level) continue;
       if (MeaningOf(field.parameter).kind != GribKind::kAmount) continue;
       all.insert({field.origin, field.member});
@@ -833,9 +332,10 @@ absl::StatusOr<std::vector<GribContents>> FindGribStorms(const std::string& path
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckStormCount(path, all.size()));
   std::vector<GribContents> storms;
-  if (all.empty()) return Finder(path, files, all, nullptr).Find().status();
-  for (const Selection& wanted : all) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(storms.emplace_back(), Finder(path, files, all, &wanted).Find());
+  if (all.empty()) return grib_finder::Finder(path, files, all, nullptr).Find().status();
+  for (const grib_finder::Selection& wanted : all) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(storms.emplace_back(),
+                                 grib_finder::Finder(path, files, all, &wanted).Find());
   }
   return storms;
 }

@@ -22,10 +22,18 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// Places the cells of an unstructured grid by their latitudes and longitudes.
+// Places the cells of an unstructured grid by their latitudes and longitudes, which are those of
+// its rows, or fields of their own.
 absl::StatusOr<EvenColumns> PlaceGribCells(const GribStorm& storm) {
   const GribContents& contents = storm.contents;
   CellPlaces places;
+  for (const grib::CellRow& row : contents.grid.cell_rows) {
+    for (int i = 0; i < row.cells; ++i) {
+      places.latitude_deg.push_back(row.latitude_deg);
+      places.longitude_deg.push_back(row.first_longitude_deg + i * row.step_deg);
+    }
+  }
+  if (!places.latitude_deg.empty()) return MakeEvenOfCells(places);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> latitude_deg,
                                ReadGribField(storm, contents.cell_latitude));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> longitude_deg,

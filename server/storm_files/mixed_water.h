@@ -1,5 +1,8 @@
 // Splits a variable that holds several hydrometeors by temperature, as the single-moment
-// microphysics of SAM does (Khairoutdinov and Randall 2003, appendix).
+// microphysics of SAM does (Khairoutdinov and Randall 2003, appendix). The limits of temperature
+// are in SAM's source, MICRO_SAM1MOM/micro_params.f90. Cloud water has tbgmin and tbgmax, 253.16
+// and 273.16 K. Rain has tprmin and tprmax, 268.16 and 283.16 K. Graupel in the rest of the
+// precipitation has tgrmin and tgrmax, 223.16 and 283.16 K.
 #pragma once
 
 #include <vector>

@@ -20,7 +20,8 @@ struct HeightRange {
   double high_m = -std::numeric_limits<double>::infinity();
 };
 
-HeightRange RangeOf(const std::vector<float>& interface_height_m) {
+// Returns the heights that a grid must contain.
+HeightRange RangeOf(const std::vector<float>& interface_height_m, double highest_m) {
   // NaN fails both comparisons, so it leaves the range as it is.
   float low_m = std::numeric_limits<float>::infinity();
   float high_m = -std::numeric_limits<float>::infinity();
@@ -28,7 +29,8 @@ HeightRange RangeOf(const std::vector<float>& interface_height_m) {
     low_m = height_m < low_m ? height_m : low_m;
     high_m = height_m > high_m ? height_m : high_m;
   }
-  return {low_m, high_m};
+  const bool ends_above = high_m > highest_m && low_m < 0.5 * highest_m;
+  return {low_m, ends_above ? highest_m : high_m};
 }
 
 // Returns the mean thickness over columns of the level for which this mean is smallest.
@@ -134,8 +136,8 @@ class Tile {
 }  // namespace
 
 VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, int levels,
-                                std::size_t columns) {
-  const HeightRange range = RangeOf(interface_height_m);
+                                std::size_t columns, double highest_m) {
+  const HeightRange range = RangeOf(interface_height_m, highest_m);
   const double thinnest_m = ThinnestLevel_m(interface_height_m, levels, columns);
   if (!(range.high_m > range.low_m) || !std::isfinite(thinnest_m)) return {};
   // With at most a quarter more cells than levels, memory stays below 1.5 times the file's
@@ -170,14 +172,15 @@ bool LayersAreCells(const std::vector<float>& interface_height_m, int levels, st
 
 VerticalGrid GridOfEvenLayers(const std::vector<float>& interface_height_m, int levels,
                               std::size_t columns) {
-  const HeightRange range = RangeOf(interface_height_m);
+  const HeightRange range = RangeOf(interface_height_m, std::numeric_limits<double>::infinity());
   const VerticalGrid grid{range.low_m, (range.high_m - range.low_m) / levels, levels};
   const bool even = LayersAreCells(interface_height_m, levels, columns, grid);
   return even ? grid : VerticalGrid{};
 }
 
-VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m) {
-  const HeightRange range = RangeOf(interface_height_m);
+VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m,
+                      double highest_m) {
+  const HeightRange range = RangeOf(interface_height_m, highest_m);
   // Heights are in single precision, so differences of centimetres are rounding.
   constexpr double kSame_m = 0.05;
   // More layers than this fit in no memory. The limit keeps the number within an int.

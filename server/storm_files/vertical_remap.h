@@ -9,6 +9,10 @@
 
 namespace thunderhead::storm_files {
 
+// No cloud of a storm is higher. Models reach up to 80 km, and a grid up to there would have cells
+// that are several times as thick as the layers of clouds.
+inline constexpr double kHighestCloud_m = 30'000.0;
+
 struct VerticalGrid {
   double low_m = 0.0;
   double spacing_m = 0.0;
@@ -27,11 +31,11 @@ struct Layers {
 };
 
 // Returns a grid that reaches from the lowest to the highest interface of `columns` columns, with a
-// small margin above. Its cells are as thin as the thinnest level (mean over columns), but there
-// are at most 1.25 times as many cells as levels. VerticalGrid::cells is zero if all layers are
-// missing.
+// small margin above. It ends at `highest_m` if the interfaces begin below half of this height. Its
+// cells are as thin as the thinnest level (mean over columns), but there are at most 1.25 times as
+// many cells as levels. VerticalGrid::cells is zero if all layers are missing.
 VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, int levels,
-                                std::size_t columns);
+                                std::size_t columns, double highest_m = kHighestCloud_m);
 
 // Returns the grid of which the layers of every column are the cells. VerticalGrid::cells is zero
 // if there is none, because layers differ in thickness or columns in height by more than 1 %.
@@ -42,8 +46,10 @@ VerticalGrid GridOfEvenLayers(const std::vector<float>& interface_height_m, int 
 bool LayersAreCells(const std::vector<float>& interface_height_m, int levels, std::size_t columns,
                     const VerticalGrid& grid);
 
-// Returns `grid` extended by whole cells below and above until it contains every interface.
-VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m);
+// Returns `grid` extended by whole cells below and above until it contains every interface, but not
+// above `highest_m`, as in ChooseVerticalGrid.
+VerticalGrid Extended(const VerticalGrid& grid, const std::vector<float>& interface_height_m,
+                      double highest_m = kHighestCloud_m);
 
 // Adds the concentration in column `column` of `layers` to `target`, which holds one mean for each
 // of the `grid.cells` cells. These means are `target_stride` values apart and must be zero before

@@ -406,18 +406,29 @@ LinkRules LinkRulesOf(const std::vector<std::string>& paths, const LinkPolicy& l
   return rules;
 }
 
+// Returns the error for a file that alone is no storm, with what it lacks.
+absl::Status IsPartOfTime(const std::string& path, const fs::path& at,
+                          const storm_files::StormFile& file, const StormSearch& search) {
+  if (!file.about.empty()) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        path, ": holds only a part of a storm: ", base::Printable(file.about),
+        "; add what is missing to the file, or, if it is one of several files of a time, give the ",
+        "folder with all of them"));
+  }
+  const std::string advice =
+      absl::StrCat(path, ": is one of several files of a time; give the folder with all of them");
+  if (!search.describe_together) return absl::InvalidArgumentError(advice);
+  const absl::Status alone = search.describe_together({at.string()}).status();
+  return absl::InvalidArgumentError(
+      alone.ok() ? advice : absl::StrCat(advice, ". Alone it lacks this: ", alone.message()));
+}
+
 // Appends the storms of one file, or the one that the path names.
 absl::Status SearchFile(const std::string& path, const StormSearch& search,
                         std::vector<NamedStorm>& storms) {
   const fs::path at = FileOfStorm(path);
   THUNDERHEAD_ASSIGN_OR_RETURN(storm_files::StormFile file, search.describe({at.string()}).front());
-  if (!file.part.of.empty()) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        path, ": holds only a part of a storm", file.about.empty() ? "" : ": ",
-        base::Printable(file.about),
-        "; add what is missing to the file, or, if it is one of several files of a time, give the ",
-        "folder with all of them"));
-  }
+  if (!file.part.of.empty()) return IsPartOfTime(path, at, file, search);
   const std::string wanted = fs::path(path).lexically_relative(at).string();
   std::vector<storm_files::StormFile> files = StormsOf(std::move(file));
   std::set<std::string> runs;

@@ -89,17 +89,17 @@ struct Place {
 constexpr std::array kPlaces = {
     Place{1, 6, 2},  Place{1, 10, 1}, Place{1, 13, 2}, Place{1, 15, 1}, Place{1, 16, 1},
     Place{1, 17, 1}, Place{1, 20, 1}, Place{3, 6, 1},  Place{3, 7, 4},  Place{3, 11, 1},
-    Place{3, 13, 2}, Place{3, 15, 1}, Place{3, 31, 4}, Place{3, 35, 4}, Place{3, 39, 4},
-    Place{3, 47, 4}, Place{3, 51, 4}, Place{3, 55, 1}, Place{3, 56, 4}, Place{3, 60, 4},
-    Place{3, 64, 4}, Place{3, 68, 4}, Place{3, 72, 1}, Place{4, 6, 2},  Place{4, 8, 2},
-    Place{4, 10, 1}, Place{4, 11, 1}, Place{4, 14, 1}, Place{4, 18, 1}, Place{4, 19, 4},
-    Place{4, 23, 1}, Place{4, 24, 1}, Place{4, 25, 4}, Place{4, 29, 1}, Place{4, 30, 1},
-    Place{4, 31, 4}, Place{4, 36, 1}, Place{5, 6, 4},  Place{5, 10, 2}, Place{5, 12, 4},
-    Place{5, 16, 2}, Place{5, 18, 2}, Place{5, 20, 1}, Place{5, 21, 1}, Place{5, 22, 1},
-    Place{5, 22, 4}, Place{5, 23, 1}, Place{5, 24, 2}, Place{5, 26, 4}, Place{5, 30, 1},
-    Place{5, 31, 1}, Place{5, 32, 4}, Place{5, 33, 1}, Place{5, 34, 1}, Place{5, 36, 1},
-    Place{5, 37, 1}, Place{5, 38, 4}, Place{5, 42, 1}, Place{5, 43, 4}, Place{5, 47, 1},
-    Place{5, 48, 1}, Place{5, 49, 1}, Place{6, 6, 1}};
+    Place{3, 12, 1}, Place{3, 13, 2}, Place{3, 15, 1}, Place{3, 31, 4}, Place{3, 35, 4},
+    Place{3, 39, 4}, Place{3, 47, 4}, Place{3, 51, 4}, Place{3, 55, 1}, Place{3, 56, 4},
+    Place{3, 60, 4}, Place{3, 64, 4}, Place{3, 68, 4}, Place{3, 72, 1}, Place{3, 73, 2},
+    Place{4, 6, 2},  Place{4, 8, 2},  Place{4, 10, 1}, Place{4, 11, 1}, Place{4, 14, 1},
+    Place{4, 18, 1}, Place{4, 19, 4}, Place{4, 23, 1}, Place{4, 24, 1}, Place{4, 25, 4},
+    Place{4, 29, 1}, Place{4, 30, 1}, Place{4, 31, 4}, Place{4, 36, 1}, Place{5, 6, 4},
+    Place{5, 10, 2}, Place{5, 12, 4}, Place{5, 16, 2}, Place{5, 18, 2}, Place{5, 20, 1},
+    Place{5, 21, 1}, Place{5, 22, 1}, Place{5, 22, 4}, Place{5, 23, 1}, Place{5, 24, 2},
+    Place{5, 26, 4}, Place{5, 30, 1}, Place{5, 31, 1}, Place{5, 32, 4}, Place{5, 33, 1},
+    Place{5, 34, 1}, Place{5, 36, 1}, Place{5, 37, 1}, Place{5, 38, 4}, Place{5, 42, 1},
+    Place{5, 43, 4}, Place{5, 47, 1}, Place{5, 48, 1}, Place{5, 49, 1}, Place{6, 6, 1}};
 
 constexpr std::array kTemplates = {
     std::pair{3, 0},  std::pair{3, 1},   std::pair{3, 10},   std::pair{3, 20},    std::pair{3, 30},

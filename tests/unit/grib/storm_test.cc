@@ -600,12 +600,13 @@ TEST_F(GribStormTest, ComputesAMissingHeight) {
 
 // ICON: generalized levels, 1 at the top, between half levels whose heights are known.
 std::string Generalized(const std::vector<float>& grid_of_fields,
-                        const std::vector<float>& grid_of_heights) {
+                        const std::vector<float>& grid_of_heights, bool are_layers = true) {
   Layout layout;
   layout.centre = 78;
   layout.edit = [&](Message& message) {
     if (message.level.type == 1) return false;
     message.level = {150, message.level.value, 0, 150, message.level.value + 1};
+    if (!are_layers) message.level.second_type = 255;
     message.coordinates = grid_of_fields;
     if (message.category == 1 && message.number == 0) message.values = {0.05F};
     return message.category != 3 || message.number != 5;
@@ -647,6 +648,32 @@ TEST_F(GribStormTest, ReadsHeightsOfHalfLevels) {
   other[5] = 0.5F;
   EXPECT_THAT(ErrorOf(DescribeAlone(Write("mixed", Generalized(id, other)))),
               HasSubstr("which match the fields' uuidOfVGrid"));
+}
+
+// Some programs write layers with one number, as they write half levels.
+TEST_F(GribStormTest, LevelsWithOneNumberLieBetweenHalfLevels) {
+  const std::vector<float> id = {5.0F, 1.0F, 0.1F, 0.2F, 0.3F, 0.4F};
+  const auto layers = DescribeAlone(Write("layers", Generalized(id, id)));
+  ASSERT_TRUE(layers.ok()) << layers.status();
+  const std::string all = Generalized(id, id, false);
+  const auto file = DescribeAlone(Write("single", all));
+  ASSERT_TRUE(file.ok()) << file.status();
+  EXPECT_THAT(file->assumptions, Contains(HasSubstr("between the half levels k and k + 1")));
+  const auto expected = layers->reader->Read(0, std::nullopt, {});
+  const auto fields = file->reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(expected.ok() && fields.ok()) << expected.status() << fields.status();
+  EXPECT_EQ(fields->terrain_height_m, expected->terrain_height_m);
+  for (const std::size_t field : {0U, 1U}) {
+    EXPECT_EQ(fields->fields[field].concentration_kg_per_m3,
+              expected->fields[field].concentration_kg_per_m3);
+  }
+  // The message of the last half level is cut off.
+  const auto index = grib::ReadIndex(*grib::testing::BytesIn(all));
+  ASSERT_TRUE(index.ok()) << index.status();
+  const std::uint64_t last = index->fields.back().message_offset;
+  EXPECT_THAT(ErrorOf(DescribeAlone(Write("cut", all.substr(0, last)))),
+              HasSubstr("the heights of half levels are incomplete: HHL (0/3/6) of half level 5 is "
+                        "missing"));
 }
 
 // A storm on ICON's triangles. The places of its cells are fields, as are the others.

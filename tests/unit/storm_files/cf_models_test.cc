@@ -232,6 +232,33 @@ TEST(MixedWaterTest, SharesAddUpToOne) {
   EXPECT_TRUE(std::isnan(ShareOf(MixedWater::kCloud, Hydrometeor::kIce, NAN)));
 }
 
+// Each share is 0 and 1 at the limits of SAM's micro_params.f90, and a half between them.
+TEST(MixedWaterTest, SharesHaveTheLimitsOfSam) {
+  const auto cloud = [](float temperature_K) {
+    return ShareOf(MixedWater::kCloud, Hydrometeor::kCloud, temperature_K);
+  };
+  const auto precipitation = [](Hydrometeor hydrometeor, float temperature_K) {
+    return ShareOf(MixedWater::kPrecipitation, hydrometeor, temperature_K);
+  };
+  constexpr float kStep_K = 0.1F;
+  constexpr float kRounding = 1e-5F;
+  EXPECT_EQ(cloud(253.16F), 0.0F);
+  EXPECT_NEAR(cloud(253.16F + kStep_K), kStep_K / 20.0F, kRounding);
+  EXPECT_NEAR(cloud(263.16F), 0.5F, kRounding);
+  EXPECT_NEAR(cloud(273.16F - kStep_K), 1.0F - kStep_K / 20.0F, kRounding);
+  EXPECT_EQ(cloud(273.16F), 1.0F);
+  EXPECT_EQ(precipitation(Hydrometeor::kRain, 268.16F), 0.0F);
+  EXPECT_NEAR(precipitation(Hydrometeor::kRain, 268.16F + kStep_K), kStep_K / 15.0F, kRounding);
+  EXPECT_NEAR(precipitation(Hydrometeor::kRain, 275.66F), 0.5F, kRounding);
+  EXPECT_EQ(precipitation(Hydrometeor::kRain, 283.16F), 1.0F);
+  EXPECT_EQ(precipitation(Hydrometeor::kGraupel, 223.16F), 0.0F);
+  EXPECT_NEAR(precipitation(Hydrometeor::kGraupel, 223.16F + kStep_K), kStep_K / 60.0F, kRounding);
+  EXPECT_NEAR(precipitation(Hydrometeor::kGraupel, 253.16F), 0.5F, kRounding);
+  // At 268.16 K there is no rain yet, and graupel is 45 of 60 K above its limit.
+  EXPECT_NEAR(precipitation(Hydrometeor::kGraupel, 268.16F), 0.75F, kRounding);
+  EXPECT_NEAR(precipitation(Hydrometeor::kSnow, 268.16F), 0.25F, kRounding);
+}
+
 // Meso-NH's levels follow the terrain, although their coordinate is in metres. Its lowest level is
 // below the ground.
 TEST_F(CfModels, MesoNhLevelsFollowTheTerrain) {

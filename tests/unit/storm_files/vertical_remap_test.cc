@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 
 namespace thunderhead::storm_files {
 namespace {
@@ -132,6 +133,120 @@ TEST(ChooseVerticalGrid, HasAtMostAQuarterMoreCellsThanLevels) {
   EXPECT_LE(grid.cells, 50);
   EXPECT_GE(grid.cells, 49);
   EXPECT_GE(grid.High_m(), interfaces_m.back());
+}
+
+// Returns the height above which the share `share` of a column's mass lies. `faces_m` has one value
+// more than `concentration`, which is the same all over a cell.
+double HeightBelow_m(const std::vector<float>& faces_m, const std::vector<float>& concentration,
+                     double share) {
+  double above = 0.0;
+  const double wanted = share * Path(faces_m, concentration);
+  for (std::size_t i = concentration.size(); i-- > 0;) {
+    const double mass = static_cast<double>(concentration[i]) * (faces_m[i + 1] - faces_m[i]);
+    if (above + mass >= wanted && mass > 0.0) {
+      return faces_m[i + 1] - (wanted - above) / concentration[i];
+    }
+    above += mass;
+  }
+  return 0.0;
+}
+
+// The heights of interfaces in m, upwards, and the greatest thickness of a cell of their grid.
+struct LayersOfModel {
+  const char* name;
+  std::vector<float> interfaces_m;
+  double thickest_cell_m;
+};
+
+// The 137 levels of IFS in the standard atmosphere: heights of some interfaces, with even layers
+// between them. The lowest layers are 23 m thick and the highest one 4.5 km.
+LayersOfModel Ifs137() {
+  const std::vector<std::pair<int, double>> known = {
+      {0, 0.0},       {4, 92.0},      {10, 310.0},    {18, 842.0},
+      {26, 1828.0},   {40, 5035.0},   {60, 10844.0},  {80, 17127.0},
+      {95, 23078.0},  {105, 28713.0}, {115, 36788.0}, {122, 44989.0},
+      {128, 54965.0}, {132, 64104.0}, {135, 72988.0}, {137, 81935.0}};
+  LayersOfModel layers{"137 levels of IFS", {0.0F}, 177.0};
+  for (std::size_t i = 1; i < known.size(); ++i) {
+    const auto [from, from_m] = known[i - 1];
+    const auto [to, to_m] = known[i];
+    for (int k = from + 1; k <= to; ++k) {
+      layers.interfaces_m.push_back(
+          static_cast<float>(from_m + (to_m - from_m) * (k - from) / (to - from)));
+    }
+  }
+  return layers;
+}
+
+// Layers of 10 m up to 300 m, and of 500 m up to 20 km.
+LayersOfModel ThinNearTheGround() {
+  LayersOfModel layers{"10 m near the ground", {0.0F}, 236.0};
+  while (layers.interfaces_m.back() < 20'000.0F) {
+    layers.interfaces_m.push_back(layers.interfaces_m.back() +
+                                  (layers.interfaces_m.back() < 300.0F ? 10.0F : 500.0F));
+  }
+  return layers;
+}
+
+LayersOfModel UpperOnly() {
+  LayersOfModel layers{"upper levels only", {5035.0F}, 291.0};
+  for (const float each_m : Ifs137().interfaces_m) {
+    if (each_m > 5036.0F && each_m < 20'000.0F) layers.interfaces_m.push_back(each_m);
+  }
+  return layers;
+}
+
+// A column keeps its mass, and a cloud its heights, however uneven the layers are.
+TEST(ChooseVerticalGrid, KeepsMassAndTopOfClouds) {
+  for (const LayersOfModel& model : {Ifs137(), ThinNearTheGround(), UpperOnly()}) {
+    SCOPED_TRACE(model.name);
+    const auto levels = static_cast<int>(model.interfaces_m.size()) - 1;
+    const VerticalGrid grid = ChooseVerticalGrid(model.interfaces_m, levels, 1);
+    EXPECT_LE(grid.spacing_m, model.thickest_cell_m);
+    std::vector<float> faces_m;
+    for (int i = 0; i <= grid.cells; ++i) {
+      faces_m.push_back(static_cast<float>(grid.low_m + i * grid.spacing_m));
+    }
+    for (const auto& [base_m, top_m] : {std::pair{0.0F, 12'000.0F},
+                                        {5100.0F, 12'000.0F},
+                                        {9000.0F, 11'000.0F},
+                                        {0.0F, 1500.0F}}) {
+      SCOPED_TRACE(top_m);
+      std::vector<float> cloud;
+      for (int i = 0; i < levels; ++i) {
+        const float middle_m = 0.5F * (model.interfaces_m[i] + model.interfaces_m[i + 1]);
+        cloud.push_back(middle_m > base_m && middle_m < top_m ? 1e-3F : 0.0F);
+      }
+      const double path = Path(model.interfaces_m, cloud);
+      if (path == 0.0) continue;
+      const std::vector<float> cells = RemapColumns(model.interfaces_m, cloud, levels, 1, grid);
+      EXPECT_NEAR(Path(grid, cells) / path, 1.0, 1e-5);
+      const double middle_m = HeightBelow_m(model.interfaces_m, cloud, 0.5);
+      EXPECT_NEAR(HeightBelow_m(faces_m, cells, 0.5), middle_m, 0.01 * middle_m);
+      // The top is known to a cell, and that of a tall cloud to 1 %.
+      const double highest_m = HeightBelow_m(model.interfaces_m, cloud, 0.01);
+      const double tolerance_m = top_m - base_m > 6000.0F ? 0.01 * highest_m : grid.spacing_m;
+      EXPECT_NEAR(HeightBelow_m(faces_m, cells, 0.01), highest_m, tolerance_m);
+    }
+  }
+}
+
+// What is above 30 km is in the highest cell, so no mass is lost.
+TEST(ChooseVerticalGrid, EndsAboveAllClouds) {
+  const std::vector<float> interfaces_m = Ifs137().interfaces_m;
+  const VerticalGrid grid = ChooseVerticalGrid(interfaces_m, 137, 1);
+  EXPECT_NEAR(grid.High_m(), 30'000.0, 200.0);
+  std::vector<float> cloud(137, 0.0F);
+  cloud[40] = 1e-4F;
+  cloud[130] = 1e-6F;
+  const std::vector<float> cells = RemapColumns(interfaces_m, cloud, 137, 1, grid);
+  EXPECT_NEAR(Path(grid, cells) / Path(interfaces_m, cloud), 1.0, 1e-5);
+  EXPECT_GT(cells.back(), 0.0F);
+  EXPECT_EQ(Extended(grid, interfaces_m).cells, grid.cells);
+  // Extinction may be anything, and layers that begin higher are no storm's.
+  constexpr double kAnyHeight = std::numeric_limits<double>::infinity();
+  EXPECT_GE(ChooseVerticalGrid(interfaces_m, 137, 1, kAnyHeight).High_m(), 81'935.0);
+  EXPECT_GE(ChooseVerticalGrid({20'000.0F, 30'000.0F, 50'000.0F}, 2, 1).High_m(), 50'000.0);
 }
 
 TEST(ChooseVerticalGrid, HasOneCellForOneLayerAndNoneForNone) {
