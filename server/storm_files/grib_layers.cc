@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -83,6 +84,13 @@ struct Candidate {
 };
 
 using Candidates = std::vector<Candidate>;
+
+// Returns whether two fields are on the same grid. Fields of one message share a grid section,
+// which can be much longer than the rest of a field.
+bool IsSameGrid(const grib::Field& one, const grib::Field& other) {
+  return one.grid == other.grid || *one.grid == *other.grid;
+}
+
 using ByLevel = std::map<double, GribPlace>;
 
 // A field with the levels on which it is.
@@ -110,17 +118,16 @@ using Selections = std::set<Selection>;
 
 class Finder {
  public:
-  // `wanted` is null if the files have no hydrometeors.
-  Finder(const std::string& path, const GribIndexes& files, const Selections& all,
-         const Selection* wanted)
-      : files_(files), all_(all), wanted_(wanted) {
-    contents_.path = path;
-  }
+  // `wanted` is null if the files have no hydrometeors. `candidates` are the fields of all storms.
+  Finder(const std::string& path, const Candidates& candidates, const Selections& all,
+         const Selection* wanted);
+
+  // Returns the number of fields that belong to the storm.
+  std::size_t Fields() const { return candidates_.size(); }
 
   absl::StatusOr<GribContents> Find();
 
  private:
-  void Collect();
   absl::Status ChooseLevels();
   absl::Status CheckOneRun();
   absl::Status FindCells();
@@ -149,9 +156,12 @@ class Finder {
   absl::StatusOr<Found> LevelsOf(GribKind kind, const std::optional<absl::Time>& time,
                                  bool on_half_levels = false) const;
   absl::StatusOr<std::optional<GribPlace>> AtGround(GribKind kind, absl::Time time,
-                                                    bool at_any_time) const;
+                                                    bool at_any_time);
 
-  bool IsOfStorm(const grib::Field& field, const GribMeaning& meaning) const;
+  // Returns the storm's fields that are valid at `time`, or all of them without a time.
+  const Candidates& At(const std::optional<absl::Time>& time) const;
+  const std::optional<GribPlace>& AtGroundAtAnyTime(GribKind kind);
+  bool IsAtGround(const Candidate& candidate, GribKind kind) const;
   bool IsOnLevel(const grib::Field& field, bool on_half_level) const;
   std::string Where() const;
   std::string NameOf(const grib::Field& field) const {
@@ -173,13 +183,26 @@ class Finder {
     std::vector<std::string>& all = contents_.assumptions;
     if (std::ranges::find(all, sentence) == all.end()) all.push_back(std::move(sentence));
   }
+  // Adds an assumption that may be another one at each time. Of very many, the first are kept.
+  void AssumeOfTime(std::string sentence) {
+    constexpr std::size_t kMost = 20;
+    if (assumptions_of_times_ >= kMost) return;
+    const std::size_t before = contents_.assumptions.size();
+    Assume(std::move(sentence));
+    assumptions_of_times_ += contents_.assumptions.size() - before;
+  }
   GribSeries Series(const Found& found, const std::vector<double>& levels) const;
 
-  const GribIndexes& files_;
   const Selections& all_;
   const Selection* const wanted_;
   GribContents contents_;
   Candidates candidates_;
+  // What the search for each time needs, collected once. A file may have very many times.
+  std::map<absl::Time, Candidates> candidates_at_;
+  std::map<Hydrometeor, std::map<grib::Parameter, GribMeaning>> parameters_;
+  std::map<GribKind, std::optional<GribPlace>> at_ground_at_any_time_;
+  std::optional<Found> half_heights_;
+  std::size_t assumptions_of_times_ = 0;
   int type_ = 0;                        // the type of the storm's levels
   bool has_layers_ = false;             // true if amounts lie between two half levels
   const grib::Field* first_ = nullptr;  // the first field of a hydrometeor
@@ -193,28 +216,74 @@ std::string Finder::Where() const {
                       member.empty() ? "" : ", ", member, ")");
 }
 
-// Returns whether the field belongs to the storm that is wanted. If all storms are of one run,
-// fields of other runs are taken here and reported later.
-bool Finder::IsOfStorm(const grib::Field& field, const GribMeaning& meaning) const {
-  if (all_.size() < 2) return true;
-  const bool are_one_run = std::ranges::all_of(
-      all_, [this](const Selection& each) { return each.origin == wanted_->origin; });
-  if (!are_one_run && field.origin != wanted_->origin) return false;
-  if (field.member.has_value()) return field.member == wanted_->member;
-  if (!wanted_->member.has_value() || meaning.kind == GribKind::kGeometricHeight) return true;
-  if (field.first.type == kGround && IsHeight(meaning.kind)) return true;
-  return !all_.contains({wanted_->origin, std::nullopt});
-}
+// Tells which fields belong to a storm.
+class StormFields {
+ public:
+  StormFields(const Selections& all, const Selection& wanted)
+      : wanted_(wanted),
+        is_alone_(all.size() < 2),
+        are_one_run_(std::ranges::all_of(
+            all, [&](const Selection& each) { return each.origin == wanted.origin; })),
+        has_hydrometeors_without_member_(all.contains({wanted.origin, std::nullopt})) {}
 
-void Finder::Collect() {
-  for (std::size_t file = 0; file < files_.size(); ++file) {
-    for (const grib::Field& field : files_[file]->fields) {
+  // Returns whether the field belongs to the storm that is wanted. If all storms are of one run,
+  // fields of other runs are taken here and reported later.
+  bool Has(const Candidate& candidate) const {
+    if (is_alone_) return true;
+    const grib::Field& field = candidate.Field();
+    if (!are_one_run_ && field.origin != wanted_.origin) return false;
+    if (field.member.has_value()) return field.member == wanted_.member;
+    const GribKind kind = candidate.meaning.kind;
+    if (!wanted_.member.has_value() || kind == GribKind::kGeometricHeight) return true;
+    if (field.first.type == kGround && IsHeight(kind)) return true;
+    return !has_hydrometeors_without_member_;
+  }
+
+ private:
+  const Selection& wanted_;
+  const bool is_alone_;
+  const bool are_one_run_;
+  const bool has_hydrometeors_without_member_;
+};
+
+// Returns the fields of the files that a storm may need.
+Candidates CandidatesOf(const GribIndexes& files) {
+  Candidates candidates;
+  for (std::size_t file = 0; file < files.size(); ++file) {
+    for (const grib::Field& field : files[file]->fields) {
       if (!field.is_instant) continue;
       const GribMeaning meaning = MeaningOf(field.parameter);
-      if (meaning.kind == GribKind::kNone || !IsOfStorm(field, meaning)) continue;
-      candidates_.push_back({{file, &field}, meaning});
+      if (meaning.kind != GribKind::kNone) candidates.push_back({{file, &field}, meaning});
     }
   }
+  return candidates;
+}
+
+Finder::Finder(const std::string& path, const Candidates& candidates, const Selections& all,
+               const Selection* wanted)
+    : all_(all), wanted_(wanted) {
+  contents_.path = path;
+  if (wanted == nullptr) {
+    candidates_ = candidates;
+  } else {
+    std::ranges::copy_if(candidates, std::back_inserter(candidates_),
+                         [of_storm = StormFields(all, *wanted)](const Candidate& candidate) {
+                           return of_storm.Has(candidate);
+                         });
+  }
+  for (const Candidate& candidate : candidates_) {
+    candidates_at_[candidate.Field().Valid()].push_back(candidate);
+    const GribMeaning& meaning = candidate.meaning;
+    if (meaning.kind != GribKind::kAmount) continue;
+    parameters_[meaning.hydrometeor].emplace(candidate.Field().parameter, meaning);
+  }
+}
+
+const Candidates& Finder::At(const std::optional<absl::Time>& time) const {
+  static const Candidates none;
+  if (!time.has_value()) return candidates_;
+  const auto at = candidates_at_.find(*time);
+  return at == candidates_at_.end() ? none : at->second;
 }
 
 // Chooses the type of levels on which hydrometeors have the most levels. A file on isobaric levels
@@ -269,7 +338,7 @@ absl::Status Finder::CheckOneRun() {
           field.origin.centre, "); put each run into a separate file or folder"));
     }
     if (candidate.meaning.kind != GribKind::kAmount) continue;
-    if (*field.grid != *first_->grid) {
+    if (!IsSameGrid(field, *first_)) {
       return Refused("has hydrometeors on several grids; put each grid into a separate file");
     }
   }
@@ -288,7 +357,7 @@ absl::Status Finder::CheckOneRun() {
 // Finds the places of the cells, which are fields on the same grid.
 absl::Status Finder::FindCells() {
   for (const Candidate& candidate : candidates_) {
-    if (*candidate.Field().grid != *first_->grid) continue;
+    if (!IsSameGrid(candidate.Field(), *first_)) continue;
     if (candidate.meaning.kind == GribKind::kCellLatitude) {
       contents_.cell_latitude = candidate.place;
     } else if (candidate.meaning.kind == GribKind::kCellLongitude) {
@@ -307,7 +376,7 @@ absl::Status Finder::FindCells() {
 // Returns whether the field is on a level of the storm's type, or on a half level between them.
 bool Finder::IsOnLevel(const grib::Field& field, bool on_half_level) const {
   if (field.first.type != type_ || !std::isfinite(field.first.value)) return false;
-  if (*field.grid != *first_->grid) return false;
+  if (!IsSameGrid(field, *first_)) return false;
   if (field.member != first_->member && field.member.has_value()) return false;
   const bool is_layer = field.second.type == type_;
   if (type_ == kIsobaricSurface) return !IsBetweenPressures(field) && !on_half_level;
@@ -317,10 +386,9 @@ bool Finder::IsOnLevel(const grib::Field& field, bool on_half_level) const {
 absl::StatusOr<Found> Finder::Levels(const std::optional<absl::Time>& time, bool on_half_levels,
                                      const IsWanted& is_wanted) const {
   Found found;
-  for (const Candidate& candidate : candidates_) {
+  for (const Candidate& candidate : At(time)) {
     const grib::Field& field = candidate.Field();
-    if (!IsOnLevel(field, on_half_levels) || !is_wanted(candidate)) continue;
-    if (time.has_value() && field.Valid() != *time) continue;
+    if (!is_wanted(candidate) || !IsOnLevel(field, on_half_levels)) continue;
     const auto [at, is_new] = found.levels.emplace(field.first.value, candidate.place);
     found.kind = candidate.meaning.kind;
     found.name = NameOf(field);
@@ -355,16 +423,9 @@ absl::Status Finder::FindHydrometeors(absl::Time time, GribLayers& layers,
                                       std::vector<Found>& needed) {
   for (const Hydrometeor hydrometeor : physics::kHydrometeors) {
     // If there are several parameters for one hydrometeor, the one on the most levels is used.
-    std::map<grib::Parameter, GribMeaning> parameters;
-    for (const Candidate& candidate : candidates_) {
-      const GribMeaning& meaning = candidate.meaning;
-      if (meaning.kind == GribKind::kAmount && meaning.hydrometeor == hydrometeor) {
-        parameters.emplace(candidate.Field().parameter, meaning);
-      }
-    }
     Found best;
     GribHydrometeor found;
-    for (const auto& [parameter, meaning] : parameters) {
+    for (const auto& [parameter, meaning] : parameters_[hydrometeor]) {
       THUNDERHEAD_ASSIGN_OR_RETURN(
           Found levels, Levels(time, false, [&wanted = parameter](const Candidate& candidate) {
             return candidate.Field().parameter == wanted;
@@ -414,10 +475,10 @@ std::set<double> Finder::LevelsOfState(absl::Time time) const {
                                  GribKind::kPressure,          GribKind::kGeometricHeight,
                                  GribKind::kGeopotentialHeight};
   std::set<double> levels;
-  for (const Candidate& candidate : candidates_) {
+  for (const Candidate& candidate : At(time)) {
     if (std::ranges::find(kState, candidate.meaning.kind) == kState.end()) continue;
     const grib::Field& field = candidate.Field();
-    if (IsOnLevel(field, false) && field.Valid() == time) levels.insert(field.first.value);
+    if (IsOnLevel(field, false)) levels.insert(field.first.value);
   }
   return levels;
 }
@@ -476,7 +537,7 @@ absl::Status Finder::ShareLevels(std::vector<Found>& needed, std::size_t amounts
     }
   }
   if (!left_out.empty()) {
-    Assume(absl::StrCat(
+    AssumeOfTime(absl::StrCat(
         "Levels that not all fields have are left out: ", absl::StrJoin(left_out, ", "), "."));
   }
   // Pressure falls upwards.
@@ -484,22 +545,32 @@ absl::Status Finder::ShareLevels(std::vector<Found>& needed, std::size_t amounts
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::optional<GribPlace>> Finder::AtGround(GribKind kind, absl::Time time,
-                                                          bool at_any_time) const {
-  std::optional<GribPlace> any;
-  for (const Candidate& candidate : candidates_) {
-    const grib::Field& field = candidate.Field();
-    // IFS codes the surface pressure and geopotential as its hybrid level 1.
-    const bool is_first_hybrid =
-        field.first.type == kHybrid && field.first.value == 1.0 &&
-        (kind == GribKind::kLogPressure || kind == GribKind::kGeopotential);
-    if (candidate.meaning.kind != kind) continue;
-    if (field.first.type != kGround && !is_first_hybrid) continue;
-    if (*field.grid != *first_->grid) continue;
-    if (field.Valid() == time) return candidate.place;
-    if (at_any_time && !any.has_value()) any = candidate.place;
+bool Finder::IsAtGround(const Candidate& candidate, GribKind kind) const {
+  const grib::Field& field = candidate.Field();
+  // IFS codes the surface pressure and geopotential as its hybrid level 1.
+  const bool is_first_hybrid = field.first.type == kHybrid && field.first.value == 1.0 &&
+                               (kind == GribKind::kLogPressure || kind == GribKind::kGeopotential);
+  return candidate.meaning.kind == kind && (field.first.type == kGround || is_first_hybrid) &&
+         IsSameGrid(field, *first_);
+}
+
+// Returns the first field of the kind at the ground.
+const std::optional<GribPlace>& Finder::AtGroundAtAnyTime(GribKind kind) {
+  const auto [at, is_new] = at_ground_at_any_time_.try_emplace(kind);
+  if (is_new) {
+    const auto found = std::ranges::find_if(
+        candidates_, [&](const Candidate& candidate) { return IsAtGround(candidate, kind); });
+    if (found != candidates_.end()) at->second = found->place;
   }
-  return any;
+  return at->second;
+}
+
+absl::StatusOr<std::optional<GribPlace>> Finder::AtGround(GribKind kind, absl::Time time,
+                                                          bool at_any_time) {
+  for (const Candidate& candidate : At(time)) {
+    if (IsAtGround(candidate, kind)) return candidate.place;
+  }
+  return at_any_time ? AtGroundAtAnyTime(kind) : std::nullopt;
 }
 
 absl::Status Finder::FindSurface(absl::Time time, GribLayers& layers) {
@@ -555,7 +626,7 @@ absl::Status Finder::FindIsobaricHeights(absl::Time time, GribLayers& layers) {
     layers.heights = {};
     Assume("Heights of levels are computed from pressure, temperature and humidity (hydrostatic).");
   } else if (!computed.empty()) {
-    Assume(
+    AssumeOfTime(
         absl::StrCat("Heights of these levels are computed from the next level's (hydrostatic): ",
                      absl::StrJoin(computed, ", "), "."));
   }
@@ -578,7 +649,10 @@ absl::Status Finder::FindHalfHeights(GribLayers& layers) {
         mine != nullptr && storms != nullptr && mine->has_grid_id && storms->has_grid_id;
     return !both || mine->grid_id == storms->grid_id;
   };
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Found found, Levels(std::nullopt, true, is_height));
+  if (!half_heights_.has_value()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(half_heights_, Levels(std::nullopt, true, is_height));
+  }
+  const Found& found = *half_heights_;
   if (found.levels.empty()) return absl::OkStatus();
   std::vector<double> half_levels = layers.levels;
   half_levels.push_back(layers.levels.back() + 1.0);
@@ -592,8 +666,9 @@ absl::Status Finder::FindHalfHeights(GribLayers& layers) {
   }
   // The first of the levels is the highest. A file may have the lower levels only.
   if (found.levels.begin()->first < half_levels.front()) {
-    Assume(absl::StrCat("The storm ends at ", LevelName(type_, layers.levels.front()),
-                        ", because no field is on the levels above, whose heights are given."));
+    AssumeOfTime(
+        absl::StrCat("The storm ends at ", LevelName(type_, layers.levels.front()),
+                     ", because no field is on the levels above, whose heights are given."));
   }
   layers.heights = Series(found, half_levels);
   layers.heights.on_half_levels = true;
@@ -700,8 +775,8 @@ GribSeries Finder::Optional(const Found& found, const std::vector<double>& level
                             const GribLayers& layers) {
   for (const double level : levels) {
     if (found.levels.empty() || found.levels.contains(level)) continue;
-    Assume(absl::StrCat(Described(found), " is not used, because ", LevelName(type_, level),
-                        " is missing at ", TimeText(layers.time), "."));
+    AssumeOfTime(absl::StrCat(Described(found), " is not used, because ", LevelName(type_, level),
+                              " is missing at ", TimeText(layers.time), "."));
     return GribSeries();
   }
   return found.levels.empty() ? GribSeries() : Series(found, levels);
@@ -766,7 +841,6 @@ void SplitCloud(GribLayers& layers) {
 }
 
 absl::StatusOr<GribContents> Finder::Find() {
-  Collect();
   THUNDERHEAD_RETURN_IF_ERROR(ChooseLevels());
   THUNDERHEAD_RETURN_IF_ERROR(CheckOneRun());
   std::set<absl::Time> times;
@@ -832,10 +906,21 @@ absl::StatusOr<std::vector<GribContents>> FindGribStorms(const std::string& path
     }
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckStormCount(path, all.size()));
+  const Candidates candidates = CandidatesOf(files);
+  if (all.empty()) return Finder(path, candidates, all, nullptr).Find().status();
   std::vector<GribContents> storms;
-  if (all.empty()) return Finder(path, files, all, nullptr).Find().status();
+  std::size_t fields = 0;
   for (const Selection& wanted : all) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(storms.emplace_back(), Finder(path, files, all, &wanted).Find());
+    Finder finder(path, candidates, all, &wanted);
+    fields += finder.Fields();
+    // Fields without a member count for each member.
+    constexpr std::size_t kMostFields = 10 * grib::kMaxFields;
+    if (all.size() > 1 && fields > kMostFields) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(path, ": its ", all.size(), " storms (runs or members) have more than ",
+                       kMostFields, " fields, which are the most; split it"));
+    }
+    THUNDERHEAD_ASSIGN_OR_RETURN(storms.emplace_back(), finder.Find());
   }
   return storms;
 }
