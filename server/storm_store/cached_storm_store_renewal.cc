@@ -52,6 +52,7 @@ void CachedStormStore::TakeFound(const CatalogueScan::Result& found) {
   }
   // The only storm may be a file that is still being written, so the search continues.
   if (found.storms.empty() && found.look_again_at.has_value()) return;
+  if (found.has_untried) return;
   {
     const Lock lock(mutex_);
     searching_ = false;
