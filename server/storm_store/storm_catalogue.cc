@@ -24,6 +24,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Maximum number of notes about one storm, and of its times whose own map projection is checked. A
+// file may have a million times.
+constexpr std::size_t kMostNotes = 100;
+constexpr std::size_t kMostProjections = 10'000;
+
 struct NamedStorm {
   std::string name;
   std::vector<storm_files::StormFile> files;
@@ -521,6 +526,7 @@ std::string CheckedProjection(std::size_t time, CataloguedStorm& storm) {
   if (projection.ok()) return text;
   std::string note = absl::StrCat(file.path, ": the storm is shown without a map: ",
                                   std::string(projection.status().message()));
+  if (storm.notes.size() > kMostNotes) return "";
   if (std::ranges::find(storm.notes, note) == storm.notes.end()) {
     storm.notes.push_back(std::move(note));
   }
@@ -535,9 +541,16 @@ void SetProjections(CataloguedStorm& storm) {
     info.true_north_deg = projection->TrueNorth_deg(*MiddleOf(info, 0)).value_or(0.0);
   }
   const std::string& first = ProjectionAt(FileOf(storm, 0), storm.sources[0].record);
+  std::size_t checked = 0;
   for (std::size_t time = 1; time < info.times.size(); ++time) {
     if (ProjectionAt(FileOf(storm, time), storm.sources[time].record) == first) continue;
-    info.times[time].projection = CheckedProjection(time, storm);
+    const bool is_checked = ++checked <= kMostProjections;
+    info.times[time].projection = is_checked ? CheckedProjection(time, storm) : "";
+  }
+  if (checked > kMostProjections) {
+    storm.notes.push_back(absl::StrCat(info.id, ": ", checked - kMostProjections,
+                                       " of its times are shown without a map, because more than ",
+                                       kMostProjections, " have a map projection of their own"));
   }
 }
 
@@ -548,6 +561,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
   std::ranges::sort(files, {}, &storm_files::StormFile::path);
   CataloguedStorm storm;
   std::map<absl::Time, TimeSource> sources;
+  std::size_t more_doubles = 0;
   for (std::size_t file = 0; file < files.size(); ++file) {
     for (std::size_t record = 0; record < files[file].times.size(); ++record) {
       const absl::Time time = files[file].times[record];
@@ -557,8 +571,16 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
       TimeSource& kept = at->second;
       const TimeSource other = kept;
       if (WasWrittenLater(files[kept.file], files[file])) kept = source;
+      if (storm.notes.size() >= kMostNotes) {
+        ++more_doubles;
+        continue;
+      }
       storm.notes.push_back(NoteOfDouble(files, time, kept, kept.file == file ? other : source));
     }
+  }
+  if (more_doubles > 0) {
+    storm.notes.push_back(
+        absl::StrCat(name, ": ", more_doubles, " more of its times are there several times"));
   }
   StormInfo& info = storm.info;
   info.id = IdFrom(name);
@@ -665,6 +687,7 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
   DropRepeated(named);
   std::vector<CataloguedStorm> storms;
   std::set<std::string> ids;
+  std::map<std::string, int> copies;  // the last number that was appended to an id
   for (NamedStorm& storm : named) {
     // What follows the file's own name is that of the storm in the file.
     const std::string in_file =
@@ -674,7 +697,8 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
     if (info.files.size() == 1) info.path = info.files.front() + in_file;
     std::string& id = storms.back().info.id;
     const std::string stem = id;
-    for (int copy = 2; !ids.insert(id).second; ++copy) id = absl::StrCat(stem, "-", copy);
+    int& copy = copies.try_emplace(stem, 1).first->second;
+    while (!ids.insert(id).second) id = absl::StrCat(stem, "-", ++copy);
   }
   for (std::size_t first = 0, last = 0; first < storms.size(); first = last) {
     while (last < storms.size() && named[last].path == named[first].path) ++last;

@@ -16,6 +16,7 @@
 #include "storm_store/fair_folders.h"
 #include "storm_store/folder_walk.h"
 #include "storm_store/left_out_log.h"
+#include "storm_store/renewed_storms.h"
 #include "tests/support/captured_log.h"
 #include "tests/support/manual_time.h"
 #include "tests/support/temporary_folder.h"
@@ -311,6 +312,43 @@ TEST_F(HostileFolders, TimesOfManyFilesLeaveOthersTheirShare) {
   EXPECT_GE(listed, 1U);
   while (Scan(scan).is_unfinished && scans < 100) ++scans;
   EXPECT_EQ(together_, 31);
+}
+
+TEST_F(HostileFolders, AStormHasFewNotesHoweverManyTimesAreDouble) {
+  StormFile file = Described("/d/storm");
+  file.times.assign(100'000, absl::UnixEpoch());
+  const CataloguedStorm storm = AssembleStorm("storm", {file});
+  EXPECT_EQ(storm.notes.size(), 101U);
+  EXPECT_EQ(storm.notes.back(), "storm: 99899 more of its times are there several times");
+  EXPECT_THAT(storm.info.times, SizeIs(1));
+}
+
+// The store is locked while it takes the result of a search. The work is proportional to the number
+// of storms, of their files and of their times.
+TEST_F(HostileFolders, VeryManyStormsOfOneNameAreListedAndMatchedInTime) {
+  constexpr int kStorms = 20'000;
+  FoundByPath found;
+  for (int i = 0; i < kStorms; ++i) {
+    const std::string path = absl::StrCat("/d/", i, "/storm.nc");
+    found["/d"].push_back({"storm", {Described(path)}});
+  }
+  const StormSearch search{.describe = {},
+                           .describe_together = {},
+                           .on_unlisted = {},
+                           .on_folder = {},
+                           .examples = "",
+                           .answers = [](const std::string&) { return false; },
+                           .found = &found};
+  const auto began = std::chrono::steady_clock::now();
+  const auto storms = FindStorms({"/d"}, search);
+  ASSERT_TRUE(storms.ok()) << storms.status();
+  ASSERT_THAT(*storms, SizeIs(kStorms));
+  std::vector<const CataloguedStorm*> known;
+  for (const CataloguedStorm& storm : *storms) known.push_back(&storm);
+  const auto match = MatchStorms(known, *storms);
+  for (std::size_t i = 0; i < match.size(); ++i) EXPECT_EQ(match[i], i);
+  // This takes less than a second. It took minutes when each storm was compared with each other.
+  EXPECT_LT(std::chrono::steady_clock::now() - began, seconds(60));
 }
 
 TEST(FairFolders, EachLevelSharesItsTime) {
