@@ -124,6 +124,7 @@ absl::StatusOr<Grid> ReadRegular(const Octets& section, const Earth& earth) {
                           grid.columns, "longitudes"));
   grid.wind_along_grid = IsWindAlongGrid(section, 55);
   PlaceRegularRows(latitudes_deg, unit_deg, section, grid);
+  THUNDERHEAD_RETURN_IF_ERROR(CompleteSteps(grid));
   grid.projection = absl::StrCat("+proj=longlat ", earth.Text(), " +no_defs");
   return grid;
 }

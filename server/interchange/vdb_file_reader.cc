@@ -70,7 +70,7 @@ absl::StatusOr<VdbVolume> ReadVdb(const std::string& path, const std::string& gr
   request.path = path;
   request.part = grid;
   VdbVolume volume;
-  THUNDERHEAD_RETURN_IF_ERROR(readers.Run(std::move(request), sandbox::Reply::kOther, limits.time,
+  THUNDERHEAD_RETURN_IF_ERROR(readers.Run(std::move(request), sandbox::Reply::kOther, {limits.time},
                                           checkpoint, [&volume](sandbox::Receiver& from_reader) {
                                             Visit(from_reader, volume);
                                             return CheckPlausible(volume);

@@ -3,15 +3,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "sandbox/plausible.h"
 
 namespace thunderhead::sandbox {
 namespace {
-
-// The timeout for describing a file. It is short, because a description reads no fields and the
-// catalogue waits for it.
-constexpr std::chrono::milliseconds kDescriptionTime{60'000};
 
 // The time for which an unchanged file is not read again after it made its reader fail.
 constexpr std::chrono::minutes kPause{10};
@@ -60,7 +57,7 @@ ConfinedFiles::ConfinedFiles(const ConfinedOptions& options)
       readers_(options.limits, *options.time, options.program, {.opened = options.check_opened}) {}
 
 absl::Status ConfinedFiles::Probe() {
-  return readers_.Run(RequestFor(Wanted::kProbe, "a probe"), Reply::kProbed, options_.limits.time,
+  return readers_.Run(RequestFor(Wanted::kProbe, "a probe"), Reply::kProbed, {options_.limits.time},
                       {}, [](Receiver& from_reader) {
                         Note nothing;
                         Visit(from_reader, nothing);
@@ -68,7 +65,7 @@ absl::Status ConfinedFiles::Probe() {
                       });
 }
 
-absl::Status ConfinedFiles::Run(Request request, Reply wanted, std::chrono::milliseconds patience,
+absl::Status ConfinedFiles::Run(Request request, Reply wanted, Readers::Patience patience,
                                 const storm_files::ReadCheckpoint& checkpoint,
                                 const Readers::Take& take) {
   const std::string path = request.path;
@@ -96,13 +93,25 @@ absl::StatusOr<storm_files::StormFile> ConfinedFiles::Describe(const std::string
 
 absl::StatusOr<storm_files::StormFile> ConfinedFiles::DescribeTogether(
     const std::string& path, const std::vector<std::string>& paths) {
+  return DescribeFor(path, paths, DescriptionPatience(storm_files::kLongestDescription, false));
+}
+
+Readers::Patience ConfinedFiles::DescriptionPatience(std::chrono::milliseconds patience,
+                                                     bool is_batch) const {
+  const std::chrono::milliseconds longest =
+      std::min(options_.limits.time, storm_files::kLongestDescription);
+  return {std::min(patience, longest), is_batch || patience < longest};
+}
+
+absl::StatusOr<storm_files::StormFile> ConfinedFiles::DescribeFor(
+    const std::string& path, const std::vector<std::string>& paths, Readers::Patience patience) {
   storm_files::StormFile file;
-  THUNDERHEAD_RETURN_IF_ERROR(
-      Run(RequestFor(Wanted::kDescription, path, paths), Reply::kDescription,
-          std::min(options_.limits.time, kDescriptionTime), {}, [&file](Receiver& from_reader) {
-            Visit(from_reader, file);
-            return CheckPlausible(file);
-          }));
+  THUNDERHEAD_RETURN_IF_ERROR(Run(RequestFor(Wanted::kDescription, path, paths),
+                                  Reply::kDescription, patience, {},
+                                  [&file](Receiver& from_reader) {
+                                    Visit(from_reader, file);
+                                    return CheckPlausible(file);
+                                  }));
   Own(path, paths, file);
   return file;
 }
@@ -125,7 +134,8 @@ void ConfinedFiles::Own(const std::string& path, const std::vector<std::string>&
 }
 
 std::vector<absl::StatusOr<storm_files::StormFile>> ConfinedFiles::DescribeEach(
-    const std::vector<std::string>& paths) {
+    const std::vector<std::string>& paths, std::chrono::milliseconds patience) {
+  const auto began = options_.time->Now();
   std::vector<absl::StatusOr<storm_files::StormFile>> files;
   std::vector<Description> descriptions;
   const auto take = [&](Receiver& from_reader) -> absl::Status {
@@ -136,15 +146,19 @@ std::vector<absl::StatusOr<storm_files::StormFile>> ConfinedFiles::DescribeEach(
     }
     return absl::OkStatus();
   };
-  const bool together =
-      paths.size() > 1 &&
-      readers_
-          .Run(RequestFor(Wanted::kDescriptions, paths.front(), paths), Reply::kDescriptions,
-               std::min(options_.limits.time, kDescriptionTime), {}, take)
-          .ok();
+  absl::Status together = absl::UnknownError("one file is described alone");
+  if (paths.size() > 1) {
+    together = readers_.Run(RequestFor(Wanted::kDescriptions, paths.front(), paths),
+                            Reply::kDescriptions, DescriptionPatience(patience, true), {}, take);
+  }
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    if (!together) {
-      files.push_back(Describe(paths[i]));
+    const bool is_late = paths.size() > 1 && options_.time->Now() - began >= patience;
+    if (absl::IsAborted(together) || (!together.ok() && is_late)) {
+      files.emplace_back(absl::AbortedError(absl::StrCat(
+          paths[i],
+          ": was not described, because files of its batch are slow; describe it alone")));
+    } else if (!together.ok()) {
+      files.push_back(DescribeFor(paths[i], {}, DescriptionPatience(patience, false)));
     } else if (descriptions[i].code != 0) {
       files.emplace_back(absl::Status(static_cast<absl::StatusCode>(descriptions[i].code),
                                       NoteText(descriptions[i].message)));
@@ -165,7 +179,7 @@ absl::StatusOr<volume::HydrometeorFields> ConfinedFiles::Read(
   request.stride = part.stride;
   request.grid = grid;
   volume::HydrometeorFields fields;
-  THUNDERHEAD_RETURN_IF_ERROR(Run(std::move(request), Reply::kFields, options_.limits.time,
+  THUNDERHEAD_RETURN_IF_ERROR(Run(std::move(request), Reply::kFields, {options_.limits.time},
                                   checkpoint, [&](Receiver& from_reader) {
                                     Visit(from_reader, fields);
                                     return CheckPlausible(fields,
@@ -179,7 +193,7 @@ absl::StatusOr<storm_files::VerticalGrid> ConfinedFiles::ReadVerticalGrid(
   storm_files::VerticalGrid grid;
   THUNDERHEAD_RETURN_IF_ERROR(
       Run(RequestFor(Wanted::kVerticalGrid, of.path, of.parts, of.first_record + record),
-          Reply::kGrid, options_.limits.time, {}, [&grid](Receiver& from_reader) {
+          Reply::kGrid, {options_.limits.time}, {}, [&grid](Receiver& from_reader) {
             Visit(from_reader, grid);
             return CheckPlausible(grid);
           }));
@@ -191,7 +205,9 @@ storm_files::StormFormats Confined(storm_files::StormFormats formats,
   formats.LeaveTo(
       {.describe = [files](const std::string& path) { return files->Describe(path); },
        .describe_each =
-           [files](const std::vector<std::string>& paths) { return files->DescribeEach(paths); },
+           [files](const std::vector<std::string>& paths, std::chrono::milliseconds patience) {
+             return files->DescribeEach(paths, patience);
+           },
        .describe_together =
            [files](const std::vector<std::string>& paths) {
              return files->DescribeTogether(paths.front(), paths);

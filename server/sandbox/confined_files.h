@@ -38,9 +38,11 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
 
   absl::StatusOr<storm_files::StormFile> Describe(const std::string& path);
   // Describes several files, each separately, by one reader. If that reader fails, another one
-  // describes each file.
+  // describes each file. ABORTED for files that need longer than `patience` (see
+  // StormFormats::DescribeEach).
   std::vector<absl::StatusOr<storm_files::StormFile>> DescribeEach(
-      const std::vector<std::string>& paths);
+      const std::vector<std::string>& paths,
+      std::chrono::milliseconds patience = storm_files::kLongestDescription);
   // Describes the files at `paths` as one time. `path` is the first of them.
   absl::StatusOr<storm_files::StormFile> DescribeTogether(const std::string& path,
                                                           const std::vector<std::string>& paths);
@@ -64,8 +66,13 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
            storm_files::StormFile& file);
 
   // Sends the request to a reader, unless the same unchanged file has made a reader fail recently.
-  absl::Status Run(Request request, Reply wanted, std::chrono::milliseconds patience,
+  absl::Status Run(Request request, Reply wanted, Readers::Patience patience,
                    const storm_files::ReadCheckpoint& checkpoint, const Readers::Take& take);
+  // ABORTED if `is_trial` and the file needs longer than `patience`.
+  absl::StatusOr<storm_files::StormFile> DescribeFor(const std::string& path,
+                                                     const std::vector<std::string>& paths,
+                                                     Readers::Patience patience);
+  Readers::Patience DescriptionPatience(std::chrono::milliseconds patience, bool is_batch) const;
 
   const ConfinedOptions options_;
   Readers readers_;

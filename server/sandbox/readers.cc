@@ -230,16 +230,15 @@ Readers::Readers(const ReaderLimits& limits, const base::TimeSource& time, std::
       resting_(time) {}
 
 std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, bool has_rested,
-                                         const Request& request, Reply wanted,
-                                         milliseconds patience,
+                                         const Request& request, Reply wanted, Patience patience,
                                          const storm_files::ReadCheckpoint& checkpoint,
                                          const Take& take) {
   reader->Ask(request);
   ReaderLimits limits = limits_;
   // A request may have less time than the flag allows, which the flag does not change.
-  if (patience < limits.time) limits.time_flag.clear();
-  limits.time = patience;
-  Receiver from_reader(reader->Replies(), patience, request.memory_bytes, time_,
+  if (patience.time < limits.time) limits.time_flag.clear();
+  limits.time = patience.time;
+  Receiver from_reader(reader->Replies(), patience.time, request.memory_bytes, time_,
                        reader->Arrays().Bytes());
   StorageWatch storage(reader->Process().Process());
   from_reader.StopOn(limits.stop);
@@ -249,6 +248,11 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
   if (!from_reader.Ok()) {
     const bool ended = from_reader.Why() == Receiver::Failure::kEnded;
     if (has_rested && ended && !from_reader.AnythingCame()) return std::nullopt;
+    if (patience.is_trial && from_reader.Why() == Receiver::Failure::kTooLate) {
+      return absl::AbortedError(absl::StrCat(request.path, ": needs longer than ",
+                                             absl::FormatDuration(absl::FromChrono(patience.time)),
+                                             "; try it again with more patience"));
+    }
     return Judge(request.path, from_reader, reader->Process(), limits);
   }
   // The kernel limits a reader's processor time over all its requests. A reader is therefore kept
@@ -260,7 +264,7 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
   return status;
 }
 
-absl::Status Readers::Run(Request request, Reply wanted, milliseconds patience,
+absl::Status Readers::Run(Request request, Reply wanted, Patience patience,
                           const storm_files::ReadCheckpoint& checkpoint, const Take& take) {
   if (limits_.stop.stop_requested()) return Stopped(request.path);
   request.version = base::Version();

@@ -85,20 +85,26 @@ class Readers {
   // afterwards whether the Receiver has failed.
   using Take = std::function<absl::Status(Receiver& from_reader)>;
 
+  // The longest time to wait for a result. If a trial takes longer, the result is ABORTED, and this
+  // does not count as a failure of the reader.
+  struct Patience {
+    std::chrono::milliseconds time{};
+    bool is_trial = false;
+  };
+
   explicit Readers(const ReaderLimits& limits, const base::TimeSource& time = base::SteadyTime(),
                    std::string program = "", FileChecks checks = {});
 
   // Sends `request` to a reader and waits for its result, but no longer than `patience`. `wanted`
   // is the kind of reply that `take` receives. Errors of the file are returned unchanged.
   // `checkpoint` may be empty.
-  absl::Status Run(Request request, Reply wanted, std::chrono::milliseconds patience,
+  absl::Status Run(Request request, Reply wanted, Patience patience,
                    const storm_files::ReadCheckpoint& checkpoint, const Take& take);
 
  private:
   // Returns nothing if `reader` was kept (`has_rested`) and has ended without a reply.
   std::optional<absl::Status> Ask(std::unique_ptr<StartedReader> reader, bool has_rested,
-                                  const Request& request, Reply wanted,
-                                  std::chrono::milliseconds patience,
+                                  const Request& request, Reply wanted, Patience patience,
                                   const storm_files::ReadCheckpoint& checkpoint, const Take& take);
 
   const ReaderLimits limits_;

@@ -64,13 +64,9 @@ absl::Status ReadValues(NumberText& text, const CloudColumns& columns, CloudRow&
     if (i == columns.radius_at) particles.radius_um = value;
   }
   if (!columns.has_series) return absl::OkStatus();
-  constexpr int kLongest = 1'000'000;
   THUNDERHEAD_ASSIGN_OR_RETURN(const int terms,
-                               text.Integer("the length of a series", 0, kLongest));
-  for (int i = 0; i < terms; ++i) {
-    THUNDERHEAD_RETURN_IF_ERROR(text.NumberOnAnyLine("a term of the series").status());
-  }
-  return absl::OkStatus();
+                               text.Integer("the length of a series", 0, kMostSeriesTerms));
+  return text.SkipNumbers(terms, "a term of the series");
 }
 
 // Reads the next line with a grid point, whose indices count from 0 or 1. Returns false at the end.

@@ -17,6 +17,9 @@
 
 namespace thunderhead::storm_files {
 
+// Maximum number of terms of a phase function. The series of SHDOM have some thousand terms.
+inline constexpr int kMostSeriesTerms = 20'000;
+
 // The columns of a line: the indices of a grid point, then values.
 struct CloudColumns {
   bool has_y = true;   // false if the lines have no index along y, because there is one row

@@ -159,6 +159,17 @@ absl::StatusOr<double> NumberText::NumberOnAnyLine(std::string_view what) {
   return Number(what);
 }
 
+absl::Status NumberText::SkipNumbers(int count, std::string_view what) {
+  while (count > 0) {
+    THUNDERHEAD_RETURN_IF_ERROR(NumberOnAnyLine(what).status());
+    --count;
+    const int repeats = std::min(count, repeats_left_);
+    repeats_left_ -= repeats;
+    count -= repeats;
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<int> NumberText::Integer(std::string_view what, int low, int high) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const double number, Number(what));
   if (number >= low && number <= high && number == std::floor(number)) {

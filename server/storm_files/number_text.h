@@ -48,6 +48,10 @@ class NumberText {
   // Returns the next number, which may be on a later line.
   absl::StatusOr<double> NumberOnAnyLine(std::string_view what);
 
+  // Skips `count` numbers, which may be on several lines. A number that is repeated (3*0.5) takes
+  // the same time as a single one.
+  absl::Status SkipNumbers(int count, std::string_view what);
+
   // Returns the next number of the line, an integer from `low` to `high`.
   absl::StatusOr<int> Integer(std::string_view what, int low, int high);
 

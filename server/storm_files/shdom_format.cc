@@ -12,7 +12,7 @@
 namespace thunderhead::storm_files {
 namespace {
 
-constexpr int kMostSeriesTerms = 1'000'000;
+constexpr int kMostPhaseFunctions = 1'000'000;
 
 // Reads the temperatures in K, one for each height.
 absl::Status ReadTemperatures(NumberText& text, CloudHeader& header) {
@@ -64,10 +64,7 @@ absl::Status SkipPhaseFunction(NumberText& text, bool is_polarized) {
   THUNDERHEAD_ASSIGN_OR_RETURN(int terms,
                                text.Integer("the degree of a phase function", 0, kMostSeriesTerms));
   if (is_polarized) ++terms;  // the term of degree 0
-  for (int i = 0; i < terms; ++i) {
-    THUNDERHEAD_RETURN_IF_ERROR(text.NumberOnAnyLine("a term of a phase function").status());
-  }
-  return absl::OkStatus();
+  return text.SkipNumbers(terms, "a term of a phase function");
 }
 
 absl::Status ReadRestOfExtinctionHeader(NumberText& text, CloudHeader& header) {
@@ -77,17 +74,15 @@ absl::Status ReadRestOfExtinctionHeader(NumberText& text, CloudHeader& header) {
   THUNDERHEAD_RETURN_IF_ERROR(text.Number("the albedo").status());
   THUNDERHEAD_ASSIGN_OR_RETURN(const int terms,
                                text.Integer("the degree of a phase function", 0, kMostSeriesTerms));
-  for (int i = 0; i < terms; ++i) {
-    THUNDERHEAD_RETURN_IF_ERROR(text.NumberOnAnyLine("a term of a phase function").status());
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(text.SkipNumbers(terms, "a term of a phase function"));
   header.columns.has_y = header.cells.y > 1;
   return absl::OkStatus();
 }
 
 absl::Status ReadRestOfTabulatedHeader(NumberText& text, bool is_polarized, CloudHeader& header) {
   THUNDERHEAD_RETURN_IF_ERROR(text.NeedLine("the number of phase functions"));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const int functions,
-                               text.Integer("the number of phase functions", 1, kMostSeriesTerms));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const int functions, text.Integer("the number of phase functions", 1, kMostPhaseFunctions));
   constexpr int kSeries = 6;
   for (int i = 0; i < functions * (is_polarized ? kSeries : 1); ++i) {
     THUNDERHEAD_RETURN_IF_ERROR(SkipPhaseFunction(text, is_polarized));

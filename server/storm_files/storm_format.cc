@@ -182,8 +182,8 @@ absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const 
 }
 
 std::vector<absl::StatusOr<StormFile>> StormFormats::DescribeEach(
-    const std::vector<std::string>& paths) const {
-  if (elsewhere_.describe_each) return elsewhere_.describe_each(paths);
+    const std::vector<std::string>& paths, std::chrono::milliseconds patience) const {
+  if (elsewhere_.describe_each) return elsewhere_.describe_each(paths, patience);
   std::vector<absl::StatusOr<StormFile>> files;
   files.reserve(paths.size());
   for (const std::string& path : paths) files.push_back(Describe(path));

@@ -2,6 +2,7 @@
 // built_in_formats.cc lists all formats.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -17,6 +18,10 @@
 #include "storm_files/storm_file.h"
 
 namespace thunderhead::storm_files {
+
+// The longest time that the description of one file or of one batch may take. A description reads
+// no fields, and the catalogue waits for it.
+inline constexpr std::chrono::milliseconds kLongestDescription{60'000};
 
 // A file whose format is not known yet. It is opened once, and all formats examine its bytes.
 class UnknownFile {
@@ -115,7 +120,8 @@ class StormFormats {
   // spreads a time over several files.
   struct Elsewhere {
     std::function<absl::StatusOr<StormFile>(const std::string& path)> describe;
-    std::function<std::vector<absl::StatusOr<StormFile>>(const std::vector<std::string>& paths)>
+    std::function<std::vector<absl::StatusOr<StormFile>>(const std::vector<std::string>& paths,
+                                                         std::chrono::milliseconds patience)>
         describe_each = {};
     std::function<absl::StatusOr<StormFile>(const std::vector<std::string>& paths)>
         describe_together = {};
@@ -136,8 +142,12 @@ class StormFormats {
   absl::StatusOr<StormFile> Describe(const std::string& path) const;
 
   // Describes several files, each separately, in the order of `paths`. This is faster than to
-  // describe small files one after the other.
-  std::vector<absl::StatusOr<StormFile>> DescribeEach(const std::vector<std::string>& paths) const;
+  // describe small files one after the other. In another process, files that need longer than
+  // `patience` together, or kLongestDescription alone, are given up. If `patience` is shorter, or
+  // if there are several files, such a file gets ABORTED: describe it alone and with more patience.
+  std::vector<absl::StatusOr<StormFile>> DescribeEach(
+      const std::vector<std::string>& paths,
+      std::chrono::milliseconds patience = kLongestDescription) const;
 
   // Describes the files of one time that is spread over several files. The description has the
   // first path.

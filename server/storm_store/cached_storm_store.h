@@ -213,7 +213,7 @@ class CachedStormStore final : public StormStore,
   std::map<std::string, std::size_t, std::less<>> owners_;
   // The last number that was appended to each stem. It is valid during one Renew.
   std::map<std::string, int> copies_;
-  std::condition_variable changed_;    // notified when a read ends, a time is to be read ahead, a
+  std::condition_variable changed_;  // notified when a read ends, a time is to be read ahead, a
                                      // caller begins to wait, or the first search or the store ends
   FieldsCache cache_;
   std::map<TimeKey, std::shared_ptr<PendingRead>> pending_;

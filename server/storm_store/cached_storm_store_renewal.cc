@@ -1,7 +1,9 @@
 // The part of CachedStormStore that follows changes in its folders.
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <set>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -70,6 +72,7 @@ void CachedStormStore::TakeFound(const CatalogueScan::Result& found) {
   KeepIds();
   // The only storm may be a file that is still being written, so the search continues.
   if (found.storms.empty() && found.look_again_at.has_value()) return;
+  if (found.has_untried) return;
   {
     const Lock lock(mutex_);
     searching_ = false;
@@ -177,12 +180,21 @@ StormChange CachedStormStore::Replace(std::size_t place, std::optional<Catalogue
   }
   std::vector<int> numbers;
   std::set<int> kept;
+  // A storm may have a million times, and readers wait for the lock. So equal times are looked up,
+  // by the members that IsSameTime compares.
+  std::map<std::tuple<std::string_view, std::uint64_t, std::size_t, absl::Time>, std::size_t>
+      old_times;
+  const auto key_of = [](const CataloguedStorm& storm, std::size_t time) {
+    const storm_files::StormFile& file = FileOf(storm, time);
+    const std::size_t record = storm.sources[time].record;
+    return std::tuple(std::string_view(file.path), file.version, record, file.times[record]);
+  };
+  for (std::size_t old = 0; held.storm != nullptr && old < held.numbers.size(); ++old) {
+    old_times[key_of(*held.storm, old)] = old;
+  }
   for (std::size_t time = 0; found.has_value() && time < found->sources.size(); ++time) {
-    std::optional<int> number;
-    for (std::size_t old = 0; held.storm != nullptr && old < held.numbers.size(); ++old) {
-      if (IsSameTime(*held.storm, old, *found, time)) number = held.numbers[old];
-    }
-    numbers.push_back(number.has_value() ? *number : held.next_number++);
+    const auto old = old_times.find(key_of(*found, time));
+    numbers.push_back(old == old_times.end() ? held.next_number++ : held.numbers[old->second]);
     kept.insert(numbers.back());
   }
   for (const int number : held.numbers) {

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <span>
 #include <system_error>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "base/file_stamp.h"
 #include "base/slow_calls.h"
 #include "base/status.h"
@@ -13,6 +15,10 @@
 
 namespace thunderhead::storm_store {
 namespace {
+
+double Seconds(CatalogueScan::Time::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
 
 // Returns whether times were appended to a file since it was described. Otherwise the file was
 // written anew.
@@ -34,29 +40,49 @@ std::optional<CatalogueScan::Stamp> CatalogueScan::StampOf(const std::string& pa
 
 absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
   ++scans_;
+  now_ = now;
   changed_ = scans_ == 1;
+  is_unfinished_ = false;
+  has_untried_ = false;
   look_again_at_.reset();
+  BeginTogether();
+  const Time began = options_.time->Now();
   Result result;
   const StormSearch search{
-      .describe = [this,
-                   now](const std::vector<std::string>& paths) { return Describe(paths, now); },
+      .describe = [this](const std::vector<std::string>& paths) { return Descriptions(paths); },
       .describe_together =
           [this](const std::vector<std::string>& paths) { return DescribeTogether(paths); },
       .may_find_nothing = true,
-      .on_unlisted =
-          [this](const std::string& path, const absl::Status& status) {
-            if (!unlisted_.insert(path).second) return;
-            spdlog::warn("left out: {}", std::string(status.message()));
-          },
+      .on_unlisted = [this](const std::string&,
+                            const absl::Status& status) { ReportOnce(status, true); },
       .on_folder = [&result](const std::string& path) { result.folders.push_back(path); },
       .examples = options_.formats.Examples(),
       .answers = [this](const std::string& path) { return Answers(path); },
       .found = &found_,
-      .links = options_.links};
+      .links = options_.links,
+      .prepare =
+          [this, began](const std::vector<ListedFolder>& folders) {
+            See(folders);
+            const Time seen = options_.time->Now();
+            turn_ends_ = seen + std::max<Time::duration>(options_.turn, seen - began);
+            DescribeWaiting();
+          },
+      .on_left_out = [this](const absl::Status& why) { ReportOnce(why, false); },
+      .known_below = [this](const std::string& folder) { return KnownBelow(folder); },
+      .most_entries = options_.most_entries};
   absl::StatusOr<std::vector<CataloguedStorm>> storms = FindStorms(options_.paths, search);
   // A scan that was stopped has not seen every file, so its storms must not replace the others.
   if (stopping_) return absl::CancelledError("the search for storms was told to stop");
   THUNDERHEAD_ASSIGN_OR_RETURN(result.storms, std::move(storms));
+  result.changed = ForgetUnseen() || changed_;
+  EndTurn(result);
+  if (result.changed) LogNotes(result.storms, &reported_);
+  result.look_again_at = look_again_at_;
+  return result;
+}
+
+// Forgets the files that the scan has not seen. Returns whether there were any.
+bool CatalogueScan::ForgetUnseen() {
   const std::size_t gone = std::erase_if(known_, [this](const auto& entry) {
     const auto hangs = [&entry](const std::string& path) { return entry.first.starts_with(path); };
     return entry.second.scan != scans_ && std::ranges::none_of(hanging_, hangs);
@@ -64,10 +90,22 @@ absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
   std::erase_if(together_, [this](const auto& entry) {
     return hanging_.empty() && entry.second.scan != scans_;
   });
-  result.changed = changed_ || gone > 0;
-  if (result.changed) LogNotes(result.storms);
-  result.look_again_at = look_again_at_;
-  return result;
+  return gone > 0;
+}
+
+// Says what waits for the next scan.
+void CatalogueScan::EndTurn(Result& result) {
+  result.has_untried =
+      has_untried_ || !waiting_together_.empty() ||
+      std::ranges::any_of(waiting_, [](const auto& entry) { return entry.second.HasUntried(); });
+  result.is_unfinished = is_unfinished_ || result.has_untried || !waiting_.empty();
+  FolderSet all = waiting_together_;
+  for (const auto& [folder, waiting] : waiting_) all.insert(folder);
+  turns_.KeepOnly(all);
+  left_out_.Summarize(now_);
+  // Other users may cause any number of reasons.
+  constexpr std::size_t kMostReported = 10'000;
+  if (reported_.size() > kMostReported) reported_.clear();
 }
 
 void CatalogueScan::LookAtFolder(const std::string& path) {
@@ -90,25 +128,113 @@ bool CatalogueScan::Answers(const std::string& path) {
   return false;
 }
 
-std::vector<absl::StatusOr<storm_files::StormFile>> CatalogueScan::Describe(
-    const std::vector<std::string>& paths, Time now) {
-  std::vector<std::string> to_open;
-  for (const std::string& path : paths) {
-    if (stopping_) break;
-    const std::optional<Stamp> stamp = StampOf(path);
-    if (!stamp.has_value()) continue;
-    Known& known = known_[path];
-    if (Look(*stamp, now, known)) to_open.push_back(path);
-    known.scan = scans_;
+void CatalogueScan::ReportOnce(const absl::Status& why, bool is_warning) {
+  const std::string reason(why.message());
+  if (!reported_.insert(reason).second) return;
+  // A file of another kind, such as a read-me, is normal.
+  left_out_.Add(reason, is_warning || !absl::IsInvalidArgument(why), now_);
+}
+
+std::vector<std::string> CatalogueScan::KnownBelow(const std::string& folder) const {
+  const std::string below = folder.ends_with('/') ? folder : folder + "/";
+  std::vector<std::string> paths;
+  for (auto at = known_.lower_bound(below); at != known_.end() && at->first.starts_with(below);
+       ++at) {
+    if (at->second.description.has_value()) paths.push_back(at->first);
   }
-  std::vector<absl::StatusOr<storm_files::StormFile>> opened =
-      DescribeInBatches(to_open, options_.formats, [this] {
-        if (!stopping_) options_.before_file();
-        return !stopping_;
-      });
-  for (std::size_t i = 0; i < to_open.size() && !stopping_; ++i) {
-    Take(to_open[i], now, std::move(opened[i]), known_[to_open[i]]);
+  return paths;
+}
+
+// Examines all files, and notes which of them must be opened.
+void CatalogueScan::See(const std::vector<ListedFolder>& folders) {
+  waiting_.clear();
+  for (const ListedFolder& folder : folders) {
+    Waiting waiting;
+    for (const std::string& path : folder.files) {
+      if (stopping_) return;
+      if (!See(path)) continue;
+      const Known& known = known_[path];
+      const bool is_untried = known.tries == 0 && known.trial != Trial::kPatient;
+      (is_untried ? waiting.untried : waiting.tried).push_back(path);
+    }
+    std::ranges::stable_sort(waiting.tried, {},
+                             [this](const std::string& path) { return known_[path].tries; });
+    if (!waiting.IsEmpty()) waiting_.emplace(folder.path, std::move(waiting));
   }
+}
+
+bool CatalogueScan::See(const std::string& path) {
+  const std::optional<Stamp> stamp = StampOf(path);
+  if (!stamp.has_value()) return false;
+  Known& known = known_[path];
+  // A path may be given twice.
+  if (known.scan == scans_) return false;
+  const bool must_open = Look(*stamp, known);
+  known.scan = scans_;
+  if (!must_open || stamp->size_bytes > 0) return must_open;
+  Take(path,
+       absl::InvalidArgumentError(absl::StrCat(path, ": is empty; write it again, or remove it")),
+       known);
+  return false;
+}
+
+void CatalogueScan::DescribeWaiting() {
+  bool has_described = false;
+  FolderSet folders;
+  for (const auto& [folder, waiting] : waiting_) folders.insert(folder);
+  while (!folders.empty() && !stopping_) {
+    if (has_described && options_.time->Now() >= turn_ends_) return;
+    const std::string folder = turns_.Next(folders);
+    Waiting& waiting = waiting_[folder];
+    // What this scan has found is published before the long wait for a slow file.
+    const bool is_slow =
+        !waiting.HasUntried() && known_[waiting.tried[waiting.next_tried]].trial == Trial::kPatient;
+    if (has_described && is_slow) return;
+    const std::vector<std::string> batch = NextBatch(waiting);
+    if (waiting.IsEmpty()) {
+      waiting_.erase(folder);
+      folders.erase(folder);
+    }
+    options_.before_file();
+    if (stopping_) return;
+    const Time began = options_.time->Now();
+    DescribeBatch(batch);
+    turns_.Used(folder, Seconds(options_.time->Now() - began));
+    has_described = true;
+  }
+}
+
+std::vector<std::string> CatalogueScan::NextBatch(Waiting& waiting) {
+  if (!waiting.HasUntried()) return {waiting.tried[waiting.next_tried++]};
+  const auto is_alone = [this](const std::string& path) {
+    return known_[path].trial != Trial::kBatch;
+  };
+  const auto first = waiting.untried.begin() + static_cast<std::ptrdiff_t>(waiting.next_untried);
+  auto end = waiting.untried.begin() +
+             static_cast<std::ptrdiff_t>(EndOfBatch(waiting.untried, waiting.next_untried));
+  end = is_alone(*first) ? first + 1 : std::find_if(first, end, is_alone);
+  waiting.next_untried += static_cast<std::size_t>(end - first);
+  return {first, end};
+}
+
+void CatalogueScan::DescribeBatch(const std::vector<std::string>& batch) {
+  const bool is_patient = batch.size() == 1 && known_[batch.front()].trial == Trial::kPatient;
+  std::vector<absl::StatusOr<storm_files::StormFile>> described = storm_store::DescribeBatch(
+      batch, options_.formats, is_patient ? storm_files::kLongestDescription : options_.trial);
+  for (std::size_t i = 0; i < batch.size() && !stopping_; ++i) {
+    Known& known = known_[batch[i]];
+    if (!absl::IsAborted(described[i].status())) {
+      Take(batch[i], std::move(described[i]), known);
+      continue;
+    }
+    known.trial = batch.size() == 1 ? Trial::kPatient : Trial::kAlone;
+    is_unfinished_ = true;
+    has_untried_ = has_untried_ || batch.size() > 1;
+  }
+}
+
+std::vector<absl::StatusOr<storm_files::StormFile>> CatalogueScan::Descriptions(
+    const std::vector<std::string>& paths) {
   std::vector<absl::StatusOr<storm_files::StormFile>> files;
   for (const std::string& path : paths) {
     const auto known = known_.find(path);
@@ -132,25 +258,65 @@ absl::StatusOr<storm_files::StormFile> CatalogueScan::DescribeTogether(
   for (const std::string& path : paths) versions.push_back(known_[path].description->version);
   KnownTogether& known = together_[paths];
   known.scan = scans_;
-  if (known.versions == versions) {
-    // An error is logged once.
-    if (!known.description.ok()) return absl::CancelledError("it is still not whole");
-    return *known.description;
+  if (known.versions != versions) DescribeTogether(paths, std::move(versions), known);
+  // An error is logged once.
+  if (!known.description.ok()) return absl::CancelledError("it is still not whole");
+  return *known.description;
+}
+
+// Chooses the folders whose turn it is.
+void CatalogueScan::BeginTogether() {
+  constexpr std::size_t kMostServed = 16;
+  FolderSet waited = std::exchange(waiting_together_, {});
+  together_ends_.reset();
+  served_together_.clear();
+  first_together_.clear();
+  had_waited_together_ = !waited.empty();
+  while (!waited.empty() && served_together_.size() < kMostServed) {
+    const std::string next = turns_.Next(waited);
+    if (served_together_.empty()) first_together_ = next;
+    served_together_.insert(next);
+    waited.erase(next);
+  }
+}
+
+bool CatalogueScan::MayDescribeTogether(const std::string& folder) {
+  const Time now = options_.time->Now();
+  // At least one time is described.
+  const bool is_certain =
+      had_waited_together_ ? folder == first_together_ : !together_ends_.has_value();
+  if (!together_ends_.has_value()) together_ends_ = now + options_.turn;
+  if (is_certain) {
+    first_together_.clear();
+    return true;
+  }
+  const bool is_served = !had_waited_together_ || served_together_.contains(folder);
+  return is_served && now < *together_ends_;
+}
+
+// Describes the files again, unless they must wait. Then the old description stays.
+void CatalogueScan::DescribeTogether(const std::vector<std::string>& paths,
+                                     std::vector<std::uint64_t> versions, KnownTogether& known) {
+  const std::string folder = std::filesystem::path(paths.front()).parent_path().string();
+  if (!MayDescribeTogether(folder)) {
+    waiting_together_.insert(folder);
+    return;
   }
   known.versions = std::move(versions);
   options_.before_file();
+  const Time began = options_.time->Now();
   known.description = options_.formats.DescribeTogether(paths);
+  turns_.Used(folder, Seconds(options_.time->Now() - began));
   changed_ = true;
-  if (!known.description.ok()) return known.description.status();
+  if (!known.description.ok()) return ReportOnce(known.description.status(), false);
   storm_files::StormFile& file = *known.description;
   const storm_files::StormFile& first = *known_[paths.front()].description;
   file.version = ++versions_;
   file.id = first.id;
   file.device = first.device;
-  return file;
 }
 
-bool CatalogueScan::Look(const Stamp& stamp, Time now, Known& known) {
+bool CatalogueScan::Look(const Stamp& stamp, Known& known) {
   const bool fresh = known.scan == 0;
   if (fresh || known.stamp != stamp) {
     const bool same_file = !fresh && known.stamp.file == stamp.file;
@@ -162,37 +328,47 @@ bool CatalogueScan::Look(const Stamp& stamp, Time now, Known& known) {
     if ((same_file && !grows) || written) Lose(known);
     known.replaces = !same_file && known.description.has_value();
     known.stamp = stamp;
-    known.unchanged_since = now;
+    known.unchanged_since = now_;
     // A file that the first scan finds may be old enough to count as complete at once. For all
     // other files the settling time starts now, so that new files of one folder become complete
     // together. If one of them were complete first, it would become a storm with a different name.
     known.settled =
         fresh && scans_ == 1 &&
-        now - base::UnchangedSince(stamp.changed_ns, Time::min(), now) >= options_.settle;
+        now_ - base::UnchangedSince(stamp.changed_ns, Time::min(), now_) >= options_.settle;
     known.tried_at.reset();
+    known.tries = 0;
+    known.trial = Trial::kBatch;
   }
-  if (!known.settled && now - known.unchanged_since < options_.settle) {
+  if (!known.settled && now_ - known.unchanged_since < options_.settle) {
     LookAgainAt(known.unchanged_since + options_.settle);
     return false;
   }
   known.settled = true;
-  return MustOpen(now, known);
+  return MustOpen(known);
 }
 
-bool CatalogueScan::MustOpen(Time now, const Known& known) const {
+bool CatalogueScan::MustOpen(const Known& known) const {
   if (!known.tried_at.has_value()) return true;
-  return !known.complaint.empty() && now - *known.tried_at >= options_.retry;
+  if (known.complaint.empty()) return false;
+  // There may be very many files that are no storms, so each is tried less and less often.
+  constexpr int kMostDoublings = 5;
+  constexpr std::chrono::minutes kSlowRetry{10};
+  const int doublings = std::clamp(known.tries - 1, 0, kMostDoublings);
+  const Time::duration first = known.trial == Trial::kPatient
+                                   ? std::max<Time::duration>(options_.retry, kSlowRetry)
+                                   : options_.retry;
+  return now_ - *known.tried_at >= first * (1 << doublings);
 }
 
-void CatalogueScan::Take(const std::string& path, Time now,
-                         absl::StatusOr<storm_files::StormFile> file, Known& known) {
-  known.tried_at = now;
+void CatalogueScan::Take(const std::string& path, absl::StatusOr<storm_files::StormFile> file,
+                         Known& known) {
+  known.tried_at = now_;
   // The file was being written while it was read, so its description is out of date.
   if (StampOf(path) != known.stamp) {
     known.tried_at.reset();
     known.settled = false;
-    known.unchanged_since = now;
-    return LookAgainAt(now + options_.settle);
+    known.unchanged_since = now_;
+    return LookAgainAt(now_ + options_.settle);
   }
   if (file.ok()) {
     const bool goes_on =
@@ -202,16 +378,17 @@ void CatalogueScan::Take(const std::string& path, Time now,
     known.description = *std::move(file);
     known.replaces = false;
     known.complaint.clear();
+    known.tries = 0;
     changed_ = true;
     return;
   }
   if (std::exchange(known.replaces, false)) Lose(known);
+  ++known.tries;
   const std::string complaint(file.status().message());
   if (complaint == known.complaint) return;
   known.complaint = complaint;
   // A file of another kind, such as a read-me, is normal.
-  const bool other = absl::IsInvalidArgument(file.status());
-  spdlog::log(other ? spdlog::level::info : spdlog::level::warn, "left out: {}", complaint);
+  left_out_.Add(complaint, !absl::IsInvalidArgument(file.status()), now_);
 }
 
 void CatalogueScan::Lose(Known& known) {

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -17,6 +18,8 @@
 #include "base/patient_calls.h"
 #include "base/time_source.h"
 #include "storm_files/storm_format.h"
+#include "storm_store/fair_folders.h"
+#include "storm_store/left_out_log.h"
 #include "storm_store/storm_catalogue.h"
 
 namespace thunderhead::storm_store {
@@ -42,7 +45,15 @@ class CatalogueScan {
     // The timeout of `look_at`. After it the path's storage counts as hanging, and the path's
     // storms stay unchanged.
     std::chrono::milliseconds patience = std::chrono::seconds(10);
-    // The time source for `patience`. It must outlive the scan.
+    // The time after which a scan describes no other file, unless it has described none so far. It
+    // is longer if the files are listed slowly. The other files are described by the next scans.
+    std::chrono::milliseconds turn = std::chrono::seconds(2);
+    // The longest time for the first description of a file or of a batch. A file that needs longer
+    // is described again later, alone and with storm_files::kLongestDescription.
+    std::chrono::milliseconds trial = std::chrono::seconds(2);
+    // Maximum number of files and folders below one path.
+    std::size_t most_entries = 200'000;
+    // The time source for durations. It must outlive the scan.
     const base::TimeSource* time = &base::SteadyTime();
   };
 
@@ -52,6 +63,10 @@ class CatalogueScan {
     std::optional<Time> look_again_at;  // when to scan again, because a file that is being written
                                         // may then be complete; nothing if no file is being written
     bool changed = true;                // whether anything changed since the last Scan
+    // Whether files wait for the next scan, which must follow at once.
+    bool is_unfinished = false;
+    // Whether some of them were not tried before, so that storms may still be missing.
+    bool has_untried = false;
   };
 
   explicit CatalogueScan(Options options)
@@ -63,8 +78,11 @@ class CatalogueScan {
   // Finds the storms under the paths. In the first scan, a file counts as complete if its last
   // change is older than Options::settle. A file that appears or changes later counts as complete
   // when no scan has seen a change for that time. While a file grows, its old description stays
-  // valid. The same is true after another file replaced it in one step (by a rename). If Scan
-  // returns an error, such as a folder that cannot be listed, the previous storms must be kept.
+  // valid. The same is true after another file replaced it in one step (by a rename).
+  //
+  // A scan ends after a while, although files wait to be described. Folders share the time of the
+  // scans fairly, so that slow files delay only their own folder. If Scan returns an error, such as
+  // a folder that cannot be listed, the previous storms must be kept.
   absl::StatusOr<Result> Scan(Time now);
 
   // Ends the scan in progress after the file that it reads, with CANCELLED, and every later scan
@@ -82,12 +100,18 @@ class CatalogueScan {
     bool operator==(const Stamp&) const = default;
   };
 
+  // How a file is described. It first shares a reader with others, then it has one for a short
+  // time, then for a long time.
+  enum class Trial { kBatch, kAlone, kPatient };
+
   struct Known {
     Stamp stamp;
     Time unchanged_since;
     bool settled = false;
     std::optional<Time> tried_at;                       // when the file was last opened in its
                                                         // present state
+    int tries = 0;                                      // how often it was, without success
+    Trial trial = Trial::kBatch;                        // how it is opened next
     std::optional<storm_files::StormFile> description;  // may describe an earlier, shorter state of
                                                         // the file
     bool replaces = false;   // true if `description` is of another file, which this file replaced
@@ -102,18 +126,47 @@ class CatalogueScan {
     std::uint64_t scan = 0;  // number of the scan that last saw it
   };
 
+  // The files of one folder that wait to be described.
+  struct Waiting {
+    std::vector<std::string> untried;  // at most in a batch
+    std::vector<std::string> tried;    // alone, without success
+    std::size_t next_untried = 0;
+    std::size_t next_tried = 0;
+
+    bool HasUntried() const { return next_untried < untried.size(); }
+    bool IsEmpty() const { return !HasUntried() && next_tried == tried.size(); }
+  };
+
   // Returns false while the path's storage hangs.
   bool Answers(const std::string& path);
   static std::optional<Stamp> StampOf(const std::string& path);
-  std::vector<absl::StatusOr<storm_files::StormFile>> Describe(
-      const std::vector<std::string>& paths, Time now);
+  // Examines all files, and notes in waiting_ which of them must be opened.
+  void See(const std::vector<ListedFolder>& folders);
+  bool See(const std::string& path);
+  // Describes files of waiting_ until the turn ends.
+  void DescribeWaiting();
+  // Takes the next files from `waiting`, which are described together.
+  std::vector<std::string> NextBatch(Waiting& waiting);
+  void DescribeBatch(const std::vector<std::string>& batch);
+  // Returns what is known about the files.
+  std::vector<absl::StatusOr<storm_files::StormFile>> Descriptions(
+      const std::vector<std::string>& paths);
+  std::vector<std::string> KnownBelow(const std::string& folder) const;
+  // Logs each reason once.
+  void ReportOnce(const absl::Status& why, bool is_warning);
   absl::StatusOr<storm_files::StormFile> DescribeTogether(const std::vector<std::string>& paths);
+  void DescribeTogether(const std::vector<std::string>& paths, std::vector<std::uint64_t> versions,
+                        KnownTogether& known);
+  void BeginTogether();
+  // Returns whether the files of a time in this folder may be described now.
+  bool MayDescribeTogether(const std::string& folder);
+  bool ForgetUnseen();
+  void EndTurn(Result& result);
   // Returns whether the file must be opened now.
-  bool Look(const Stamp& stamp, Time now, Known& known);
-  bool MustOpen(Time now, const Known& known) const;
+  bool Look(const Stamp& stamp, Known& known);
+  bool MustOpen(const Known& known) const;
   // Takes the description of a file that was opened.
-  void Take(const std::string& path, Time now, absl::StatusOr<storm_files::StormFile> file,
-            Known& known);
+  void Take(const std::string& path, absl::StatusOr<storm_files::StormFile> file, Known& known);
   void Lose(Known& known);  // removes the description
   void LookAgainAt(Time time);
 
@@ -125,7 +178,23 @@ class CatalogueScan {
   std::map<std::string, Known> known_;
   // The times that are spread over several files, by the paths of these files.
   std::map<std::vector<std::string>, KnownTogether> together_;
-  std::set<std::string> unlisted_;  // folders for which a warning was logged
+  std::set<std::string> reported_;  // reasons that were logged, and notes about storms
+  LeftOutLog left_out_;
+  Time now_;  // of the scan in progress
+  FairFolders turns_;
+  Time turn_ends_;
+  std::map<std::string, Waiting, FolderOrder> waiting_;  // by folder
+  bool is_unfinished_ =
+      false;                  // whether a file must be described again at once, with more patience
+  bool has_untried_ = false;  // whether one of them was not alone
+  // The folders with times that are spread over several files and wait: for the next scan, and
+  // those that waited for this one. Of the latter, some have their turn, and one of these
+  // certainly.
+  FolderSet waiting_together_;
+  FolderSet served_together_;
+  std::string first_together_;
+  bool had_waited_together_ = false;
+  std::optional<Time> together_ends_;  // once the scan has described such a time
   std::uint64_t scans_ = 0;
   std::uint64_t versions_ = 0;
   bool changed_ = true;

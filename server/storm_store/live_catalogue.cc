@@ -38,8 +38,9 @@ void LiveCatalogue::Running::Run() {
     const Time pause_ends = time.Now() + kShortestPause;
     Time next = time.Now() + options.rescan;
     if (newest.look_again_at.has_value()) next = std::min(next, *newest.look_again_at);
-    if (!again) WaitForEventUntil(next);
-    while (!stopping && time.Now() < pause_ends) WaitForEventUntil(pause_ends);
+    const bool at_once = newest.is_unfinished;
+    if (!again && !at_once) WaitForEventUntil(next);
+    while (!stopping && !at_once && time.Now() < pause_ends) WaitForEventUntil(pause_ends);
     if (stopping) return;
     Scan();
     again = WatchFolders();
@@ -59,6 +60,7 @@ void LiveCatalogue::Running::Scan() {
     if (why != complaint) spdlog::warn("the storms stay as they were: {}", why);
     complaint = std::move(why);
     newest.look_again_at.reset();
+    newest.is_unfinished = false;
     return;
   }
   if (!complaint.empty()) spdlog::info("the folders of storms can be listed again");

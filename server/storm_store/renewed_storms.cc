@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -42,15 +44,21 @@ std::vector<std::optional<std::size_t>> MatchStorms(
   // Pairs are sorted by the number of common files, then by an equal run and member, then by their
   // order. Several runs or members may share one file.
   std::vector<std::tuple<std::size_t, bool, std::size_t, std::size_t>> pairs;
+  std::multimap<std::string_view, std::size_t> found_by_file;
+  for (std::size_t f = 0; f < found.size(); ++f) {
+    for (const std::string& file : found[f].info.files) found_by_file.emplace(file, f);
+  }
   for (std::size_t k = 0; k < known.size(); ++k) {
     if (known[k] == nullptr) continue;
     const std::vector<std::string>& names = known[k]->info.files;
-    const std::set<std::string> files(names.begin(), names.end());
-    for (std::size_t f = 0; f < found.size(); ++f) {
-      const auto common = static_cast<std::size_t>(std::ranges::count_if(
-          found[f].info.files, [&](const std::string& file) { return files.contains(file); }));
-      if (common == 0) continue;
-      pairs.emplace_back(common, IsSameMember(*known[k], found[f]), k, f);
+    const std::set<std::string_view> files(names.begin(), names.end());
+    std::map<std::size_t, std::size_t> common;  // number of common files, by index in `found`
+    for (const std::string_view file : files) {
+      const auto [begin, end] = found_by_file.equal_range(file);
+      for (auto at = begin; at != end; ++at) ++common[at->second];
+    }
+    for (const auto& [f, count] : common) {
+      pairs.emplace_back(count, IsSameMember(*known[k], found[f]), k, f);
     }
   }
   std::ranges::stable_sort(pairs, std::greater(), [](const auto& pair) {

@@ -1,13 +1,9 @@
 #include "storm_store/storm_catalogue.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <iterator>
 #include <map>
-#include <new>
 #include <set>
 #include <system_error>
 #include <tuple>
@@ -17,21 +13,21 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
-#include "base/file_stamp.h"
-#include "base/slow_calls.h"
 #include "base/status.h"
 #include "base/utf8.h"
 #include "spdlog/spdlog.h"
+#include "storm_store/described_files.h"
+#include "storm_store/folder_walk.h"
 
 namespace thunderhead::storm_store {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Limits of the search below one path that the user gave.
-constexpr int kDeepestFolder = 8;
-constexpr std::size_t kMostEntries = 200'000;  // files and folders
-constexpr std::chrono::minutes kLongestWalk{10};
+// Maximum number of notes about one storm, and of its times whose own map projection is checked. A
+// file may have a million times.
+constexpr std::size_t kMostNotes = 100;
+constexpr std::size_t kMostProjections = 10'000;
 
 struct NamedStorm {
   std::string name;
@@ -94,106 +90,23 @@ bool ContinueOneAnother(const std::vector<storm_files::StormFile>& files) {
   return distinct.size() * 2 > total;
 }
 
-// The rules by which a search follows symbolic links. All paths are canonical.
-struct LinkRules {
-  std::vector<fs::path> targets;    // links may lead only into these
-  std::vector<fs::path> untrusted;  // links in these are not followed
-};
-
-// The state of the search below one path that the user gave.
-struct FolderWalk {
+// The search below one path that the user gave.
+struct PathSearch {
   const StormSearch& search;
-  const LinkRules& links;
-  std::chrono::steady_clock::time_point end = std::chrono::steady_clock::now() + kLongestWalk;
-  std::set<std::pair<dev_t, ino_t>> visited = {};  // folders, by device and inode
-  // Links to folders, with their depth. They are followed at the end, so that a folder that is
-  // itself below the path is found there and not through a link.
-  std::vector<std::pair<fs::path, int>> links_left = {};
-  std::size_t entries = 0;
   absl::Status first_failure = absl::OkStatus();
 };
 
 // Records why the file or folder `path` is left out of the search.
-void LeaveOut(FolderWalk& walk, const fs::path& path, const absl::Status& why) {
-  walk.first_failure.Update(why);
-  if (walk.search.on_unlisted) {
-    walk.search.on_unlisted(path.string(), why);
+void LeaveOut(PathSearch& path_search, const std::string& path, const absl::Status& why) {
+  path_search.first_failure.Update(why);
+  if (path_search.search.on_unlisted) {
+    path_search.search.on_unlisted(path, why);
   } else {
     spdlog::warn("left out: {}", std::string(why.message()));
   }
 }
 
-// Returns whether `path` is `folder` or below it. Both are canonical.
-bool IsWithin(const fs::path& path, const fs::path& folder) {
-  return std::ranges::mismatch(folder, path).in1 == folder.end();
-}
-
-bool IsWithinAny(const fs::path& path, const std::vector<fs::path>& folders) {
-  return std::ranges::any_of(folders, [&](const fs::path& each) { return IsWithin(path, each); });
-}
-
-// Returns PERMISSION_DENIED for a symbolic link that the rules do not allow to be followed.
-absl::Status CheckLink(const LinkRules& rules, const fs::path& link) {
-  std::error_code error;
-  const fs::path folder = fs::canonical(link.parent_path(), error);
-  if (error || IsWithinAny(folder, rules.untrusted)) {
-    return absl::PermissionDeniedError(
-        absl::StrCat(link.string(),
-                     ": is a symbolic link, which is not followed in an untrusted "
-                     "folder; put the file itself there"));
-  }
-  const fs::path target = fs::canonical(link, error);
-  if (error) {
-    return absl::PermissionDeniedError(
-        absl::StrCat(link.string(), ": is a symbolic link that leads nowhere"));
-  }
-  if (IsWithinAny(target, rules.targets)) return absl::OkStatus();
-  return absl::PermissionDeniedError(
-      absl::StrCat(link.string(), ": is a symbolic link to ", target.string(),
-                   ", outside the data folders; allow it with --allow-links-to ",
-                   (fs::is_directory(target, error) ? target : target.parent_path()).string()));
-}
-
-struct Folder {
-  std::vector<fs::path> files;
-  std::vector<fs::path> folders;
-  std::vector<fs::path> links;  // to folders
-};
-
 absl::Status Stopped() { return absl::CancelledError("the search for storms was interrupted"); }
-
-absl::StatusOr<Folder> List(const fs::path& path, FolderWalk& walk) {
-  const base::SlowCall call(path.string());
-  Folder folder;
-  std::error_code error;
-  fs::directory_iterator entries(path, error);
-  for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
-    if (walk.search.stop.stop_requested()) return Stopped();
-    if (++walk.entries > kMostEntries || std::chrono::steady_clock::now() > walk.end) {
-      return absl::ResourceExhaustedError(absl::StrCat(
-          path.string(), ": the search stopped after ", walk.entries - 1,
-          " files and folders; give --data folders farther down, with fewer files below them"));
-    }
-    const fs::path& entry = entries->path();
-    if (entry.filename().string().starts_with('.')) continue;
-    std::error_code ignored;
-    const bool is_folder = fs::is_directory(entry, ignored);
-    if (!is_folder && !fs::is_regular_file(entry, ignored)) continue;
-    const bool is_link = entries->is_symlink(ignored);
-    if (is_link) {
-      if (const absl::Status allowed = CheckLink(walk.links, entry); !allowed.ok()) {
-        LeaveOut(walk, entry, allowed);
-        continue;
-      }
-    }
-    (!is_folder ? folder.files : is_link ? folder.links : folder.folders).push_back(entry);
-  }
-  if (error) return CannotBeListed(path.string(), error);
-  std::ranges::sort(folder.files);
-  std::ranges::sort(folder.folders);
-  std::ranges::sort(folder.links);
-  return folder;
-}
 
 // Each member of an ensemble is a separate storm.
 std::string WithMember(const std::string& name, const storm_files::StormFile& file) {
@@ -300,9 +213,10 @@ void ShareWithMembers(PartsOfRuns& runs) {
 
 // Reports a file that is left out. A file of another kind, such as a read-me, is normal. A storm
 // that cannot be read deserves a warning.
-void ReportLeftOut(FolderWalk& walk, const absl::Status& why) {
+void ReportLeftOut(PathSearch& path_search, const absl::Status& why) {
   if (absl::IsCancelled(why)) return;
-  walk.first_failure.Update(why);
+  path_search.first_failure.Update(why);
+  if (path_search.search.on_left_out) return path_search.search.on_left_out(why);
   const bool other = absl::IsInvalidArgument(why);
   spdlog::log(other ? spdlog::level::info : spdlog::level::warn, "left out: {}",
               std::string(why.message()));
@@ -310,8 +224,10 @@ void ReportLeftOut(FolderWalk& walk, const absl::Status& why) {
 
 // Describes each time of the run. A time that lacks a file is left out.
 std::vector<storm_files::StormFile> TimesOf(const PartsOfRun& run, const std::string& member,
-                                            FolderWalk& walk) {
+                                            PathSearch& path_search) {
   std::vector<storm_files::StormFile> files;
+  // The description of some files has all their times.
+  std::set<std::vector<std::string>> described;
   for (const auto& [time, parts] : run.at) {
     // The time's own files come first, because the first path identifies it in messages.
     std::vector<std::string> paths = parts;
@@ -319,9 +235,10 @@ std::vector<storm_files::StormFile> TimesOf(const PartsOfRun& run, const std::st
                          [&parts = parts](const std::string& path) {
                            return std::ranges::find(parts, path) == parts.end();
                          });
-    absl::StatusOr<storm_files::StormFile> whole = walk.search.describe_together(paths);
+    if (!described.insert(paths).second) continue;
+    absl::StatusOr<storm_files::StormFile> whole = path_search.search.describe_together(paths);
     if (!whole.ok()) {
-      ReportLeftOut(walk, whole.status());
+      ReportLeftOut(path_search, whole.status());
       continue;
     }
     // The files may also have other members.
@@ -330,31 +247,23 @@ std::vector<storm_files::StormFile> TimesOf(const PartsOfRun& run, const std::st
     }
   }
   if (run.at.empty() && !run.at_all_times.empty()) {
-    ReportLeftOut(walk, absl::InvalidArgumentError(absl::StrCat(
-                            run.at_all_times.front(), ": belongs to all times of a run, and no ",
-                            "file of this run with a time is beside it; put them together")));
+    ReportLeftOut(path_search,
+                  absl::InvalidArgumentError(absl::StrCat(
+                      run.at_all_times.front(), ": belongs to all times of a run, and no ",
+                      "file of this run with a time is beside it; put them together")));
   }
   return files;
 }
 
-// Searches a folder and its subfolders. Each folder is searched only once, because links can make
-// it appear in several places.
-absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
-                          std::vector<NamedStorm>& storms) {
-  struct stat identity {};
-  if (::stat(path.c_str(), &identity) == 0 &&
-      !walk.visited.emplace(identity.st_dev, identity.st_ino).second) {
-    return absl::OkStatus();
-  }
-  if (walk.search.on_folder) walk.search.on_folder(path.string());
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Folder folder, List(path, walk));
-  std::vector<std::string> paths;
-  for (const fs::path& file : folder.files) paths.push_back(file.string());
+// Appends the storms of a folder's files.
+void SearchFolder(const ListedFolder& folder, PathSearch& path_search,
+                  std::vector<NamedStorm>& storms) {
   std::vector<storm_files::StormFile> files;
   PartsOfRuns runs;
-  for (absl::StatusOr<storm_files::StormFile>& described : walk.search.describe(paths)) {
+  for (absl::StatusOr<storm_files::StormFile>& described :
+       path_search.search.describe(folder.files)) {
     if (!described.ok()) {
-      ReportLeftOut(walk, described.status());
+      ReportLeftOut(path_search, described.status());
       continue;
     }
     for (storm_files::StormFile& storm : StormsOf(*std::move(described))) {
@@ -367,43 +276,10 @@ absl::Status SearchFolder(const fs::path& path, int depth, FolderWalk& walk,
   }
   ShareWithMembers(runs);
   for (const auto& [key, run] : runs) {
-    std::ranges::move(TimesOf(run, key.second, walk), std::back_inserter(files));
+    std::ranges::move(TimesOf(run, key.second, path_search), std::back_inserter(files));
   }
-  if (!files.empty()) std::ranges::move(GroupRuns(path, std::move(files)), back_inserter(storms));
-  if (depth == kDeepestFolder) return absl::OkStatus();
-  for (const fs::path& link : folder.links) walk.links_left.emplace_back(link, depth + 1);
-  for (const fs::path& below : folder.folders) {
-    const absl::Status status = SearchFolder(below, depth + 1, walk, storms);
-    if (walk.search.stop.stop_requested()) return Stopped();
-    if (!status.ok()) LeaveOut(walk, below, status);
-  }
-  return absl::OkStatus();
-}
-
-// Returns the file of which `path` names a storm, as in "eps.grib2/mem05". Other paths are returned
-// unchanged.
-fs::path FileOfStorm(const fs::path& path) {
-  std::error_code error;
-  fs::path file = path;
-  while (file.has_relative_path() && !fs::exists(file, error)) file = file.parent_path();
-  return fs::is_regular_file(file, error) ? file : path;
-}
-
-// Appends the canonical form of each path that exists, or of the file whose storm the path names.
-void AppendCanonical(const std::vector<std::string>& paths, std::vector<fs::path>* canonical) {
-  for (const std::string& path : paths) {
-    std::error_code error;
-    fs::path found = fs::canonical(FileOfStorm(path), error);
-    if (!error) canonical->push_back(std::move(found));
-  }
-}
-
-LinkRules LinkRulesOf(const std::vector<std::string>& paths, const LinkPolicy& links) {
-  LinkRules rules;
-  AppendCanonical(paths, &rules.targets);
-  AppendCanonical(links.allowed, &rules.targets);
-  AppendCanonical(links.untrusted, &rules.untrusted);
-  return rules;
+  if (files.empty()) return;
+  std::ranges::move(GroupRuns(folder.path, std::move(files)), std::back_inserter(storms));
 }
 
 // Returns the error for a file that alone is no storm, with what it lacks.
@@ -447,28 +323,59 @@ absl::Status SearchFile(const std::string& path, const StormSearch& search,
                                           files.size() > 1 ? names : "only one, without a name"));
 }
 
-absl::Status Search(const std::string& path, FolderWalk walk, std::vector<NamedStorm>& storms) {
-  const StormSearch& search = walk.search;
+// What is below a path that the user gave.
+struct ListedPath {
+  bool hangs = false;
+  bool is_folder = false;
+  bool is_missing = false;
+  std::vector<ListedFolder> folders;  // of a file, its folder with the file
+};
+
+absl::StatusOr<ListedPath> ListPath(const std::string& path, const LinkRules& links,
+                                    PathSearch& path_search) {
+  const StormSearch& search = path_search.search;
+  ListedPath listed;
+  listed.hangs = search.answers && !search.answers(path);
+  if (listed.hangs) return listed;
   std::error_code error;
-  if (search.may_find_nothing &&
-      fs::status(FileOfStorm(path), error).type() == fs::file_type::not_found) {
-    return absl::OkStatus();
+  listed.is_missing = search.may_find_nothing &&
+                      fs::status(FileOfStorm(path), error).type() == fs::file_type::not_found;
+  if (listed.is_missing) return listed;
+  listed.is_folder = fs::is_directory(path, error);
+  if (!listed.is_folder) {
+    const fs::path file = FileOfStorm(path);
+    listed.folders = {{file.parent_path().string(), {file.string()}}};
+    return listed;
   }
-  if (!fs::is_directory(path, error)) {
+  const FolderWalk walk{
+      .links = links,
+      .on_folder = search.on_folder,
+      .on_left_out = [&](const std::string& below,
+                         const absl::Status& why) { LeaveOut(path_search, below, why); },
+      .known_below = search.known_below,
+      .most_entries = search.most_entries,
+      .stop = search.stop};
+  THUNDERHEAD_ASSIGN_OR_RETURN(listed.folders, ListFolders(path, walk));
+  return listed;
+}
+
+// Appends the storms of a path that does not hang.
+absl::Status Search(const std::string& path, const ListedPath& listed, PathSearch& path_search,
+                    std::vector<NamedStorm>& storms) {
+  const StormSearch& search = path_search.search;
+  if (listed.is_missing) return absl::OkStatus();
+  if (!listed.is_folder) {
     const absl::Status found = SearchFile(path, search, storms);
     return search.may_find_nothing ? absl::OkStatus() : found;
   }
   const std::size_t before = storms.size();
-  THUNDERHEAD_RETURN_IF_ERROR(SearchFolder(path, 0, walk, storms));
-  // Following a link can find further links.
-  for (std::size_t i = 0; i < walk.links_left.size() && !search.stop.stop_requested(); ++i) {
-    const auto [link, depth] = walk.links_left[i];
-    const absl::Status status = SearchFolder(link, depth, walk, storms);
-    if (!status.ok()) LeaveOut(walk, link, status);
+  for (const ListedFolder& folder : listed.folders) {
+    if (search.stop.stop_requested()) return Stopped();
+    SearchFolder(folder, path_search, storms);
   }
   if (storms.size() > before || search.may_find_nothing) return absl::OkStatus();
-  if (!walk.first_failure.ok()) {
-    return base::Annotate(walk.first_failure,
+  if (!path_search.first_failure.ok()) {
+    return base::Annotate(path_search.first_failure,
                           absl::StrCat(path, " holds no storm; its first file"));
   }
   return absl::NotFoundError(absl::StrCat(path, ": holds no storm; put the model's output files (",
@@ -540,47 +447,6 @@ void DropRepeated(const std::vector<std::string>& paths, std::vector<NamedStorm>
   drop(false);
   if (any_linked) drop(true);
   std::erase_if(storms, [](const NamedStorm& storm) { return storm.files.empty(); });
-}
-
-// Returns the end of the batch of files that begins with paths[first]. A reader gets a batch in
-// memory, so its size is limited, and a file that is larger is a batch alone. A batch takes about a
-// second, so a search can be stopped soon.
-std::size_t EndOfBatch(const std::vector<std::string>& paths, std::size_t first) {
-  constexpr std::size_t kMostFiles = 50;
-  constexpr std::uintmax_t kMost_bytes = 8 << 20;
-  std::uintmax_t bytes = 0;
-  std::size_t end = first;
-  for (; end < paths.size() && end - first < kMostFiles; ++end) {
-    std::error_code error;
-    const std::uintmax_t size = fs::file_size(paths[end], error);
-    if (error || size > kMost_bytes - bytes) break;
-    bytes += size;
-  }
-  return std::max(end, first + 1);
-}
-
-// Describes each of the files.
-std::vector<absl::StatusOr<storm_files::StormFile>> Describe(
-    const std::vector<std::string>& paths, const storm_files::StormFormats& formats) {
-  const base::SlowCall call(paths.front());
-  std::vector<absl::StatusOr<storm_files::StormFile>> files;
-  try {
-    files = formats.DescribeEach(paths);
-  } catch (const std::bad_alloc&) {
-    files.assign(
-        paths.size(),
-        absl::ResourceExhaustedError(absl::StrCat(
-            paths.front(), ": describing it needs more memory than there is; cut or split the ",
-            "file, or copy it again if it is damaged")));
-  }
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    if (!files[i].ok() || files[i]->device != 0) continue;
-    const std::optional<base::FileStamp> stamp = base::StampOf(paths[i]);
-    if (!stamp.has_value()) continue;
-    files[i]->device = stamp->device;
-    files[i]->modified_ns = stamp->modified_ns;
-  }
-  return files;
 }
 
 // Returns whether `later` was written at least as late as `file`. Of files that were written at the
@@ -673,11 +539,6 @@ absl::Status CheckPlace(const std::vector<std::string>& paths, const LinkPolicy&
   return absl::OkStatus();
 }
 
-absl::Status CannotBeListed(const std::string& folder, const std::error_code& error) {
-  return absl::PermissionDeniedError(
-      absl::StrCat(folder, ": the folder cannot be listed (", error.message(), ")"));
-}
-
 std::vector<std::vector<storm_files::StormFile>> FilesOfRuns(
     std::vector<storm_files::StormFile> files) {
   std::map<decltype(RunKey(files[0])), std::vector<storm_files::StormFile>> by_key;
@@ -705,6 +566,7 @@ std::string CheckedProjection(std::size_t time, CataloguedStorm& storm) {
   if (projection.ok()) return text;
   std::string note = absl::StrCat(file.path, ": the storm is shown without a map: ",
                                   std::string(projection.status().message()));
+  if (storm.notes.size() > kMostNotes) return "";
   if (std::ranges::find(storm.notes, note) == storm.notes.end()) {
     storm.notes.push_back(std::move(note));
   }
@@ -719,9 +581,16 @@ void SetProjections(CataloguedStorm& storm) {
     info.true_north_deg = projection->TrueNorth_deg(*MiddleOf(info, 0)).value_or(0.0);
   }
   const std::string& first = ProjectionAt(FileOf(storm, 0), storm.sources[0].record);
+  std::size_t checked = 0;
   for (std::size_t time = 1; time < info.times.size(); ++time) {
     if (ProjectionAt(FileOf(storm, time), storm.sources[time].record) == first) continue;
-    info.times[time].projection = CheckedProjection(time, storm);
+    const bool is_checked = ++checked <= kMostProjections;
+    info.times[time].projection = is_checked ? CheckedProjection(time, storm) : "";
+  }
+  if (checked > kMostProjections) {
+    storm.notes.push_back(absl::StrCat(info.id, ": ", checked - kMostProjections,
+                                       " of its times are shown without a map, because more than ",
+                                       kMostProjections, " have a map projection of their own"));
   }
 }
 
@@ -745,6 +614,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
   std::ranges::sort(files, {}, &storm_files::StormFile::path);
   CataloguedStorm storm;
   std::map<absl::Time, TimeSource> sources;
+  std::size_t more_doubles = 0;
   for (std::size_t file = 0; file < files.size(); ++file) {
     for (std::size_t record = 0; record < files[file].times.size(); ++record) {
       const absl::Time time = files[file].times[record];
@@ -754,8 +624,16 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
       TimeSource& kept = at->second;
       const TimeSource other = kept;
       if (WasWrittenLater(files[kept.file], files[file])) kept = source;
+      if (storm.notes.size() >= kMostNotes) {
+        ++more_doubles;
+        continue;
+      }
       storm.notes.push_back(NoteOfDouble(files, time, kept, kept.file == file ? other : source));
     }
+  }
+  if (more_doubles > 0) {
+    storm.notes.push_back(
+        absl::StrCat(name, ": ", more_doubles, " more of its times are there several times"));
   }
   StormInfo& info = storm.info;
   storm.stem = IdFrom(name);
@@ -804,41 +682,17 @@ void LogNotes(const std::vector<CataloguedStorm>& storms, std::set<std::string>*
   }
 }
 
-absl::StatusOr<storm_files::StormFile> DescribeFile(const std::string& path,
-                                                    const storm_files::StormFormats& formats) {
-  return Describe({path}, formats).front();
-}
-
 absl::Status CheckFile(const std::string& path, const storm_files::StormFormats& formats) {
-  const StormSearch search{
-      .describe = [&](const std::vector<std::string>& files) { return Describe(files, formats); },
-      .describe_together = {},
-      .on_unlisted = {},
-      .on_folder = {},
-      .examples = {}};
+  const StormSearch search{.describe =
+                               [&](const std::vector<std::string>& files) {
+                                 return DescribeInBatches(files, formats, [] { return true; });
+                               },
+                           .describe_together = {},
+                           .on_unlisted = {},
+                           .on_folder = {},
+                           .examples = {}};
   std::vector<NamedStorm> storms;
   return SearchFile(path, search, storms);
-}
-
-std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(
-    const std::vector<std::string>& paths, const storm_files::StormFormats& formats,
-    const std::function<bool()>& before) {
-  std::vector<absl::StatusOr<storm_files::StormFile>> described;
-  for (std::size_t first = 0, last = 0; first < paths.size(); first = last) {
-    last = EndOfBatch(paths, first);
-    if (!before()) {
-      const absl::StatusOr<storm_files::StormFile> stopped =
-          absl::CancelledError("the search was told to stop");
-      described.resize(paths.size(), stopped);
-      return described;
-    }
-    const auto begin = paths.begin();
-    std::ranges::move(Describe({begin + static_cast<std::ptrdiff_t>(first),
-                                begin + static_cast<std::ptrdiff_t>(last)},
-                               formats),
-                      std::back_inserter(described));
-  }
-  return described;
 }
 
 absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::string>& paths,
@@ -866,14 +720,26 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
                                                         const StormSearch& search) {
   std::vector<NamedStorm> named;
   const LinkRules links = LinkRulesOf(paths, search.links);
+  std::vector<PathSearch> searches(paths.size(), PathSearch{search});
+  std::vector<ListedPath> listed;
+  for (std::size_t path = 0; path < paths.size(); ++path) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(listed.emplace_back(),
+                                 ListPath(paths[path], links, searches[path]));
+  }
+  if (search.stop.stop_requested()) return Stopped();
+  if (search.prepare) {
+    std::vector<ListedFolder> folders;
+    for (const ListedPath& each : listed) std::ranges::copy(each.folders, back_inserter(folders));
+    search.prepare(folders);
+  }
   for (std::size_t path = 0; path < paths.size(); ++path) {
     const std::size_t before = named.size();
-    if (search.answers && !search.answers(paths[path])) {
+    if (listed[path].hangs) {
       for (const NamedFiles& storm : (*search.found)[paths[path]]) {
         named.push_back({storm.name, storm.files});
       }
     } else {
-      const absl::Status searched = Search(paths[path], {.search = search, .links = links}, named);
+      const absl::Status searched = Search(paths[path], listed[path], searches[path], named);
       if (search.stop.stop_requested()) return Stopped();
       THUNDERHEAD_RETURN_IF_ERROR(searched);
     }
@@ -892,6 +758,7 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
   DropRepeated(paths, named);
   std::vector<CataloguedStorm> storms;
   std::set<std::string> ids;
+  std::map<std::string, int> copies;  // the last number that was appended to an id
   for (NamedStorm& storm : named) {
     // What follows the file's own name is that of the storm in the file.
     const std::string in_file =
@@ -901,7 +768,8 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
     if (info.files.size() == 1) info.path = info.files.front() + in_file;
     storms.back().path = storm.path;
     const std::string& stem = storms.back().stem;
-    for (int copy = 2; !ids.insert(info.id).second; ++copy) info.id = absl::StrCat(stem, "-", copy);
+    int& copy = copies.try_emplace(stem, 1).first->second;
+    while (!ids.insert(info.id).second) info.id = absl::StrCat(stem, "-", ++copy);
   }
   std::ranges::sort(storms, {}, [](const CataloguedStorm& storm) {
     return std::pair(storm.path, storm.info.id);

@@ -8,12 +8,13 @@
 #include <set>
 #include <stop_token>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "storm_files/storm_file.h"
 #include "storm_files/storm_format.h"
+#include "storm_store/described_files.h"
+#include "storm_store/folder_walk.h"
 #include "storm_store/storm_store.h"
 
 namespace thunderhead::storm_store {
@@ -84,29 +85,24 @@ struct StormSearch {
   LinkPolicy links = {};
   // A request to stop ends the search between two files, with CANCELLED.
   std::stop_token stop = {};
+  // Called once with the files of all folders, before `describe` is called with those of each. It
+  // may describe them in another order. It may be empty.
+  std::function<void(const std::vector<ListedFolder>&)> prepare = nullptr;
+  // Called with the reason why a file is left out. If the function is empty, the reason is logged.
+  std::function<void(const absl::Status&)> on_left_out = nullptr;
+  // See FolderWalk.
+  std::function<std::vector<std::string>(const std::string&)> known_below = nullptr;
+  std::size_t most_entries = 200'000;
 };
-
-// Returns PERMISSION_DENIED for a folder that exists but cannot be listed.
-absl::Status CannotBeListed(const std::string& folder, const std::error_code& error);
 
 // Checks a file that was opened by `path`. `place` is the file's real path, without symbolic links.
 // Returns PERMISSION_DENIED if the rules for links do not allow that place for a search of `paths`.
 absl::Status CheckPlace(const std::vector<std::string>& paths, const LinkPolicy& links,
                         const std::string& path, const std::string& place);
 
-// Describes a file by the formats. Returns an error if the file's metadata exhaust the memory.
-absl::StatusOr<storm_files::StormFile> DescribeFile(const std::string& path,
-                                                    const storm_files::StormFormats& formats);
-
 // Returns the error of a file that is no storm. `path` may also name one storm of a file, as in
 // "eps.grib2/mem05"; NOT_FOUND, with the names of the file's storms, if there is no such storm.
 absl::Status CheckFile(const std::string& path, const storm_files::StormFormats& formats);
-
-// Describes each of the files, small files in batches. Before each batch `before` is called, and if
-// it returns false, the rest is CANCELLED.
-std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(
-    const std::vector<std::string>& paths, const storm_files::StormFormats& formats,
-    const std::function<bool()>& before);
 
 // Returns the storms under `paths`, in the order of the paths and by id within a path. The rules
 // and errors are those of StormStore::Open. Returns CANCELLED if `stop` is requested.

@@ -34,6 +34,7 @@ absl::StatusOr<storm_store::StormInfoPtr> FindStorm(const storm_store::StormStor
   const std::vector<storm_store::StormInfoPtr> storms = store.Storms();
   const auto at = std::ranges::find(storms, id, [](const auto& storm) { return storm->id; });
   if (at != storms.end()) return *at;
+  if (id.empty() && !storms.empty()) return storms.front();
   if (searching) {
     return base::WithDetails(
         absl::UnavailableError(
@@ -44,7 +45,6 @@ absl::StatusOr<storm_store::StormInfoPtr> FindStorm(const storm_store::StormStor
     return base::WithDetails(absl::NotFoundError("the server has no storms"),
                              {.reason = kStormNotFound});
   }
-  if (id.empty()) return storms.front();
   return base::WithDetails(absl::NotFoundError(absl::StrCat("no storm has the id '", id,
                                                             "'; there is ", NamesOf(storms))),
                            {.reason = kStormNotFound, .metadata = {{"storm_id", id}}});

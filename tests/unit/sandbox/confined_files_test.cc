@@ -343,6 +343,30 @@ TEST_F(ConfinedFilesTest, AReaderHasATime) {
   EXPECT_EQ(Failures("time"), before + 2);
 }
 
+// A search gives a file little time at first, so that a slow file does not delay others. Nothing is
+// wrong with it yet.
+TEST_F(ConfinedFilesTest, AFileThatNeedsLongerThanItsTrialIsTriedAgain) {
+  const std::uint64_t before = Failures("time");
+  const auto files = Files();
+  const std::string slow = Bad("hang");
+  const std::string good = Bad("named");
+  const auto describe = [&](const std::vector<std::string>& paths, milliseconds patience) {
+    return GetInTime(std::async(std::launch::async,
+                                [&, patience] { return files->DescribeEach(paths, patience); }));
+  };
+  constexpr milliseconds kTrial{2000};
+  for (const auto& each : describe({good, slow}, kTrial)) {
+    EXPECT_EQ(each.status().code(), absl::StatusCode::kAborted) << each.status();
+  }
+  EXPECT_EQ(describe({slow}, kTrial)[0].status().code(), absl::StatusCode::kAborted);
+  EXPECT_EQ(Failures("time"), before);
+  const auto alone = files->DescribeEach({good}, kTrial);
+  EXPECT_TRUE(alone[0].ok()) << alone[0].status();
+  const auto patient = describe({slow}, storm_files::kLongestDescription);
+  EXPECT_EQ(patient[0].status().code(), absl::StatusCode::kDeadlineExceeded);
+  EXPECT_EQ(Failures("time"), before + 1);
+}
+
 // The reader is ended long before its time limit, so that others need not wait for it.
 TEST_F(ConfinedFilesTest, AReaderThatIsSilentIsEnded) {
   const std::uint64_t before = Failures("time");

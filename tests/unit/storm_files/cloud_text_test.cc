@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <fstream>
 #include <random>
 
@@ -13,6 +14,7 @@
 #include "absl/strings/str_replace.h"
 #include "storm_files/at3d_format.h"
 #include "storm_files/mystic_format.h"
+#include "storm_files/number_text.h"
 #include "storm_files/shdom_format.h"
 #include "storm_files/storm_format.h"
 #include "tests/support/temporary_folder.h"
@@ -383,6 +385,25 @@ TEST_F(CloudText, ALineOfTextThatNeverEndsIsRefused) {
   EXPECT_FLOAT_EQ(
       Read(header + std::string(1 << 20, '\n') + "1 1 1 0.5 10\n").fields[0].statistics.maximum,
       0.5e-3F);
+}
+
+// Fortran's repeat counts let a file of few bytes have any number of terms.
+TEST_F(CloudText, ASeriesIsLimitedAndItsRepeatedTermsTakeNoTime) {
+  const std::string header = "2 1 2\n0.1 0.1 0.0 0.2\n";
+  ExpectError(header + "1 1 1 280.0 3.0 0.99 20001 20001*1\n",
+              "line 3: has 20001 for the length of a series, which is an integer from 0 to 20000");
+  const std::string longest = "1 1 1 280.0 3.0 0.99 20000 19999*1\n7.0\n2 1 2 280.0 5.0 0.99 0\n";
+  EXPECT_FLOAT_EQ(Read(header + longest).fields[0].statistics.maximum, 5e-3F);
+  ExpectError(header + "1 1 1 280.0 3.0 0.99 3 4*1\n", "line 3: has more numbers than the layout");
+
+  std::ofstream(path_, std::ios::binary) << "2000000000*1 2\n";
+  auto bytes = base::OpenBytes(path_);
+  ASSERT_TRUE(bytes.ok()) << bytes.status();
+  NumberText text(*std::move(bytes), "");
+  const auto began = std::chrono::steady_clock::now();
+  ASSERT_TRUE(text.SkipNumbers(2'000'000'000, "a term").ok());
+  EXPECT_EQ(*text.Number("the next"), 2.0);
+  EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(1));
 }
 
 TEST_F(CloudText, AGridThatDoesNotFitInMemoryIsRefused) {
