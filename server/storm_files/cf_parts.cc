@@ -52,7 +52,6 @@ std::optional<StormFile> PartOfCf(const netcdf::NetcdfFile& file) {
   if (!LoadUnits().ok()) return std::nullopt;
   StormFile part;
   part.path = file.Path();
-  part.about = "Part of a time in CF netCDF";
   const std::string heights = NameOfHalfLevels(file);
   if (HasOnlyHeights(file)) {
     const auto dimensions = FindDimensions(file, heights);
