@@ -253,7 +253,7 @@ absl::Status SpectralGrid(std::uint64_t number) {
       "cdo sp2gpl"));
 }
 
-// Reads the grid of ICON's triangles, which has no places.
+// Reads the grid of ICON's triangles. The file does not contain the positions of its cells.
 absl::StatusOr<Grid> ReadTriangles(const Octets& section) {
   constexpr std::size_t kOctets = 35;
   constexpr std::uint64_t kMost = std::numeric_limits<std::int32_t>::max();

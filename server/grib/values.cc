@@ -194,7 +194,7 @@ Shape ShapeOf(const Field& field) {
   return {field.points, 1};
 }
 
-// A small field that is packed by one template.
+// A field of a few values, packed by one template, with which the decoder is tried.
 struct Sample {
   Bytes packing;
   Bytes data;

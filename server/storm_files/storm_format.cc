@@ -55,8 +55,8 @@ void CleanTexts(StormFile& file) {
   for (std::string& assumption : file.assumptions) assumption = base::Printable(assumption);
 }
 
-// Checks the storms of a file and cleans their texts. Parts of a time say nothing that can be
-// checked.
+// Checks the storms of a file and cleans their texts. A file with only a part of a time is not
+// checked, because it does not describe a whole storm.
 absl::Status CheckStorms(StormFile& file) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckStormCount(file.path, file.others.size() + 1));
   if (file.part.of.empty()) THUNDERHEAD_RETURN_IF_ERROR(CheckDescribed(file));

@@ -760,7 +760,7 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
   std::set<std::string> ids;
   std::map<std::string, int> copies;  // the last number that was appended to an id
   for (NamedStorm& storm : named) {
-    // What follows the file's own name is that of the storm in the file.
+    // The part of the name behind the file's name identifies the storm in the file, as "/mem05".
     const std::string in_file =
         storm.name.substr(std::min(storm.name.find('/'), storm.name.size()));
     storms.push_back(AssembleStorm(storm.name, std::move(storm.files)));

@@ -41,7 +41,7 @@ struct StormTime {
   std::uint64_t version = 0;
   // The middle of the domain at this time, if the domain moves. Otherwise use StormInfo.
   std::optional<volume::EarthPlace> middle = {};
-  // The grid's map projection at this time, if it differs from that of StormInfo. It is empty if
+  // The grid's map projection at this time. Absent if it is that of StormInfo, and an empty text if
   // there is none at this time.
   std::optional<std::string> projection = {};
 
