@@ -63,7 +63,11 @@ absl::StatusOr<std::vector<GribPart>> GribPartsOf(const grib::Index& index) {
     std::set<absl::Time> times;
     bool is_invariant = true;
   };
-  std::map<std::pair<std::string, std::string>, Contents> parts;
+  using ByMember = std::map<std::string, Contents>;
+  std::map<std::string, ByMember> parts;
+  // The text of a grid may be long, and many fields of a message may share one.
+  const grib::Field* last = nullptr;
+  ByMember* parts_of_last = nullptr;
   for (const grib::Field& field : index.fields) {
     const GribKind kind = MeaningOf(field.parameter).kind;
     if (field.unknown_unit.has_value() && kind != GribKind::kNone) {
@@ -72,7 +76,11 @@ absl::StatusOr<std::vector<GribPart>> GribPartsOf(const grib::Index& index) {
     if (!field.is_instant || kind == GribKind::kNone || IsOfLand(kind)) continue;
     if (kind == GribKind::kAmount) amount_levels.insert(field.first.value);
     if (kind == GribKind::kTemperature) temperature_levels.insert(field.first.value);
-    Contents& part = parts[{PartText(field), GribMemberOf(field.member)}];
+    if (last == nullptr || last->grid != field.grid || last->origin != field.origin) {
+      parts_of_last = &parts[PartText(field)];
+    }
+    last = &field;
+    Contents& part = (*parts_of_last)[GribMemberOf(field.member)];
     if (IsInvariant(field, kind)) continue;
     part.is_invariant = false;
     part.times.insert(field.Valid());
@@ -87,12 +95,13 @@ absl::StatusOr<std::vector<GribPart>> GribPartsOf(const grib::Index& index) {
     return std::vector<GribPart>{{.kind = GribPartKind::kWhole}};
   }
   std::vector<GribPart> found;
-  found.reserve(parts.size());
-  for (const auto& [key, part] : parts) {
-    found.push_back({.kind = part.is_invariant ? GribPartKind::kInvariant : GribPartKind::kFields,
-                     .of = key.first,
-                     .member = key.second,
-                     .times = {part.times.begin(), part.times.end()}});
+  for (const auto& [of, members] : parts) {
+    for (const auto& [member, part] : members) {
+      found.push_back({.kind = part.is_invariant ? GribPartKind::kInvariant : GribPartKind::kFields,
+                       .of = of,
+                       .member = member,
+                       .times = {part.times.begin(), part.times.end()}});
+    }
   }
   return found;
 }
