@@ -1,9 +1,11 @@
 // Finds the fields of one run and member in the indexes of GRIB files. Only grib_layers.h uses it.
-// The functions of Finder are in grib_layers.cc, grib_levels.cc (hydrometeors, the state of the air
-// and the levels that they share) and grib_heights.cc (heights, the ground and motion).
+// The file grib_candidates.cc has the fields of a storm, and grib_layers.cc puts those of a time
+// together. The file grib_levels.cc finds hydrometeors, the state of the air and the levels that
+// they share. The file grib_heights.cc finds heights, the ground and motion.
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <optional>
@@ -16,6 +18,7 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
+#include "physics/hydrometeors.h"
 #include "storm_files/grib_layers.h"
 
 namespace thunderhead::storm_files::grib_finder {
@@ -49,6 +52,14 @@ struct Candidate {
 };
 
 using Candidates = std::vector<Candidate>;
+
+// Returns the fields of the files that a storm may need.
+Candidates CandidatesOf(const GribIndexes& files);
+
+// Returns whether two fields are on the same grid. Fields of one message share a grid section,
+// which can be much longer than the rest of a field.
+bool IsSameGrid(const grib::Field& one, const grib::Field& other);
+
 using ByLevel = std::map<double, GribPlace>;
 
 // A field with the levels on which it is.
@@ -76,17 +87,16 @@ using Selections = std::set<Selection>;
 
 class Finder {
  public:
-  // `wanted` is null if the files have no hydrometeors.
-  Finder(const std::string& path, const GribIndexes& files, const Selections& all,
-         const Selection* wanted)
-      : files_(files), all_(all), wanted_(wanted) {
-    contents_.path = path;
-  }
+  // `wanted` is null if the files have no hydrometeors. `candidates` are the fields of all storms.
+  Finder(const std::string& path, const Candidates& candidates, const Selections& all,
+         const Selection* wanted);
+
+  // Returns the number of fields that belong to the storm.
+  std::size_t Fields() const { return candidates_.size(); }
 
   absl::StatusOr<GribContents> Find();
 
  private:
-  void Collect();
   absl::Status ChooseLevels();
   absl::Status CheckOneRun();
   absl::Status FindCells();
@@ -116,9 +126,12 @@ class Finder {
   absl::StatusOr<Found> LevelsOf(GribKind kind, const std::optional<absl::Time>& time,
                                  bool on_half_levels = false) const;
   absl::StatusOr<std::optional<GribPlace>> AtGround(GribKind kind, absl::Time time,
-                                                    bool at_any_time) const;
+                                                    bool at_any_time);
 
-  bool IsOfStorm(const grib::Field& field, const GribMeaning& meaning) const;
+  // Returns the storm's fields that are valid at `time`, or all of them without a time.
+  const Candidates& At(const std::optional<absl::Time>& time) const;
+  const std::optional<GribPlace>& AtGroundAtAnyTime(GribKind kind);
+  bool IsAtGround(const Candidate& candidate, GribKind kind) const;
   bool IsOnLevel(const grib::Field& field, bool on_half_level) const;
   std::string Where() const;
   std::string NameOf(const grib::Field& field) const {
@@ -140,13 +153,26 @@ class Finder {
     std::vector<std::string>& all = contents_.assumptions;
     if (std::ranges::find(all, sentence) == all.end()) all.push_back(std::move(sentence));
   }
+  // Adds an assumption that may be another one at each time. Of very many, the first are kept.
+  void AssumeOfTime(std::string sentence) {
+    constexpr std::size_t kMost = 20;
+    if (assumptions_of_times_ >= kMost) return;
+    const std::size_t before = contents_.assumptions.size();
+    Assume(std::move(sentence));
+    assumptions_of_times_ += contents_.assumptions.size() - before;
+  }
   GribSeries Series(const Found& found, const std::vector<double>& levels) const;
 
-  const GribIndexes& files_;
   const Selections& all_;
   const Selection* const wanted_;
   GribContents contents_;
   Candidates candidates_;
+  // What the search for each time needs, collected once. A file may have very many times.
+  std::map<absl::Time, Candidates> candidates_at_;
+  std::map<physics::Hydrometeor, std::map<grib::Parameter, GribMeaning>> parameters_;
+  std::map<GribKind, std::optional<GribPlace>> at_ground_at_any_time_;
+  std::optional<Found> half_heights_;
+  std::size_t assumptions_of_times_ = 0;
   int type_ = 0;                        // the type of the storm's levels
   bool has_layers_ = false;             // true if amounts lie between two half levels
   const grib::Field* first_ = nullptr;  // the first field of a hydrometeor

@@ -11,22 +11,32 @@
 
 namespace thunderhead::storm_files::grib_finder {
 
-absl::StatusOr<std::optional<GribPlace>> Finder::AtGround(GribKind kind, absl::Time time,
-                                                          bool at_any_time) const {
-  std::optional<GribPlace> any;
-  for (const Candidate& candidate : candidates_) {
-    const grib::Field& field = candidate.Field();
-    // IFS codes the surface pressure and geopotential as its hybrid level 1.
-    const bool is_first_hybrid =
-        field.first.type == kHybrid && field.first.value == 1.0 &&
-        (kind == GribKind::kLogPressure || kind == GribKind::kGeopotential);
-    if (candidate.meaning.kind != kind) continue;
-    if (field.first.type != kGround && !is_first_hybrid) continue;
-    if (*field.grid != *first_->grid) continue;
-    if (field.Valid() == time) return candidate.place;
-    if (at_any_time && !any.has_value()) any = candidate.place;
+bool Finder::IsAtGround(const Candidate& candidate, GribKind kind) const {
+  const grib::Field& field = candidate.Field();
+  // IFS codes the surface pressure and geopotential as its hybrid level 1.
+  const bool is_first_hybrid = field.first.type == kHybrid && field.first.value == 1.0 &&
+                               (kind == GribKind::kLogPressure || kind == GribKind::kGeopotential);
+  return candidate.meaning.kind == kind && (field.first.type == kGround || is_first_hybrid) &&
+         IsSameGrid(field, *first_);
+}
+
+// Returns the first field of the kind at the ground.
+const std::optional<GribPlace>& Finder::AtGroundAtAnyTime(GribKind kind) {
+  const auto [at, is_new] = at_ground_at_any_time_.try_emplace(kind);
+  if (is_new) {
+    const auto found = std::ranges::find_if(
+        candidates_, [&](const Candidate& candidate) { return IsAtGround(candidate, kind); });
+    if (found != candidates_.end()) at->second = found->place;
   }
-  return any;
+  return at->second;
+}
+
+absl::StatusOr<std::optional<GribPlace>> Finder::AtGround(GribKind kind, absl::Time time,
+                                                          bool at_any_time) {
+  for (const Candidate& candidate : At(time)) {
+    if (IsAtGround(candidate, kind)) return candidate.place;
+  }
+  return at_any_time ? AtGroundAtAnyTime(kind) : std::nullopt;
 }
 
 absl::Status Finder::FindSurface(absl::Time time, GribLayers& layers) {
@@ -82,7 +92,7 @@ absl::Status Finder::FindIsobaricHeights(absl::Time time, GribLayers& layers) {
     layers.heights = {};
     Assume("Heights of levels are computed from pressure, temperature and humidity (hydrostatic).");
   } else if (!computed.empty()) {
-    Assume(
+    AssumeOfTime(
         absl::StrCat("Heights of these levels are computed from the next level's (hydrostatic): ",
                      absl::StrJoin(computed, ", "), "."));
   }
@@ -105,7 +115,10 @@ absl::Status Finder::FindHalfHeights(GribLayers& layers) {
         mine != nullptr && storms != nullptr && mine->has_grid_id && storms->has_grid_id;
     return !both || mine->grid_id == storms->grid_id;
   };
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Found found, Levels(std::nullopt, true, is_height));
+  if (!half_heights_.has_value()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(half_heights_, Levels(std::nullopt, true, is_height));
+  }
+  const Found& found = *half_heights_;
   if (found.levels.empty()) return absl::OkStatus();
   std::vector<double> half_levels = layers.levels;
   half_levels.push_back(layers.levels.back() + 1.0);
@@ -128,8 +141,9 @@ absl::Status Finder::FindHalfHeights(GribLayers& layers) {
   }
   // The first of the levels is the highest. A file may have the lower levels only.
   if (found.levels.begin()->first < half_levels.front()) {
-    Assume(absl::StrCat("The storm ends at ", LevelName(type_, layers.levels.front()),
-                        ", because no field is on the levels above, whose heights are given."));
+    AssumeOfTime(
+        absl::StrCat("The storm ends at ", LevelName(type_, layers.levels.front()),
+                     ", because no field is on the levels above, whose heights are given."));
   }
   layers.heights = Series(found, half_levels);
   layers.heights.on_half_levels = true;
@@ -238,8 +252,8 @@ GribSeries Finder::Optional(const Found& found, const std::vector<double>& level
                             const GribLayers& layers) {
   for (const double level : levels) {
     if (found.levels.empty() || found.levels.contains(level)) continue;
-    Assume(absl::StrCat(Described(found), " is not used, because ", LevelName(type_, level),
-                        " is missing at ", TimeText(layers.time), "."));
+    AssumeOfTime(absl::StrCat(Described(found), " is not used, because ", LevelName(type_, level),
+                              " is missing at ", TimeText(layers.time), "."));
     return GribSeries();
   }
   return found.levels.empty() ? GribSeries() : Series(found, levels);

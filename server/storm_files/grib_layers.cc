@@ -81,30 +81,6 @@ std::string Finder::Where() const {
                       member.empty() ? "" : ", ", member, ")");
 }
 
-// Returns whether the field belongs to the storm that is wanted. If all storms are of one run,
-// fields of other runs are taken here and reported later.
-bool Finder::IsOfStorm(const grib::Field& field, const GribMeaning& meaning) const {
-  if (all_.size() < 2) return true;
-  const bool are_one_run = std::ranges::all_of(
-      all_, [this](const Selection& each) { return each.origin == wanted_->origin; });
-  if (!are_one_run && field.origin != wanted_->origin) return false;
-  if (field.member.has_value()) return field.member == wanted_->member;
-  if (!wanted_->member.has_value() || meaning.kind == GribKind::kGeometricHeight) return true;
-  if (field.first.type == kGround && IsHeight(meaning.kind)) return true;
-  return !all_.contains({wanted_->origin, std::nullopt});
-}
-
-void Finder::Collect() {
-  for (std::size_t file = 0; file < files_.size(); ++file) {
-    for (const grib::Field& field : files_[file]->fields) {
-      if (!field.is_instant) continue;
-      const GribMeaning meaning = MeaningOf(field.parameter);
-      if (meaning.kind == GribKind::kNone || !IsOfStorm(field, meaning)) continue;
-      candidates_.push_back({{file, &field}, meaning});
-    }
-  }
-}
-
 // Chooses the type of levels on which hydrometeors have the most levels. A file on isobaric levels
 // can have its hydrometeors also on one hybrid level, which is no part of the set.
 absl::Status Finder::ChooseLevels() {
@@ -157,7 +133,7 @@ absl::Status Finder::CheckOneRun() {
           field.origin.centre, "); put each run into a separate file or folder"));
     }
     if (candidate.meaning.kind != GribKind::kAmount) continue;
-    if (*field.grid != *first_->grid) {
+    if (!IsSameGrid(field, *first_)) {
       return Refused("has hydrometeors on several grids; put each grid into a separate file");
     }
   }
@@ -177,7 +153,7 @@ absl::Status Finder::CheckOneRun() {
 // Finds the places of the cells, which are fields on the same grid.
 absl::Status Finder::FindCells() {
   for (const Candidate& candidate : candidates_) {
-    if (*candidate.Field().grid != *first_->grid) continue;
+    if (!IsSameGrid(candidate.Field(), *first_)) continue;
     if (candidate.meaning.kind == GribKind::kCellLatitude) {
       contents_.cell_latitude = candidate.place;
     } else if (candidate.meaning.kind == GribKind::kCellLongitude) {
@@ -196,7 +172,7 @@ absl::Status Finder::FindCells() {
 // Returns whether the field is on a level of the storm's type, or on a half level between them.
 bool Finder::IsOnLevel(const grib::Field& field, bool on_half_level) const {
   if (field.first.type != type_ || !std::isfinite(field.first.value)) return false;
-  if (*field.grid != *first_->grid) return false;
+  if (!IsSameGrid(field, *first_)) return false;
   if (field.member != first_->member && field.member.has_value()) return false;
   const bool is_layer = field.second.type == type_;
   if (type_ == kIsobaricSurface) return !IsBetweenPressures(field) && !on_half_level;
@@ -206,10 +182,9 @@ bool Finder::IsOnLevel(const grib::Field& field, bool on_half_level) const {
 absl::StatusOr<Found> Finder::Levels(const std::optional<absl::Time>& time, bool on_half_levels,
                                      const IsWanted& is_wanted) const {
   Found found;
-  for (const Candidate& candidate : candidates_) {
+  for (const Candidate& candidate : At(time)) {
     const grib::Field& field = candidate.Field();
-    if (!IsOnLevel(field, on_half_levels) || !is_wanted(candidate)) continue;
-    if (time.has_value() && field.Valid() != *time) continue;
+    if (!is_wanted(candidate) || !IsOnLevel(field, on_half_levels)) continue;
     const auto [at, is_new] = found.levels.emplace(field.first.value, candidate.place);
     found.kind = candidate.meaning.kind;
     found.name = NameOf(field);
@@ -266,7 +241,6 @@ absl::StatusOr<GribLayers> Finder::FindTime(absl::Time time) {
 }
 
 absl::StatusOr<GribContents> Finder::Find() {
-  Collect();
   THUNDERHEAD_RETURN_IF_ERROR(ChooseLevels());
   THUNDERHEAD_RETURN_IF_ERROR(CheckOneRun());
   std::set<absl::Time> times;
@@ -331,11 +305,21 @@ absl::StatusOr<std::vector<GribContents>> FindGribStorms(const std::string& path
     }
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckStormCount(path, all.size()));
+  const grib_finder::Candidates candidates = grib_finder::CandidatesOf(files);
+  if (all.empty()) return grib_finder::Finder(path, candidates, all, nullptr).Find().status();
   std::vector<GribContents> storms;
-  if (all.empty()) return grib_finder::Finder(path, files, all, nullptr).Find().status();
+  std::size_t fields = 0;
   for (const grib_finder::Selection& wanted : all) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(storms.emplace_back(),
-                                 grib_finder::Finder(path, files, all, &wanted).Find());
+    grib_finder::Finder finder(path, candidates, all, &wanted);
+    fields += finder.Fields();
+    // Fields without a member count for each member.
+    constexpr std::size_t kMostFields = 10 * grib::kMaxFields;
+    if (all.size() > 1 && fields > kMostFields) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(path, ": its ", all.size(), " storms (runs or members) have more than ",
+                       kMostFields, " fields, which are the most; split it"));
+    }
+    THUNDERHEAD_ASSIGN_OR_RETURN(storms.emplace_back(), finder.Find());
   }
   return storms;
 }

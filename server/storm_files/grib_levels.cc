@@ -14,16 +14,9 @@ absl::Status Finder::FindHydrometeors(absl::Time time, GribLayers& layers,
                                       std::vector<Found>& needed) {
   for (const physics::Hydrometeor hydrometeor : physics::kHydrometeors) {
     // If there are several parameters for one hydrometeor, the one on the most levels is used.
-    std::map<grib::Parameter, GribMeaning> parameters;
-    for (const Candidate& candidate : candidates_) {
-      const GribMeaning& meaning = candidate.meaning;
-      if (meaning.kind == GribKind::kAmount && meaning.hydrometeor == hydrometeor) {
-        parameters.emplace(candidate.Field().parameter, meaning);
-      }
-    }
     Found best;
     GribHydrometeor found;
-    for (const auto& [parameter, meaning] : parameters) {
+    for (const auto& [parameter, meaning] : parameters_[hydrometeor]) {
       THUNDERHEAD_ASSIGN_OR_RETURN(
           Found levels, Levels(time, false, [&wanted = parameter](const Candidate& candidate) {
             return candidate.Field().parameter == wanted;
@@ -46,7 +39,7 @@ absl::Status Finder::CheckOtherGrids(GribKind kind) const {
   for (const Candidate& candidate : candidates_) {
     const grib::Field& field = candidate.Field();
     if (candidate.meaning.kind != kind || field.first.type != type_) continue;
-    if (*field.grid == *first_->grid) continue;
+    if (IsSameGrid(field, *first_)) continue;
     const auto other = grib::ReadGrid(*field.grid);
     return Refused(absl::StrCat("has ", NameOf(field), " on another grid than the hydrometeors",
                                 other.ok() ? "; put all fields on one grid"
@@ -88,14 +81,14 @@ std::set<double> Finder::LevelsOfState(absl::Time time) const {
                                  GribKind::kPressure,          GribKind::kGeometricHeight,
                                  GribKind::kGeopotentialHeight};
   std::set<double> levels;
-  for (const Candidate& candidate : candidates_) {
+  for (const Candidate& candidate : At(time)) {
     if (std::ranges::find(kState, candidate.meaning.kind) == kState.end()) continue;
     const grib::Field& field = candidate.Field();
     // These are on half levels, of which there is one more.
     const bool is_half_level =
         type_ == kGeneralized && candidate.meaning.kind == GribKind::kGeometricHeight;
     if (is_half_level) continue;
-    if (IsOnLevel(field, false) && field.Valid() == time) levels.insert(field.first.value);
+    if (IsOnLevel(field, false)) levels.insert(field.first.value);
   }
   return levels;
 }
@@ -154,7 +147,7 @@ absl::Status Finder::ShareLevels(std::vector<Found>& needed, std::size_t amounts
     }
   }
   if (!left_out.empty()) {
-    Assume(absl::StrCat(
+    AssumeOfTime(absl::StrCat(
         "Levels that not all fields have are left out: ", absl::StrJoin(left_out, ", "), "."));
   }
   // Pressure falls upwards.
