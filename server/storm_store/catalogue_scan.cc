@@ -148,18 +148,20 @@ std::vector<std::string> CatalogueScan::KnownBelow(const std::string& folder) co
 // Examines all files, and notes which of them must be opened.
 void CatalogueScan::See(const std::vector<ListedFolder>& folders) {
   waiting_.clear();
+  // Files that the user gave one by one may be in the same folder.
   for (const ListedFolder& folder : folders) {
-    Waiting waiting;
     for (const std::string& path : folder.files) {
       if (stopping_) return;
       if (!See(path)) continue;
       const Known& known = known_[path];
       const bool is_untried = known.tries == 0 && known.trial != Trial::kPatient;
+      Waiting& waiting = waiting_[folder.path];
       (is_untried ? waiting.untried : waiting.tried).push_back(path);
     }
+  }
+  for (auto& [folder, waiting] : waiting_) {
     std::ranges::stable_sort(waiting.tried, {},
                              [this](const std::string& path) { return known_[path].tries; });
-    if (!waiting.IsEmpty()) waiting_.emplace(folder.path, std::move(waiting));
   }
 }
 

@@ -206,6 +206,17 @@ TEST_F(LiveFolder, OffersOldFilesAtOnceAndNewOnesLater) {
 }
 
 // One of these files alone would be a storm with its own name.
+TEST_F(LiveFolder, FilesOfOneFolderThatAreGivenOneByOneAreAllOffered) {
+  std::vector<std::string> files;
+  for (const int hour : {18, 19, 20}) {
+    files.push_back(File(hour));
+    PutOld(files.back(), WrfBytes({hour}));
+  }
+  CatalogueScan scan(
+      {.paths = files, .formats = storm_files::StormFormats::BuiltIn(), .retry = seconds(30)});
+  EXPECT_THAT(TimesAt(scan, seconds(0)), ElementsAre(1, 1, 1));
+}
+
 TEST_F(LiveFolder, FilesThatCameJustBeforeTheStartAreOfferedTogether) {
   for (int hour = 0; hour < 2; ++hour) {
     Put(File(hour), WrfBytes({hour}));
