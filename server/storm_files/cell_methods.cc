@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 
 namespace thunderhead::storm_files {
@@ -68,19 +70,25 @@ bool HoldsNoAmount(const netcdf::NetcdfFile& file, const std::string& variable) 
   return MeaningOfCellMethods(file.TextOrEmpty(variable, "cell_methods")) == CellMethod::kNoAmount;
 }
 
-absl::Status CheckCellMethods(const netcdf::NetcdfFile& file, const std::string& variable,
+absl::Status CheckCellMethods(const netcdf::NetcdfFile& file,
+                              const std::vector<std::string>& variables,
                               std::vector<std::string>& assumptions) {
-  const std::string text = file.TextOrEmpty(variable, "cell_methods");
-  const CellMethod meaning = MeaningOfCellMethods(text);
-  if (meaning == CellMethod::kNoAmount) {
+  std::map<std::string, std::vector<std::string>> statistics;  // variables by their cell_methods
+  for (const std::string& variable : variables) {
+    const std::string text = file.TextOrEmpty(variable, "cell_methods");
+    const CellMethod meaning = MeaningOfCellMethods(text);
+    if (meaning == CellMethod::kStatistic) statistics[text].push_back(variable);
+    if (meaning != CellMethod::kNoAmount) continue;
     return absl::InvalidArgumentError(absl::StrCat(
         file.Path(), ": ", variable, " has cell_methods '", text,
         "', so its values are no amounts of water; give values at single times, or means"));
   }
-  if (meaning == CellMethod::kStatistic) {
-    assumptions.push_back(absl::StrCat(variable,
-                                       " is shown as the amount at each time, but it is a ",
-                                       "statistic (cell_methods '", text, "')."));
+  for (const auto& [text, names] : statistics) {
+    assumptions.push_back(absl::StrCat(
+        absl::StrJoin(names, ", "),
+        names.size() == 1 ? " is shown as the amount at each time, but it is a statistic"
+                          : " are shown as the amounts at each time, but they are statistics",
+        " (cell_methods '", text, "')."));
   }
   return absl::OkStatus();
 }

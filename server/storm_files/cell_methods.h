@@ -24,9 +24,11 @@ CellMethod MeaningOfCellMethods(std::string_view cell_methods);
 // Returns whether the variable's cell_methods say that its values are no amounts.
 bool HoldsNoAmount(const netcdf::NetcdfFile& file, const std::string& variable);
 
-// Returns INVALID_ARGUMENT, which names the variable, if HoldsNoAmount. Adds a sentence to
-// `assumptions` if the values are a statistic.
-absl::Status CheckCellMethods(const netcdf::NetcdfFile& file, const std::string& variable,
+// Returns INVALID_ARGUMENT, which names the variable, if one of the variables holds no amounts. If
+// values are a statistic, adds one sentence to `assumptions` for all variables with the same
+// method.
+absl::Status CheckCellMethods(const netcdf::NetcdfFile& file,
+                              const std::vector<std::string>& variables,
                               std::vector<std::string>& assumptions);
 
 }  // namespace thunderhead::storm_files

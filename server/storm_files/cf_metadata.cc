@@ -112,6 +112,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
   LeaveOutSpreads(file, candidates, metadata->assumptions);
   THUNDERHEAD_RETURN_IF_ERROR(FindAxes(file, candidates, metadata));
   std::vector<CfField> mixtures;
+  std::vector<std::string> used;
   for (const CfDescription& variable : candidates) {
     const CfQuantity quantity = *QuantityOf(variable);
     if (HasFewerAxes(file, variable.name, *metadata)) continue;
@@ -123,7 +124,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
           absl::StrCat(file.Path(), ": ", variable.name, " lies on the faces between the cells of ",
                        candidates.front().name, "; put all on one grid"));
     }
-    THUNDERHEAD_RETURN_IF_ERROR(CheckCellMethods(file, variable.name, metadata->assumptions));
+    used.push_back(variable.name);
     if (quantity.mixed != MixedWater::kNone) {
       mixtures.push_back({std::move(arranged), quantity});
       continue;
@@ -140,6 +141,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
     }
     fields.push_back({std::move(arranged), quantity});
   }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckCellMethods(file, used, metadata->assumptions));
   AddMixtures(mixtures, metadata);
   const auto extinction = std::ranges::find_if(fields, [](const CfField& field) {
     return field.quantity.quantity == volume::Quantity::kExtinction;

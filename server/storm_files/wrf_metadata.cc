@@ -236,14 +236,16 @@ absl::Status FindMoreIce(const netcdf::NetcdfFile& file, WrfMetadata& metadata) 
 // the frozen phase itself.
 absl::Status FindFields(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
   const WrfLayout& layout = metadata.layout;
+  std::vector<std::string> found;
   for (const Hydrometeor hydrometeor : physics::kHydrometeors) {
     const std::string variable(WrfVariableOf(hydrometeor));
     if (!file.HasVariable(variable)) continue;
     THUNDERHEAD_RETURN_IF_ERROR(
         CheckVariable(file, layout, variable, layout.Layers(), kMixingRatio, Changes::kAtEachTime));
-    THUNDERHEAD_RETURN_IF_ERROR(CheckCellMethods(file, variable, metadata.assumptions));
+    found.push_back(variable);
     metadata.variables[physics::IndexOf(hydrometeor)] = variable;
   }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckCellMethods(file, found, metadata.assumptions));
   THUNDERHEAD_RETURN_IF_ERROR(FindMoreIce(file, metadata));
   const PhaseSplit split =
       PhaseSplitOf(static_cast<int>(file.NumberAttribute("", "MP_PHYSICS").value_or(0.0)));

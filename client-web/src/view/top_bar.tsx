@@ -64,7 +64,8 @@ function Assumptions({ page }: { page: Page }) {
   return (
     <details class="assumptions" data-testid="assumptions">
       <summary title="What was assumed because the files do not say it">
-        {assumptions.length === 1 ? "1 assumption" : `${assumptions.length} assumptions`}
+        {assumptions.length}
+        <span class="word">{assumptions.length === 1 ? " assumption" : " assumptions"}</span>
       </summary>
       <ul class="assumptions-body">
         {assumptions.map((text) => (

@@ -145,6 +145,12 @@ TEST_F(WrfRelativesTest, VariancesAreNoAmountsOfWater) {
   const auto described = Describe(file);
   ASSERT_TRUE(described.ok()) << described.status();
   EXPECT_THAT(Assumptions(*described), HasSubstr("statistic (cell_methods 'Time: mean')"));
+  // Variables with the same method share a sentence.
+  file.mixing_ratios["QRAIN"] = [](const WrfCell&) { return 1e-4; };
+  file.texts["QRAIN"]["cell_methods"] = "Time: mean";
+  const auto both = Describe(file);
+  ASSERT_TRUE(both.ok()) << both.status();
+  EXPECT_THAT(Assumptions(*both), HasSubstr("QCLOUD, QRAIN are shown as the amounts"));
   file.texts["QCLOUD"]["cell_methods"] = "Time: variance";
   EXPECT_THAT(Message(file), HasSubstr("QCLOUD has cell_methods 'Time: variance'"));
 }
