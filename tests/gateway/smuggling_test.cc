@@ -92,6 +92,23 @@ TEST_F(SmugglingTest, APlainRequestIsAnswered) {
   EXPECT_EQ(client.Read().body(), "ok\n");
 }
 
+// A proxy forwards trailers without looking at them. If they counted as header fields, a client
+// could claim another address, token or timeout than those that the proxy has checked.
+TEST_F(SmugglingTest, FieldsBehindTheLastChunkAreNoHeader) {
+  RawClient client(Site().Port());
+  client.Send("POST /thunderhead.gateway.test.Echo/Metadata HTTP/1.1\r\nHost: localhost:8080\r\n" +
+              kType + "X-Forwarded-For: 192.0.2.7\r\nX-Header: kept\r\n" +
+              "Transfer-Encoding: chunked\r\n\r\n5\r\n" + Frame("") + "\r\n0\r\n" +
+              "X-Forwarded-For: 203.0.113.9\r\nAuthorization: Bearer forged\r\n" +
+              "X-Trailer: forged\r\nGrpc-Timeout: 1n\r\nContent-Type: text/plain\r\n\r\n" + kNext);
+  const auto answer = client.Read();
+  EXPECT_EQ(ParseResult(answer).Trailer("grpc-status"), "0");
+  EXPECT_NE(answer.body().find("kept"), std::string::npos) << "the service shows metadata";
+  EXPECT_EQ(answer.body().find("forged"), std::string::npos);
+  EXPECT_EQ(answer.body().find("203.0.113.9"), std::string::npos);
+  EXPECT_EQ(client.Read().body(), "ok\n");
+}
+
 TEST_F(SmugglingTest, AForeignOriginMayNotPostEvenWithoutAPreflight) {
   for (const std::string origin :
        {"https://evil.example", "null", "http://localhost:9999", "file://"}) {
