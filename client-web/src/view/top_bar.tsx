@@ -61,11 +61,15 @@ function Storm({ page }: { page: Page }) {
 function Assumptions({ page }: { page: Page }) {
   const assumptions = page.state.assumptions.value;
   if (assumptions.length === 0) return null;
+  const word = assumptions.length === 1 ? "assumption" : "assumptions";
   return (
     <details class="assumptions" data-testid="assumptions">
-      <summary title="What was assumed because the files do not say it">
-        {assumptions.length}
-        <span class="word">{assumptions.length === 1 ? " assumption" : " assumptions"}</span>
+      <summary
+        title="What was assumed because the files do not say it"
+        aria-label={`${assumptions.length} ${word}`}
+      >
+        <span class="count">{assumptions.length}</span>
+        <span class="word"> {word}</span>
       </summary>
       <ul class="assumptions-body">
         {assumptions.map((text) => (
