@@ -223,12 +223,26 @@ TEST_F(ManifestTest, WhatIsPlantedInItsPlaceIsNeitherFollowedNorChanged) {
   EXPECT_THAT(refusal({.count = {}, .take_over = {other}}), HasSubstr("this is a symbolic link"));
 }
 
+TEST_F(ManifestTest, AFifoInPlaceOfThePartialFileIsReplaced) {
+  const std::string product = folder_.File("a.png");
+  const std::string other = folder_.File("manifest-2.jsonl");
+  ASSERT_TRUE(Manifest::Open(other, {})->Record(product, Entry("1")).ok());
+  auto manifest = *Manifest::Open(path_, {.count = {other}, .take_over = {}});
+  ASSERT_EQ(mkfifo(base::PartialPath(other).c_str(), 0600), 0);
+  ASSERT_TRUE(manifest.Record(product, Entry("2")).ok());
+  EXPECT_EQ(*base::ReadWholeFile(other), "");
+  ASSERT_EQ(mkfifo(base::PartialPath(path_).c_str(), 0600), 0);
+  ASSERT_TRUE(manifest.Record(product, Entry("3")).ok());
+  EXPECT_THAT(Text(), HasSubstr(R"("sha256":"3")"));
+  EXPECT_THAT(Text(), Not(HasSubstr(R"("sha256":"2")")));
+}
+
 TEST_F(ManifestTest, AFileThatIsTooLargeIsNotRead) {
   std::ofstream(path_).flush();
-  std::filesystem::resize_file(path_, std::uintmax_t{1} << 40);  // without blocks on the disk
+  std::filesystem::resize_file(path_, (std::uintmax_t{1} << 30) + 1);  // without blocks
   const absl::Status status = Manifest::Open(path_, {}).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition) << status;
-  EXPECT_THAT(std::string(status.message()), HasSubstr("1099511627776 bytes"));
+  EXPECT_THAT(std::string(status.message()), HasSubstr("1073741825 bytes"));
 }
 
 TEST(MadeAlikeTest, ByScenePathSizeTimeVersionOrTheInputsHash) {
