@@ -15,6 +15,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "base/file_descriptor.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "nlohmann/json.hpp"
@@ -24,6 +25,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+// A manifest of this size has more than a million products.
+constexpr off_t kMaxBytes = off_t{1} << 30;
 
 template <typename Value>
 Json OrNull(const std::optional<Value>& value) {
@@ -58,33 +62,84 @@ absl::StatusOr<std::vector<ManifestEntry>> ParseLines(const std::string& path,
   return entries;
 }
 
+// Describes what other than a manifest is at `path`. Empty if it is a file with one name, or
+// nothing.
+std::string WhatIsAt(const std::string& path) {
+  struct stat found {};
+  if (lstat(path.c_str(), &found) != 0) return "";
+  if (S_ISLNK(found.st_mode)) return "a symbolic link";
+  if (S_ISDIR(found.st_mode)) return "a folder";
+  if (!S_ISREG(found.st_mode)) return "a FIFO, a socket or a device";
+  return found.st_nlink > 1 ? "a file with a second name (a hard link)" : "";
+}
+
 absl::Status NotUsable(const std::string& path) {
   const int code = errno;
+  if (const std::string found = WhatIsAt(path); !found.empty()) {
+    return absl::FailedPreconditionError(
+        absl::StrCat(path, ": this is ", found,
+                     ", and a manifest must be a file of its own, because another user may have "
+                     "planted it; remove it, or name another manifest with --manifest"));
+  }
   return base::WriteProblem(
       absl::StrCat(path, ": the manifest cannot be written (", std::strerror(code), ")"), code);
+}
+
+// Opens a regular file with one name, and nothing else. Another user of the folder could otherwise
+// plant a link to a file or device, or a FIFO. Negative with errno set on failure.
+base::FileDescriptor OpenOwn(const std::string& path, int flags) {
+  base::FileDescriptor file(
+      open(path.c_str(), flags | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666));
+  struct stat found {};
+  if (!file.IsOpen() || fstat(file.Get(), &found) != 0) return base::FileDescriptor();
+  if (S_ISREG(found.st_mode) && found.st_nlink <= 1) return file;
+  errno = ELOOP;
+  return base::FileDescriptor();
+}
+
+// Reads the whole text of an open manifest.
+absl::StatusOr<std::string> TextAt(int file, const std::string& path) {
+  struct stat about {};
+  if (fstat(file, &about) != 0) return NotUsable(path);
+  if (about.st_size > kMaxBytes) {
+    return absl::FailedPreconditionError(
+        absl::StrCat(path, ": the manifest has ", about.st_size, " bytes, and at most ", kMaxBytes,
+                     " are read; move it away, or name another manifest with --manifest"));
+  }
+  std::string text(static_cast<std::size_t>(about.st_size), '\0');
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ssize_t count =
+        pread(file, text.data() + done, text.size() - done, static_cast<off_t>(done));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return NotUsable(path);
+    if (count == 0) break;  // another process has shortened the file
+    done += static_cast<std::size_t>(count);
+  }
+  text.resize(done);
+  return text;
 }
 
 // Returns true if `file` is still the file at `path`. Another process may have replaced it.
 bool IsAt(int file, const std::string& path) {
   struct stat open_file {};
   struct stat named {};
-  return fstat(file, &open_file) == 0 && stat(path.c_str(), &named) == 0 &&
+  return fstat(file, &open_file) == 0 && lstat(path.c_str(), &named) == 0 &&
          open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
 }
 
 // Opens and locks a file. Returns -1 with errno set on failure.
 int OpenLocked(const std::string& path) {
   while (true) {
-    const int file = open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    if (file < 0) return -1;
-    if (flock(file, LOCK_EX | LOCK_NB) != 0) {
+    base::FileDescriptor file = OpenOwn(path, O_RDWR | O_CREAT | O_APPEND);
+    if (!file.IsOpen()) return -1;
+    if (flock(file.Get(), LOCK_EX | LOCK_NB) != 0) {
       const int why = errno;
-      close(file);
+      file = base::FileDescriptor();
       errno = why;
       return -1;
     }
-    if (IsAt(file, path)) return file;
-    close(file);
+    if (IsAt(file.Get(), path)) return file.Release();
   }
 }
 
@@ -94,13 +149,21 @@ std::string TextOf(const std::vector<ManifestEntry>& entries) {
   return text;
 }
 
-// Returns the entries of another manifest; none if it no longer exists.
+// Replaces a locked manifest. A FIFO that another user planted in place of its partial file would
+// wait for a reader, so it is removed.
+absl::Status Replace(const std::string& path, const std::vector<ManifestEntry>& entries) {
+  unlink(base::PartialPath(path).c_str());
+  return base::WriteWholeFile(path, TextOf(entries));
+}
+
+// Returns the entries of another manifest; none if it no longer exists or may not be read.
 absl::StatusOr<std::vector<ManifestEntry>> Read(const std::string& path) {
-  auto text = base::ReadWholeFile(path);
-  if (absl::IsNotFound(text.status())) return std::vector<ManifestEntry>();
-  THUNDERHEAD_RETURN_IF_ERROR(text.status());
+  const base::FileDescriptor file = OpenOwn(path, O_RDONLY);
+  if (!file.IsOpen() && (errno == ENOENT || errno == EACCES)) return std::vector<ManifestEntry>();
+  if (!file.IsOpen()) return NotUsable(path);
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string text, TextAt(file.Get(), path));
   std::size_t whole_bytes = 0;
-  return ParseLines(path, *text, whole_bytes);
+  return ParseLines(path, text, whole_bytes);
 }
 
 // Sorts manifests from oldest to newest. Their modification times come from the same clock, because
@@ -199,7 +262,7 @@ absl::StatusOr<Manifest> Manifest::Open(const std::string& path, const OtherMani
                      ": another thunderhead is writing this manifest; wait for it, or name another "
                      "manifest or product folder"));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string text, base::ReadWholeFile(path));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string text, TextAt(manifest.file_, path));
   std::size_t whole_bytes = 0;
   THUNDERHEAD_ASSIGN_OR_RETURN(manifest.entries_, ParseLines(path, text, whole_bytes));
   if (whole_bytes < text.size() &&
@@ -276,7 +339,7 @@ absl::Status Manifest::RemoveFromOthers(const std::string& name) {
     if (removed.ok() && std::erase_if(*entries, [&name](const ManifestEntry& entry) {
                           return entry.file == name;
                         }) > 0) {
-      removed = base::WriteWholeFile(other.manifest, TextOf(*entries));
+      removed = Replace(other.manifest, *entries);
     }
     close(file);
     THUNDERHEAD_RETURN_IF_ERROR(removed);
@@ -350,7 +413,7 @@ absl::Status Manifest::Append(const ManifestEntry& entry) const {
 }
 
 absl::Status Manifest::Rewrite() {
-  THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(path_, TextOf(entries_)));
+  THUNDERHEAD_RETURN_IF_ERROR(Replace(path_, entries_));
   const int file = OpenLocked(path_);
   if (file < 0) return NotUsable(path_);
   close(std::exchange(file_, file));

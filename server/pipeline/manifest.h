@@ -65,7 +65,8 @@ class Manifest {
  public:
   // Opens the manifest, and creates it if it does not exist. Drops an incomplete last line.
   // DATA_LOSS if any other line is not an entry; UNAVAILABLE if another process holds the
-  // manifest's lock.
+  // manifest's lock; FAILED_PRECONDITION for anything but a regular file with one name, such as a
+  // link, and for a file of more than 1 GiB.
   static absl::StatusOr<Manifest> Open(const std::string& path, const OtherManifests& others);
   Manifest(Manifest&& other) noexcept;
   Manifest& operator=(Manifest&&) = delete;

@@ -7,6 +7,9 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -16,6 +19,7 @@ extern "C" {
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/file_descriptor.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 
@@ -110,6 +114,15 @@ absl::Status Failed(const std::string& path, const std::string& what, int code) 
   return base::WriteProblem(message, AVUNERROR(code));
 }
 
+// Makes an empty partial file. Another user of the folder may have put a link or a FIFO in its
+// place, which is removed and never opened. Negative with errno set if the file cannot be made.
+base::FileDescriptor NewPartial(const std::string& path) {
+  const std::string partial = base::PartialPath(path);
+  unlink(partial.c_str());
+  return base::FileDescriptor(
+      open(partial.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+}
+
 // Writes one movie to the partial file.
 class MovieWriter {
  public:
@@ -123,10 +136,14 @@ class MovieWriter {
           absl::StrCat(path_, " cannot be made: libavcodec has no encoder of ", kind.codec_name,
                        " here; name a movie of the other kind (.webm or .mp4)"));
     }
+    partial_ = NewPartial(path_);
+    if (!partial_.IsOpen()) return Failed(path_, "its partial file", AVERROR(errno));
+    // libavformat opens the file again, some containers twice. This name leads to the open file,
+    // whatever has been put at its path since.
+    const std::string name = absl::StrCat("/proc/self/fd/", partial_.Get());
     AVFormatContext* format = nullptr;
-    const std::string partial = base::PartialPath(path_);
     if (const int code =
-            avformat_alloc_output_context2(&format, nullptr, kind.container, partial.c_str());
+            avformat_alloc_output_context2(&format, nullptr, kind.container, name.c_str());
         code < 0) {
       return Failed(path_, "no such container", code);
     }
@@ -158,7 +175,7 @@ class MovieWriter {
     av_dict_set(&format->metadata, "title", text.title.c_str(), 0);
     av_dict_set(&format->metadata, "comment", text.comment.c_str(), 0);
     av_dict_set(&format->metadata, "description", text.description.c_str(), 0);
-    code = avio_open(&format->pb, partial.c_str(), AVIO_FLAG_WRITE);
+    code = avio_open(&format->pb, name.c_str(), AVIO_FLAG_WRITE);
     Settings muxer(kind.muxer);
     if (code >= 0) code = avformat_write_header(format, muxer.Address());
     if (code < 0) return Failed(path_, "its beginning", code);
@@ -231,6 +248,7 @@ class MovieWriter {
   }
 
   const std::string path_;
+  base::FileDescriptor partial_;
   std::unique_ptr<AVFormatContext, FormatDeleter> format_;
   std::unique_ptr<AVCodecContext, ContextDeleter> codec_;
   std::unique_ptr<AVFrame, FrameDeleter> frame_;

@@ -1,5 +1,7 @@
 #include "pipeline/manifest.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -190,6 +192,57 @@ TEST_F(ManifestTest, ManifestsOfSharesThatHaveEndedAreTakenOver) {
 TEST_F(ManifestTest, AFolderThatMayNotBeWrittenToIsConfiguration) {
   EXPECT_EQ(Manifest::Open(folder_.File("none/manifest.jsonl"), {}).status().code(),
             absl::StatusCode::kFailedPrecondition);
+}
+
+// Another user of the folder could otherwise make the program change or read its owner's files.
+TEST_F(ManifestTest, WhatIsPlantedInItsPlaceIsNeitherFollowedNorChanged) {
+  const std::string victim = folder_.File("victim");
+  std::ofstream(victim) << "kept without a line break";
+  const auto refusal = [&](const OtherManifests& others) {
+    const absl::Status status = Manifest::Open(path_, others).status();
+    EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition) << status;
+    EXPECT_EQ(*base::ReadWholeFile(victim), "kept without a line break");
+    return std::string(status.message());
+  };
+  std::filesystem::create_symlink(victim, path_);
+  EXPECT_THAT(refusal({}), HasSubstr("this is a symbolic link"));
+  std::filesystem::remove(path_);
+  std::filesystem::create_symlink(folder_.File("new"), path_);
+  EXPECT_THAT(refusal({}), HasSubstr("remove it, or name another manifest with --manifest"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("new")));
+  std::filesystem::remove(path_);
+  std::filesystem::create_hard_link(victim, path_);
+  EXPECT_THAT(refusal({}), HasSubstr("a hard link"));
+  std::filesystem::remove(path_);
+  ASSERT_EQ(mkfifo(path_.c_str(), 0600), 0);
+  EXPECT_THAT(refusal({}), HasSubstr("this is a FIFO"));
+  std::filesystem::remove(path_);
+  const std::string other = folder_.File("manifest-2.jsonl");
+  std::filesystem::create_symlink(victim, other);
+  EXPECT_THAT(refusal({.count = {other}, .take_over = {}}), HasSubstr("this is a symbolic link"));
+  EXPECT_THAT(refusal({.count = {}, .take_over = {other}}), HasSubstr("this is a symbolic link"));
+}
+
+TEST_F(ManifestTest, AFifoInPlaceOfThePartialFileIsReplaced) {
+  const std::string product = folder_.File("a.png");
+  const std::string other = folder_.File("manifest-2.jsonl");
+  ASSERT_TRUE(Manifest::Open(other, {})->Record(product, Entry("1")).ok());
+  auto manifest = *Manifest::Open(path_, {.count = {other}, .take_over = {}});
+  ASSERT_EQ(mkfifo(base::PartialPath(other).c_str(), 0600), 0);
+  ASSERT_TRUE(manifest.Record(product, Entry("2")).ok());
+  EXPECT_EQ(*base::ReadWholeFile(other), "");
+  ASSERT_EQ(mkfifo(base::PartialPath(path_).c_str(), 0600), 0);
+  ASSERT_TRUE(manifest.Record(product, Entry("3")).ok());
+  EXPECT_THAT(Text(), HasSubstr(R"("sha256":"3")"));
+  EXPECT_THAT(Text(), Not(HasSubstr(R"("sha256":"2")")));
+}
+
+TEST_F(ManifestTest, AFileThatIsTooLargeIsNotRead) {
+  std::ofstream(path_).flush();
+  std::filesystem::resize_file(path_, (std::uintmax_t{1} << 30) + 1);  // without blocks
+  const absl::Status status = Manifest::Open(path_, {}).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr("1073741825 bytes"));
 }
 
 TEST(MadeAlikeTest, ByScenePathSizeTimeVersionOrTheInputsHash) {

@@ -5,10 +5,13 @@ extern "C" {
 #include <libavformat/avformat.h>
 }
 
-#include <unistd.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
+#include <fstream>
 
 #include "absl/strings/str_cat.h"
 #include "base/whole_file.h"
@@ -135,13 +138,52 @@ TEST(Movie, WhatFailsLeavesNothing) {
       WriteMovie(folder.File("no/movie.webm"), {1}, 8, {},
                  [](std::size_t) { return absl::StatusOr<frame::RgbImage>(Grey(64, 36, 9)); });
   EXPECT_EQ(nowhere.code(), absl::StatusCode::kFailedPrecondition) << nowhere;
-  // Writing to a full device fails at once or at the end. The error is temporary.
-  ASSERT_EQ(symlink("/dev/full", base::PartialPath(folder.File("full.webm")).c_str()), 0);
-  const absl::Status full = WriteMovie(folder.File("full.webm"), {1}, 8, {}, [](std::size_t) {
+  // A disk without room for more than the first bytes is a temporary error.
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit usual{};
+  getrlimit(RLIMIT_FSIZE, &usual);
+  const rlimit narrow{100, usual.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &narrow);
+  const absl::Status full = WriteMovie(path, {1}, 8, {}, [](std::size_t) {
     return absl::StatusOr<frame::RgbImage>(Grey(64, 36, 9));
   });
+  setrlimit(RLIMIT_FSIZE, &usual);
+  std::signal(SIGXFSZ, handler);
   EXPECT_EQ(full.code(), absl::StatusCode::kUnavailable) << full;
   EXPECT_TRUE(std::filesystem::is_empty(folder.Path()));
+}
+
+// Another user of the folder could otherwise make the program overwrite its owner's files, or wait
+// for a reader of a FIFO.
+TEST_P(MovieKind, WhatIsPlantedInPlaceOfThePartialFileIsReplaced) {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.File("movie") + GetParam();
+  const std::string partial = base::PartialPath(path);
+  const std::string victim = folder.File("victim");
+  std::ofstream(victim) << "kept";
+  const auto write = [&] {
+    return WriteMovie(path, {1}, 8, {}, [](std::size_t) {
+      return absl::StatusOr<frame::RgbImage>(Grey(64, 36, 128));
+    });
+  };
+  const absl::Status possible = write();
+  if (path.ends_with(".mp4") && absl::IsFailedPrecondition(possible)) GTEST_SKIP() << possible;
+  ASSERT_TRUE(possible.ok()) << possible;
+  const auto expect_movie = [&] {
+    std::filesystem::remove(path);
+    const absl::Status status = write();
+    EXPECT_TRUE(status.ok()) << status;
+    EXPECT_EQ(*base::ReadWholeFile(victim), "kept");
+    EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(path)));
+    EXPECT_THAT(Decode(path).brightness,
+                ElementsAre(::testing::AllOf(::testing::Ge(123), ::testing::Le(129))));
+  };
+  std::filesystem::create_symlink(victim, partial);
+  expect_movie();
+  std::filesystem::create_hard_link(victim, partial);
+  expect_movie();
+  ASSERT_EQ(mkfifo(partial.c_str(), 0600), 0);
+  expect_movie();
 }
 
 // Returns the names of an MP4 file's outermost boxes, in order (ISO 14496-12).
