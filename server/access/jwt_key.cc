@@ -15,6 +15,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "access/jwt_secret.h"
 #include "base/status.h"
 #include "nlohmann/json.hpp"
 
@@ -23,8 +24,7 @@ namespace {
 
 using Time = std::chrono::system_clock::time_point;
 
-// Minimum lengths of keys, as RFC 7518, 3.2 and 3.3 require.
-constexpr std::size_t kMinSecretBytes = 32;
+// The minimum length of a key, as RFC 7518, 3.3 requires.
 constexpr int kMinRsaBits = 2048;
 constexpr std::size_t kMaxTokenBytes = 8192;
 constexpr std::size_t kMaxClaimBytes = 64;
@@ -47,7 +47,8 @@ absl::Status CheckPublicKey(const std::string& pem) {
       EVP_PKEY_bits(key.get()) < kMinRsaBits) {
     return absl::InvalidArgumentError(
         absl::StrCat("the JWT key is PEM but not a public RSA key of at least ", kMinRsaBits,
-                     " bits; make one from a private key with openssl pkey -pubout"));
+                     " bits; make one from a private key with openssl pkey -pubout, or from a "
+                     "certificate with openssl x509 -pubkey -noout"));
   }
   return absl::OkStatus();
 }
@@ -142,11 +143,7 @@ absl::StatusOr<JwtKey> JwtKey::Parse(const std::string& text) {
   while (!key.key_.empty() && (key.key_.back() == '\n' || key.key_.back() == '\r')) {
     key.key_.pop_back();
   }
-  if (key.key_.size() < kMinSecretBytes) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "the JWT key has ", key.key_.size(), " bytes; a secret for HS256 needs at least ",
-        kMinSecretBytes, ": make one with openssl rand -hex 32"));
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckSecret(key.key_));
   return key;
 }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -17,6 +18,11 @@ using Time = std::chrono::system_clock::time_point;
 
 // The number of hexadecimal digits of a job's id.
 inline constexpr std::size_t kIdDigits = 32;
+// Returns whether a text has the form of a job's id.
+inline bool IsJobId(std::string_view text) {
+  return text.size() == kIdDigits &&
+         text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
 
 enum class PictureState {
   kWaiting,

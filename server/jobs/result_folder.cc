@@ -26,12 +26,6 @@ std::vector<fs::path> EntriesOf(const fs::path& folder) {
   return entries;
 }
 
-// Returns true for names of job folders. Other entries of the folder must not be removed.
-bool IsJobId(const std::string& name) {
-  return name.size() == kIdDigits &&
-         name.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
-
 }  // namespace
 
 absl::StatusOr<ResultFolder> ResultFolder::Open(const std::string& path,
@@ -81,6 +75,7 @@ void ResultFolder::Remove(const std::string& job_id, std::size_t place,
 }
 
 void ResultFolder::Remove(const std::string& job_id) {
+  if (!IsJobId(job_id)) return;
   RemoveAll({absl::StrCat(path_, "/", job_id)});
 }
 
@@ -98,6 +93,7 @@ void ResultFolder::Clean(const std::set<std::string>& known) const {
   const base::SlowCall slow(path_);
   std::error_code ignored;
   for (const fs::path& job : EntriesOf(path_)) {
+    // Entries other than job folders must not be removed.
     if (!IsJobId(job.filename().string())) continue;
     if (!known.contains(job.filename().string())) {
       fs::remove_all(job, ignored);

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <set>
+#include <string>
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
@@ -96,6 +98,47 @@ absl::Status CheckOrigin(Database& database, const std::string& path) {
       absl::StrCat(path, " belongs to another program; choose another folder"));
 }
 
+// Lists each column of each table.
+constexpr char kColumns[] =
+    "SELECT m.name || '.' || c.name || ' ' || c.type || ' ' || c.\"notnull\" || ' ' || c.pk "
+    "FROM sqlite_schema AS m, pragma_table_info(m.name) AS c WHERE m.type = 'table'";
+
+absl::StatusOr<std::set<std::string>> TextsOf(Database& database, const std::string& query) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(Statement rows, database.Prepare(query));
+  std::set<std::string> texts;
+  while (true) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, rows.Next());
+    if (!found) return texts;
+    texts.insert(rows.Bytes(0));
+  }
+}
+
+absl::Status RunSteps(Database& database, std::int64_t version) {
+  for (auto step = static_cast<std::size_t>(version); step < kSteps.size(); ++step) {
+    THUNDERHEAD_RETURN_IF_ERROR(database.Execute(kSteps[step]));
+  }
+  return absl::OkStatus();
+}
+
+// Checks that the file has all columns of the newest version, as tables, and that nothing in it
+// changes what the SQL of this program does. Tables of other programs, for example for backups, may
+// be there.
+absl::Status CheckTables(Database& database, const std::string& path) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::set<std::string> foreign,
+                               TextsOf(database,
+                                       "SELECT type || ' ' || name FROM sqlite_schema "
+                                       "WHERE type IN ('view', 'trigger')"));
+  if (!foreign.empty()) return DamagedFile(path, absl::StrCat("it has the ", *foreign.begin()));
+  THUNDERHEAD_ASSIGN_OR_RETURN(Database empty, Database::Open(":memory:"));
+  THUNDERHEAD_RETURN_IF_ERROR(RunSteps(empty, 0));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::set<std::string> wanted, TextsOf(empty, kColumns));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::set<std::string> found, TextsOf(database, kColumns));
+  for (const std::string& column : wanted) {
+    if (!found.contains(column)) return DamagedFile(path, absl::StrCat("it lacks ", column));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::Status UpdateSchema(Database& database, const std::string& path) {
@@ -107,10 +150,10 @@ absl::Status UpdateSchema(Database& database, const std::string& path) {
         absl::StrCat(path, " was written by a newer Thunderhead (version ", version,
                      "; this one knows ", newest, "): start that one, or move the file away"));
   }
+  if (version < 0) return DamagedFile(path, absl::StrCat("it has the version ", version));
   THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database));
-  for (std::int64_t step = version; step < newest; ++step) {
-    THUNDERHEAD_RETURN_IF_ERROR(database.Execute(kSteps[static_cast<std::size_t>(step)]));
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(RunSteps(database, version));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckTables(database, path));
   THUNDERHEAD_RETURN_IF_ERROR(database.Execute(absl::StrCat(
       "PRAGMA application_id = ", kApplicationId, "; PRAGMA user_version = ", newest)));
   return transaction.Commit();

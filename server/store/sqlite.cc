@@ -66,7 +66,8 @@ absl::StatusOr<std::int64_t> Database::Number(const std::string& sql) {
 absl::Status Database::Error() const {
   const int code = sqlite3_errcode(handle_.get());
   const char* const message = sqlite3_errmsg(handle_.get());
-  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT) {
+  // SQLite reports SQL that does not match the tables, for example a missing one, as SQLITE_ERROR.
+  if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT || code == SQLITE_ERROR) {
     return DamagedFile(path_, message);
   }
   return absl::UnavailableError(

@@ -30,7 +30,8 @@ class Database {
   absl::StatusOr<Statement> Prepare(const std::string& sql);
   // Returns the single number that the query yields.
   absl::StatusOr<std::int64_t> Number(const std::string& sql);
-  // Returns the error of the last SQLite call: DATA_LOSS for a damaged file, else UNAVAILABLE.
+  // Returns the error of the last SQLite call: DATA_LOSS for a damaged file, or one whose tables
+  // are not those that the SQL names, else UNAVAILABLE.
   absl::Status Error() const;
 
  private:

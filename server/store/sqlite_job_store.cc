@@ -106,6 +106,11 @@ absl::StatusOr<ImageRecord> PictureOf(const Statement& row) {
   picture.sha256 = row.Bytes(6);
   picture.extension = row.Bytes(7);
   picture.milliseconds = row.Real(8);
+  // The extension is part of the name of a file that is removed with the picture.
+  if (picture.extension.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789") !=
+      std::string::npos) {
+    return absl::DataLossError("a picture's file has an extension that is none");
+  }
   picture.drawn_at = TimeOf(row.Number(9));
   picture.fetched = row.Number(10) != 0;
   picture.order = {row.Bytes(13), row.Bytes(14), row.Bytes(15)};
@@ -187,18 +192,26 @@ class OpenJobStore final : public SqliteJobStore {
   absl::StatusOr<std::vector<JobRecord>> Load() override {
     std::vector<JobRecord> records;
     std::map<std::string, std::size_t> index_by_id;
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement jobs, database_.Prepare(kLoadJobs));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement rows, database_.Prepare(kLoadJobs));
     while (true) {
-      THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, jobs.Next());
+      THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, rows.Next());
       if (!found) break;
-      records.push_back(JobOf(jobs));
+      records.push_back(JobOf(rows));
+      // The id names the folder of the job's results, which is removed with the job.
+      if (!jobs::IsJobId(records.back().id)) {
+        return DamagedFile(file_->Path(), "a render job has an id that is none");
+      }
       index_by_id[records.back().id] = records.size() - 1;
     }
     THUNDERHEAD_ASSIGN_OR_RETURN(Statement pictures, database_.Prepare(kLoadPictures));
     while (true) {
       THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, pictures.Next());
       if (!found) return records;
-      JobRecord& job = records[index_by_id.at(pictures.Bytes(kStateColumns))];
+      const auto index = index_by_id.find(pictures.Bytes(kStateColumns));
+      if (index == index_by_id.end()) {
+        return DamagedFile(file_->Path(), "a picture belongs to no render job");
+      }
+      JobRecord& job = records[index->second];
       absl::StatusOr<ImageRecord> picture = PictureOf(pictures);
       if (!picture.ok()) {
         // An unreadable picture is replaced by a failed picture and not left out, because clients

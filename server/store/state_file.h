@@ -29,6 +29,8 @@ class StateFile {
   // object.
   absl::StatusOr<Database> Connect(Durability durability) const;
 
+  const std::string& Path() const { return path_; }
+
  private:
   StateFile(std::string path, FileLock lock) : path_(std::move(path)), lock_(std::move(lock)) {}
 

@@ -6,6 +6,7 @@
 #include <openssl/pem.h>
 #include <openssl/rsa.h>
 #include <openssl/sha.h>
+#include <openssl/x509.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -281,6 +282,82 @@ TEST_F(JwtTest, APublicKeyIsForRs256Alone) {
   EXPECT_THAT(std::string(JwtKey::Parse(private_key).status().message()),
               HasSubstr("not a public RSA key"));
   EXPECT_THAT(std::string(JwtKey::Parse("short").status().message()), HasSubstr("32"));
+}
+
+// A public key in another form than PEM must not become the secret of HS256, because everyone knows
+// it.
+TEST(JwtSecretTest, AKeyInAnotherFormIsNoSecret) {
+  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> pair(EVP_RSA_gen(2048), &EVP_PKEY_free);
+  const auto written = [](auto write) {
+    const std::unique_ptr<BIO, decltype(&BIO_free)> bytes(BIO_new(BIO_s_mem()), &BIO_free);
+    EXPECT_GT(write(bytes.get()), 0);
+    char* text = nullptr;
+    const long size = BIO_get_mem_data(bytes.get(), &text);
+    return std::string(text, static_cast<std::size_t>(size));
+  };
+  const auto complaint = [](const std::string& text) {
+    const auto key = JwtKey::Parse(text);
+    return std::string(key.ok() ? "" : key.status().message());
+  };
+  const std::string der = written([&](BIO* out) { return i2d_PUBKEY_bio(out, pair.get()); });
+  const std::string pem = written([&](BIO* out) { return PEM_write_bio_PUBKEY(out, pair.get()); });
+  const std::string private_der =
+      written([&](BIO* out) { return i2d_PrivateKey_bio(out, pair.get()); });
+  const std::unique_ptr<X509, decltype(&X509_free)> certificate(X509_new(), &X509_free);
+  X509_set_pubkey(certificate.get(), pair.get());
+  X509_gmtime_adj(X509_getm_notBefore(certificate.get()), 0);
+  X509_gmtime_adj(X509_getm_notAfter(certificate.get()), 60);
+  ASSERT_GT(X509_sign(certificate.get(), pair.get(), EVP_sha256()), 0);
+  const std::string certificate_der =
+      written([&](BIO* out) { return i2d_X509_bio(out, certificate.get()); });
+  for (const std::string& bytes : {der, private_der, certificate_der}) {
+    EXPECT_THAT(complaint(bytes), HasSubstr("in DER"));
+    EXPECT_THAT(complaint(absl::Base64Escape(bytes)), HasSubstr("in base64"));
+    EXPECT_THAT(complaint(absl::WebSafeBase64Escape(bytes)), HasSubstr("in base64"));
+  }
+  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> curve(EVP_EC_gen("P-256"),
+                                                                  &EVP_PKEY_free);
+  const std::string curve_der = written([&](BIO* out) { return i2d_PUBKEY_bio(out, curve.get()); });
+  EXPECT_THAT(complaint(absl::Base64Escape(curve_der)), HasSubstr("in base64")) << "124 characters";
+
+  const std::size_t begin = pem.find('\n') + 1;
+  EXPECT_THAT(complaint(pem.substr(begin, pem.rfind("-----END") - begin)), HasSubstr("in base64"));
+  EXPECT_THAT(complaint(pem.substr(5)), HasSubstr("like PEM"));
+  std::string little = "\xff\xfe";
+  for (const char each : pem) little.append({each, '\0'});
+  EXPECT_THAT(complaint(little), HasSubstr("UTF-16"));
+  EXPECT_THAT(complaint(little.substr(2)), HasSubstr("UTF-16")) << "without a byte order mark";
+  EXPECT_THAT(complaint("\xef\xbb\xbf" + std::string(64, 's')), HasSubstr("byte order mark"));
+
+  const std::string modulus = absl::WebSafeBase64Escape(std::string(256, '\x9f'));
+  EXPECT_THAT(complaint(absl::StrCat(R"({"kty":"RSA","e":"AQAB","n":")", modulus, "\"}")),
+              HasSubstr("JWK"));
+  EXPECT_THAT(complaint(R"({"kty":"EC","crv":"P-256","x":"AAAAAAAAAAAAAAAAA","y":"AAAAA"},)"),
+              HasSubstr("JWK"));
+  EXPECT_THAT(complaint(R"(["AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"])"), HasSubstr("JWK"));
+  const std::string curve_line = "AAAAC3NzaC1lZDI1NTE5AAAAI" + std::string(43, 'a');
+  EXPECT_THAT(complaint("ssh-ed25519 " + curve_line + " anna"), HasSubstr("OpenSSH"));
+  EXPECT_THAT(complaint(curve_line), HasSubstr("OpenSSH"));
+  EXPECT_THAT(complaint("no-pty ssh-ed25519 " + curve_line), HasSubstr("OpenSSH"));
+  EXPECT_THAT(complaint("ecdsa-sha2-nistp256 AAAAE2VjZHNh" + std::string(99, 'a')),
+              HasSubstr("OpenSSH"));
+  EXPECT_THAT(complaint(modulus), HasSubstr("at most 256 bytes")) << "a form without a name";
+}
+
+TEST(JwtSecretTest, ASecretIsOneLineOfText) {
+  for (const std::string& text : {std::string(32, 's'), std::string(256, 'f'),
+                                  "3082" + std::string(60, '0'), "MIIB" + std::string(40, 'a'),
+                                  std::string("a phrase of more than 32 bytes, gr\u00fc\u00df"),
+                                  std::string("{not JSON, but a phrase of more than 32 bytes")}) {
+    EXPECT_TRUE(JwtKey::Parse(text).ok()) << text;
+    EXPECT_TRUE(JwtKey::Parse(text + "\r\n").ok()) << text;
+  }
+  for (const std::string& text :
+       {std::string(31, 's'), std::string(257, 's'), std::string(40, '\xc8'),
+        std::string(32, 's') + "\n" + std::string(32, 's'), std::string(40, '\x1b'),
+        std::string(40, '\0'), std::string()}) {
+    EXPECT_FALSE(JwtKey::Parse(text).ok()) << text;
+  }
 }
 
 TEST(QuotasTest, RequestsComeBackWithTime) {

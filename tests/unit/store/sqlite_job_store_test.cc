@@ -4,6 +4,8 @@
 
 #include <sqlite3.h>
 
+#include <filesystem>
+
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "store/sqlite_session_store.h"
@@ -16,13 +18,17 @@ using jobs::ImageRecord;
 using jobs::JobRecord;
 using jobs::PictureState;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-JobRecord JobRecordOf(const std::string& id, int pictures) {
+std::string IdOf(char digit) { return std::string(jobs::kIdDigits, digit); }
+
+// `digit` is repeated to make the job's id.
+JobRecord JobRecordOf(char digit, int pictures) {
   JobRecord job;
-  job.id = id;
-  job.result_key = "key of " + id;
+  job.id = IdOf(digit);
+  job.result_key = "key of " + job.id;
   job.owner = "anna";
   job.label = "night \xff";
   job.created_at = jobs::Time(std::chrono::milliseconds(1'700'000'000'123));
@@ -49,18 +55,34 @@ class SqliteJobStoreTest : public ::testing::Test {
     return records.ok() ? *records : std::vector<JobRecord>();
   }
 
+  // Changes the file as no server does.
+  void Execute(const std::string& sql) const {
+    sqlite3* database = nullptr;
+    ASSERT_EQ(sqlite3_open(path_.c_str(), &database), SQLITE_OK);
+    EXPECT_EQ(sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK)
+        << sqlite3_errmsg(database);
+    sqlite3_close(database);
+  }
+
+  // Returns the error of opening the file and loading its jobs.
+  absl::Status Complaint() const {
+    auto file = store::StateFile::Open(path_);
+    if (!file.ok()) return file.status();
+    return (*store::SqliteJobStore::In(*file))->Load().status();
+  }
+
   const TemporaryFolder folder_;
   const std::string path_ = folder_.File("sessions.db");
 };
 
 TEST_F(SqliteJobStoreTest, GivesBackWhatItWasGiven) {
-  const JobRecord job = JobRecordOf("a", 3);
+  const JobRecord job = JobRecordOf('a', 3);
   ASSERT_TRUE(Open()->Add(job).ok());
   EXPECT_THAT(Loaded(), ElementsAre(job));
 }
 
 TEST_F(SqliteJobStoreTest, KeepsEachStateOfAPictureButThatOfBeingDrawn) {
-  JobRecord job = JobRecordOf("a", 3);
+  JobRecord job = JobRecordOf('a', 3);
   const auto store = Open();
   ASSERT_TRUE(store->Add(job).ok());
   ImageRecord& drawn = job.pictures[0];
@@ -78,7 +100,7 @@ TEST_F(SqliteJobStoreTest, KeepsEachStateOfAPictureButThatOfBeingDrawn) {
   job.pictures[2].attempts = 1;
   job.ended_at = job.created_at + std::chrono::minutes(1);
   job.cancelled = true;
-  jobs::JobChange change{"a", job.ended_at, true, {}};
+  jobs::JobChange change{IdOf('a'), job.ended_at, true, {}};
   for (std::size_t i = 0; i < 3; ++i) change.pictures.push_back({i, job.pictures[i]});
   ASSERT_TRUE(store->Save({change, {"gone", std::nullopt, false, {}}}).ok());
   job.pictures[2].state = PictureState::kWaiting;
@@ -89,11 +111,11 @@ TEST_F(SqliteJobStoreTest, KeepsEachStateOfAPictureButThatOfBeingDrawn) {
 
 TEST_F(SqliteJobStoreTest, RemovesAJobWithItsPictures) {
   const auto store = Open();
-  ASSERT_TRUE(store->Add(JobRecordOf("a", 2)).ok());
-  ASSERT_TRUE(store->Add(JobRecordOf("b", 2)).ok());
-  ASSERT_TRUE(store->Remove({"a", "gone"}).ok());
+  ASSERT_TRUE(store->Add(JobRecordOf('a', 2)).ok());
+  ASSERT_TRUE(store->Add(JobRecordOf('b', 2)).ok());
+  ASSERT_TRUE(store->Remove({IdOf('a'), "gone"}).ok());
   // Leftover pictures of the removed "a" would conflict with the new job.
-  ASSERT_TRUE(store->Add(JobRecordOf("a", 1)).ok());
+  ASSERT_TRUE(store->Add(JobRecordOf('a', 1)).ok());
   EXPECT_THAT(*store->Load(), SizeIs(2));
 }
 
@@ -108,31 +130,68 @@ TEST_F(SqliteJobStoreTest, AFileFromBeforeThereWereJobsKeepsItsSessions) {
     record.scene_revision = 7;
     ASSERT_TRUE((*sessions)->Save({record}).ok());
   }
-  sqlite3* database = nullptr;
-  ASSERT_EQ(sqlite3_open(path_.c_str(), &database), SQLITE_OK);
-  ASSERT_EQ(sqlite3_exec(database,
-                         "DROP TABLE job_pictures; DROP TABLE jobs; "
-                         "ALTER TABLE marks DROP COLUMN owner_keys; "
-                         "ALTER TABLE marks DROP COLUMN domains; "
-                         "ALTER TABLE sessions DROP COLUMN steering_key; "
-                         "ALTER TABLE sessions DROP COLUMN steering_name; "
-                         "ALTER TABLE sessions DROP COLUMN steering_id; "
-                         "ALTER TABLE sessions DROP COLUMN control_is_free; "
-                         "ALTER TABLE sessions DROP COLUMN owner; PRAGMA user_version = 1",
-                         nullptr, nullptr, nullptr),
-            SQLITE_OK);
-  sqlite3_close(database);
+  Execute(
+      "DROP TABLE job_pictures; DROP TABLE jobs; "
+      "ALTER TABLE marks DROP COLUMN owner_keys; "
+      "ALTER TABLE marks DROP COLUMN domains; "
+      "ALTER TABLE sessions DROP COLUMN steering_key; "
+      "ALTER TABLE sessions DROP COLUMN steering_name; "
+      "ALTER TABLE sessions DROP COLUMN steering_id; "
+      "ALTER TABLE sessions DROP COLUMN control_is_free; "
+      "ALTER TABLE sessions DROP COLUMN owner; PRAGMA user_version = 1");
   auto file = store::StateFile::Open(path_);
   ASSERT_TRUE(file.ok()) << file.status();
   const auto sessions = store::SqliteSessionStore::In(*file);
   const auto jobs = store::SqliteJobStore::In(*file);
   EXPECT_THAT(*(*sessions)->Load(), SizeIs(1));
   EXPECT_THAT(*(*jobs)->Load(), IsEmpty());
-  EXPECT_TRUE((*jobs)->Add(JobRecordOf("a", 1)).ok());
+  EXPECT_TRUE((*jobs)->Add(JobRecordOf('a', 1)).ok());
   session::SessionRecord record;
   record.id = "two";
   record.keys = {"p2", "v2"};
   EXPECT_TRUE((*sessions)->Save({record}).ok()) << "both use the file at a time";
+}
+
+TEST_F(SqliteJobStoreTest, ADamagedRecordIsReportedAsDamage) {
+  for (const char* const sql : {
+           "DELETE FROM jobs",
+           "UPDATE jobs SET id = '../../x'; UPDATE job_pictures SET job_id = '../../x'",
+           "UPDATE jobs SET id = ''; UPDATE job_pictures SET job_id = ''",
+           "DROP TABLE marks",
+           "DROP TABLE jobs",
+           "ALTER TABLE sessions DROP COLUMN owner",
+           "DROP TABLE marks; CREATE VIEW marks AS SELECT id AS session_id, x'' AS marks, "
+           "'' AS owner_keys, '' AS domains FROM sessions",
+           "CREATE TRIGGER t AFTER UPDATE ON jobs BEGIN SELECT RAISE(ABORT, 'no'); END",
+           "PRAGMA user_version = -5",
+           "PRAGMA user_version = 1",
+           "PRAGMA user_version = 0",
+       }) {
+    std::filesystem::remove(path_);
+    ASSERT_TRUE(Open()->Add(JobRecordOf('a', 2)).ok());
+    ASSERT_TRUE(Complaint().ok());
+    Execute(sql);
+    const absl::Status complaint = Complaint();
+    EXPECT_TRUE(absl::IsDataLoss(complaint)) << sql << ": " << complaint;
+    EXPECT_THAT(std::string(complaint.message()), HasSubstr("sessions.db is damaged")) << sql;
+    EXPECT_THAT(std::string(complaint.message()), HasSubstr("move it away")) << sql;
+  }
+}
+
+TEST_F(SqliteJobStoreTest, TablesOfOtherProgramsAreLeftAlone) {
+  ASSERT_TRUE(Open()->Add(JobRecordOf('a', 2)).ok());
+  Execute("CREATE TABLE backups (done INTEGER); CREATE INDEX owners ON jobs (owner); ANALYZE");
+  EXPECT_THAT(Loaded(), SizeIs(1));
+}
+
+TEST_F(SqliteJobStoreTest, AnExtensionThatIsAPathFailsItsPicture) {
+  ASSERT_TRUE(Open()->Add(JobRecordOf('a', 2)).ok());
+  Execute("UPDATE job_pictures SET extension = '../../victim' WHERE place = 1");
+  const auto loaded = Loaded();
+  ASSERT_THAT(loaded, SizeIs(1));
+  EXPECT_EQ(loaded[0].pictures[0].state, PictureState::kWaiting);
+  EXPECT_EQ(loaded[0].pictures[1].state, PictureState::kFailed);
+  EXPECT_EQ(loaded[0].pictures[1].extension, "");
 }
 
 }  // namespace
