@@ -11,6 +11,7 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "base/status.h"
 #include "base/utf8.h"
 #include "nlohmann/json.hpp"
 
@@ -125,7 +126,7 @@ absl::Status CheckIsNoKey(const std::string& text) {
 }  // namespace
 
 absl::Status CheckSecret(const std::string& text) {
-  if (const absl::Status form = CheckIsNoKey(text); !form.ok()) return form;
+  THUNDERHEAD_RETURN_IF_ERROR(CheckIsNoKey(text));
   constexpr char kMakeOne[] = "make a secret with openssl rand -hex 32";
   if (text.size() < kMinSecretBytes) {
     return absl::InvalidArgumentError(absl::StrCat("the JWT key has ", text.size(),

@@ -296,6 +296,27 @@ TEST(AccessTest, WhoNeverJoinsIsCutOff) {
   EXPECT_TRUE(joined.Send(rules, v1::InteractResponse::kPresence).has_presence());
 }
 
+// The server ends the call on its own, although the client sends nothing and nothing changes.
+TEST(AccessTest, ASilentViewerWithoutAValidTokenIsCutOff) {
+  RunningTime time;
+  GuardedService guarded(Patient(time));
+  const auto created = guarded.Create();
+  HandCall silent(guarded.stub(), "viewer");
+  silent.Join(created.viewer_key());
+  std::future<grpc::Status> end = std::async(std::launch::async, [&] { return silent.End(); });
+  const auto has_ended_after = [&](int steps) {
+    for (int i = 0; i < steps; ++i) {
+      time.Advance(std::chrono::seconds(3));
+      if (end.wait_for(milliseconds(50)) == std::future_status::ready) return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(has_ended_after(3)) << "with a valid token";
+  guarded.TakeAwayToken("viewer");
+  EXPECT_TRUE(WaitFor([&] { return has_ended_after(1); }));
+  EXPECT_EQ(end.get().error_code(), grpc::StatusCode::UNAUTHENTICATED);
+}
+
 TEST(AccessTest, AnIdentityHasNoMoreSessionsThanItsShare) {
   service::ServerOptions options = Patient();
   options.sessions.max_sessions = 10;

@@ -34,6 +34,8 @@ using session::Clock;
 // Maximum number of answers that wait for a slow client. At this number, no further request is
 // read.
 constexpr std::size_t kMaxWaitingAnswers = 16;
+// The time between two checks of the token of a client that sends nothing.
+constexpr std::chrono::seconds kTokenPeriod{2};
 
 absl::Status NotJoined() {
   return base::InvalidField("join", "is missing; it must be the first message, and only the first",
@@ -93,7 +95,7 @@ class InteractCall : public InteractReactor,
     call->held_by_grpc_ = call;
     {
       const std::lock_guard lock(call->mutex_);
-      call->SetJoinAlarm();
+      call->SetAlarm(call->join_due_);
     }
     call->StartRead(&call->received_);
     return call.get();
@@ -190,13 +192,29 @@ class InteractCall : public InteractReactor,
   }
 
  private:
-  // Sets the alarm for the join timeout. The caller must hold mutex_.
-  void SetJoinAlarm() {
-    join_alarm_.emplace().Set(rpc_port::AlarmTime(*engine_.limits.time, join_due_),
-                              [weak = weak_from_this()](bool rang) {
-                                const auto self = weak.lock();
-                                if (rang && self != nullptr) self->LookForJoin();
-                              });
+  // Sets the alarm for the next look at the client. The caller must hold mutex_.
+  void SetAlarm(Clock::time_point due) {
+    alarm_.emplace().Set(rpc_port::AlarmTime(*engine_.limits.time, due),
+                         [weak = weak_from_this()](bool rang) {
+                           const auto self = weak.lock();
+                           if (rang && self != nullptr) self->Look();
+                         });
+  }
+
+  // Ends the call if its client has not joined in time, or if the token of a client that has joined
+  // has expired or was removed. A client that only receives is thus found too.
+  void Look() {
+    bool has_joined = false;
+    {
+      const std::lock_guard lock(mutex_);
+      if (finished_) return;
+      has_joined = session_ != nullptr;
+    }
+    if (!has_joined) return LookForJoin();
+    const absl::Status known = caller_->StillKnown();
+    if (!known.ok()) return End(rpc_port::ToGrpcStatus(known));
+    const std::lock_guard lock(mutex_);
+    if (!finished_) SetAlarm(engine_.limits.time->Now() + kTokenPeriod);
   }
 
   // Ends the call if its client has not joined in time.
@@ -204,7 +222,7 @@ class InteractCall : public InteractReactor,
     {
       const std::lock_guard lock(mutex_);
       if (session_ != nullptr || finished_) return;
-      if (engine_.limits.time->Now() < join_due_) return SetJoinAlarm();
+      if (engine_.limits.time->Now() < join_due_) return SetAlarm(join_due_);
     }
     const absl::Status status = JoinedTooLate(engine_.limits.join_timeout);
     caller_->Report("Interact/join", status);
@@ -381,7 +399,7 @@ class InteractCall : public InteractReactor,
       session_ = found.session;
       requests_.emplace(engine_, caller_, session_, person_id_, std::move(participant_key));
       news_.emplace(person_id_, join.marks_by_changes(), engine_.catalogue.Changes());
-      join_alarm_.reset();
+      SetAlarm(engine_.limits.time->Now() + kTokenPeriod);
     }
     if (join.window().hidden()) SetHidden(true);
     Wake();
@@ -466,7 +484,7 @@ class InteractCall : public InteractReactor,
   grpc::ByteBuffer sent_;
 
   std::mutex mutex_;
-  std::optional<grpc::Alarm> join_alarm_;  // set until the client has joined
+  std::optional<grpc::Alarm> alarm_;  // for the join timeout, then for checks of the token
   bool reading_ = true;
   bool writing_ = false;
   bool finished_ = false;
