@@ -105,9 +105,9 @@ std::vector<double> HalfLevelsAround(const netcdf::NetcdfFile& file, const CfDim
 std::optional<std::size_t> IndexIn(const std::vector<double>& all,
                                    const std::vector<double>& wanted) {
   const auto is_same = [](double a, double b) { return std::abs(a - b) < kSameNumber; };
-  const auto at = std::ranges::search(all, wanted, is_same);
-  if (at.empty()) return std::nullopt;
-  return static_cast<std::size_t>(at.begin() - all.begin());
+  const auto at = std::search(all.begin(), all.end(), wanted.begin(), wanted.end(), is_same);
+  if (at == all.end()) return std::nullopt;
+  return static_cast<std::size_t>(at - all.begin());
 }
 
 std::string RangeText(const std::vector<double>& numbers) {

@@ -42,8 +42,8 @@ std::vector<std::size_t> NewStorms(const std::vector<CataloguedStorm>& found,
         found[i].info.files, [&](const std::string& file) { return added.contains(file); });
     if (!place_of[i].has_value() && !is_added) fresh.push_back(i);
   }
-  std::ranges::stable_partition(fresh,
-                                [&](std::size_t i) { return earlier.Of(found[i]).has_value(); });
+  std::stable_partition(fresh.begin(), fresh.end(),
+                        [&](std::size_t i) { return earlier.Of(found[i]).has_value(); });
   return fresh;
 }
 
