@@ -106,7 +106,7 @@ std::optional<std::size_t> IndexIn(const std::vector<double>& all,
                                    const std::vector<double>& wanted) {
   const auto is_same = [](double a, double b) { return std::abs(a - b) < kSameNumber; };
   const auto at = std::search(all.begin(), all.end(), wanted.begin(), wanted.end(), is_same);
-  if (at == all.end()) return std::nullopt;
+  if (wanted.empty() || at == all.end()) return std::nullopt;
   return static_cast<std::size_t>(at - all.begin());
 }
 

@@ -140,6 +140,7 @@ void CachedStormStore::Renew(const std::vector<CataloguedStorm>& found) {
     }
     std::ranges::sort(listed);
     std::vector<std::size_t> order;
+    order.reserve(listed.size());
     for (const auto& [path, id, place] : listed) order.push_back(place);
     // Storms that are only in memory, and storms that were added, come last.
     for (const std::size_t place : order_) {
