@@ -227,8 +227,12 @@ void Damage(Dice& dice, std::string& bytes) {
 
 absl::Status ReadStorm(const std::string& path) {
   const storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const storm_files::StormFile file,
+  THUNDERHEAD_ASSIGN_OR_RETURN(storm_files::StormFile file,
                                storm_store::DescribeFile(path, formats));
+  // A part of a time has no reader. It is described again, as the only file of its time.
+  if (!file.part.of.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(file, formats.DescribeTogether({path}));
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(const storm_files::VerticalGrid grid,
                                file.reader->ReadVerticalGrid(0));
   return file.reader->Read(file.times.size() - 1, grid, {}).status();
