@@ -309,10 +309,11 @@ net::awaitable<error_code> HttpConnection::ReadBody(Parser& parser) {
   // Beast adds the fields behind the last chunk (trailers, RFC 9112 section 7.1.2) to the header,
   // which was checked before. They are dropped. Otherwise a client behind a trusted proxy could add
   // an X-Forwarded-For that the proxy has not seen, and be taken for another client.
-  http::request_header<> header = parser.get().base();
+  std::optional<http::request_header<>> header;
+  if (parser.chunked()) header = parser.get().base();
   co_await http::async_read(link_.Stream(), link_.Received(), parser,
                             net::redirect_error(net::use_awaitable, error));
-  parser.get().base() = std::move(header);
+  if (header.has_value()) parser.get().base() = *std::move(header);
   link_.Begin(LinkUse::kSending);
   co_return error;
 }
