@@ -133,8 +133,8 @@ class Roster {
   absl::Status PresenterMaySteer() const;
 
   // Gives control at once to a presenter. Gives it at once to a viewer if it is free and the rules
-  // allow viewers to steer. Otherwise the person who steers, or a presenter, is asked. Returns
-  // PERMISSION_DENIED while control is locked, and RESOURCE_EXHAUSTED for asking too often.
+  // allow viewers to steer. Otherwise the request goes to the person in control, or to a presenter.
+  // Returns PERMISSION_DENIED while control is locked, and RESOURCE_EXHAUSTED for asking too often.
   absl::Status AskControl(std::uint64_t id, Time now);
   // Gives control to a person, or gives it up if `to` is 0. The person in control and presenters
   // may do so. Control that a presenter gives up becomes free and goes to the viewer who asked

@@ -11,7 +11,7 @@
 
 namespace thunderhead::storm_files {
 
-// What a text of cell_methods means for an amount of water in a cell.
+// The meaning of a text of cell_methods for an amount of water in a cell.
 enum class CellMethod {
   kValue,      // the cell's own amount, at one time
   kStatistic,  // an amount that is not the cell's own at one time: a mean over a time, a maximum

@@ -20,7 +20,7 @@ constexpr double kGeopotentialGravity_m_per_s2 = 9.80665;
 // Two numbers of levels that differ by less are equal.
 constexpr double kSameNumber = 1e-6;
 
-// What an array of heights has, by its name.
+// The kind of heights in an array, by its name.
 enum class Kind {
   kNone,     // no heights of layers
   kUnknown,  // the number of its levels decides

@@ -1,4 +1,4 @@
-// What is known of models' output beyond its attributes: advice if the output lacks what is needed,
+// Knowledge of models' output beyond its attributes: advice if the output lacks a needed variable,
 // and the air to which masses belong. Files are recognised by the names that a model uses.
 #pragma once
 

@@ -167,7 +167,7 @@ class Finder {
   const Selection* const wanted_;
   GribContents contents_;
   Candidates candidates_;
-  // What the search for each time needs, collected once. A file may have very many times.
+  // Fields by time and by kind, collected once because a file may have very many times.
   std::map<absl::Time, Candidates> candidates_at_;
   std::map<physics::Hydrometeor, std::map<grib::Parameter, GribMeaning>> parameters_;
   std::map<GribKind, std::optional<GribPlace>> at_ground_at_any_time_;

@@ -188,7 +188,7 @@ void CatalogueScan::DescribeWaiting() {
     if (has_described && options_.time->Now() >= turn_ends_) return;
     const std::string folder = turns_.Next(folders);
     Waiting& waiting = waiting_[folder];
-    // What this scan has found is published before the long wait for a slow file.
+    // The storms found so far are published before the long wait for a slow file.
     const bool is_slow =
         !waiting.HasUntried() && known_[waiting.tried[waiting.next_tried]].trial == Trial::kPatient;
     if (has_described && is_slow) return;

@@ -63,9 +63,9 @@ class CatalogueScan {
     std::optional<Time> look_again_at;  // when to scan again, because a file that is being written
                                         // may then be complete; nothing if no file is being written
     bool changed = true;                // whether anything changed since the last Scan
-    // Whether files wait for the next scan, which must follow at once.
+    // True if files wait for the next scan, which must follow at once.
     bool is_unfinished = false;
-    // Whether some of them were not tried before, so that storms may still be missing.
+    // True if some of them were not tried before, so that storms may still be missing.
     bool has_untried = false;
   };
 

@@ -323,7 +323,7 @@ absl::Status SearchFile(const std::string& path, const StormSearch& search,
                                           files.size() > 1 ? names : "only one, without a name"));
 }
 
-// What is below a path that the user gave.
+// The folders and files below a path that the user gave.
 struct ListedPath {
   bool hangs = false;
   bool is_folder = false;

@@ -231,7 +231,7 @@ TEST(ChooseVerticalGrid, KeepsMassAndTopOfClouds) {
   }
 }
 
-// What is above 30 km is in the highest cell, so no mass is lost.
+// The highest cell has the mass above 30 km, so no mass is lost.
 TEST(ChooseVerticalGrid, EndsAboveAllClouds) {
   const std::vector<float> interfaces_m = Ifs137().interfaces_m;
   const VerticalGrid grid = ChooseVerticalGrid(interfaces_m, 137, 1);
