@@ -527,9 +527,7 @@ absl::StatusOr<volume::HydrometeorFields> ReadOnHeights(LayerSource& source, con
                                                         const std::optional<VerticalGrid>& grid,
                                                         const ReadCheckpoint& checkpoint) {
   const LayerDomain& domain = source.Domain();
-  const bool resampled = domain.even != nullptr && domain.even->Resampled();
-  THUNDERHEAD_RETURN_IF_ERROR(
-      CheckPart(domain.path, part, resampled ? domain.even->columns : glm::ivec2(domain.cells)));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckPart(domain.path, part, domain.StormColumns()));
   std::unique_ptr<LayerSource> windowed;
   if (part.window.has_value()) windowed = MakeWindowedSource(source, *part.window);
   return WithReader<volume::HydrometeorFields>(

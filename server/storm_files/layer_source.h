@@ -61,6 +61,18 @@ struct LayerDomain {
   std::size_t Columns() const {
     return static_cast<std::size_t>(cells.x) * static_cast<std::size_t>(cells.y);
   }
+  // Returns the columns to which the source's are resampled, or null if they stay as they are.
+  const EvenColumns* Resampling() const {
+    return even != nullptr && even->Resampled() ? even.get() : nullptr;
+  }
+  // Returns the number of the storm's columns along x and along y.
+  glm::ivec2 StormColumns() const {
+    return Resampling() != nullptr ? even->columns : glm::ivec2(cells);
+  }
+  // Returns the distances between the storm's columns.
+  glm::dvec2 StormSpacing_m() const {
+    return Resampling() != nullptr ? glm::dvec2(even->dx_m, even->dy_m) : glm::dvec2(dx_m, dy_m);
+  }
 };
 
 // The amounts of one hydrometeor, and the sizes of its particles.

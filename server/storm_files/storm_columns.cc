@@ -7,11 +7,10 @@
 namespace thunderhead::storm_files {
 
 StormColumns::StormColumns(const LayerDomain& domain, int stride)
-    : resampling_(domain.even != nullptr && domain.even->Resampled() ? domain.even.get() : nullptr),
+    : resampling_(domain.Resampling()),
       stride_(stride),
-      even_columns_(resampling_ != nullptr ? resampling_->columns : glm::ivec2(domain.cells)),
-      even_spacing_m_(resampling_ != nullptr ? glm::dvec2(resampling_->dx_m, resampling_->dy_m)
-                                             : glm::dvec2(domain.dx_m, domain.dy_m)),
+      even_columns_(domain.StormColumns()),
+      even_spacing_m_(domain.StormSpacing_m()),
       low_corner_m_(domain.middle_m - 0.5 * even_spacing_m_ * glm::dvec2(even_columns_)) {}
 
 std::vector<float> StormColumns::Of(std::vector<float> values, Beyond beyond) const {

@@ -74,23 +74,20 @@ class WindowedSource final : public LayerSource {
  public:
   WindowedSource(LayerSource& whole, const ColumnWindow& window)
       : whole_(whole), columns_(whole.Domain().cells), domain_(whole.Domain()) {
-    const EvenColumns* const even = domain_.even.get();
-    const bool resampled = even != nullptr && even->Resampled();
-    const glm::ivec2 storm_columns = resampled ? even->columns : columns_;
-    // The cells of an unstructured grid are in one row, in any order. All of them are kept.
-    if (resampled) {
-      box_ = even->unstructured ? ColumnWindow{glm::ivec2(0), columns_}
-                                : ModelColumnsFor(*even, window);
-    } else {
+    const EvenColumns* const resampling = domain_.Resampling();
+    if (resampling == nullptr) {
       box_ = window;
+    } else if (resampling->unstructured) {
+      // The cells of an unstructured grid are in one row, in any order. All of them are kept.
+      box_ = {glm::ivec2(0), columns_};
+    } else {
+      box_ = ModelColumnsFor(*resampling, window);
     }
-    const glm::dvec2 spacing_m =
-        resampled ? glm::dvec2(even->dx_m, even->dy_m) : glm::dvec2(domain_.dx_m, domain_.dy_m);
     const glm::dvec2 middle =
-        glm::dvec2(window.low) + 0.5 * glm::dvec2(window.columns - storm_columns);
-    domain_.middle_m = spacing_m * middle;
+        glm::dvec2(window.low) + 0.5 * glm::dvec2(window.columns - domain_.StormColumns());
+    domain_.middle_m = domain_.StormSpacing_m() * middle;
     domain_.cells = {box_.columns, domain_.cells.z};
-    if (even != nullptr) domain_.even = Windowed(*even, window, box_);
+    if (domain_.even != nullptr) domain_.even = Windowed(*domain_.even, window, box_);
   }
 
   const LayerDomain& Domain() const override { return domain_; }
