@@ -114,6 +114,18 @@ std::vector<int> Octahedral(int parallels, int first, int rows) {
   return around;
 }
 
+// Returns the octahedral grid O32, all around the Earth.
+Gaussian GlobalOctahedral() {
+  Gaussian whole;
+  whole.parallels = 32;
+  whole.first_row = 0;
+  whole.rows = 64;
+  whole.around = Octahedral(32, 0, 64);
+  whole.west_deg = 0.0;
+  whole.east_deg = 360.0 - 360.0 / 144.0;
+  return whole;
+}
+
 Gaussian Reduced() {
   Gaussian grid;
   grid.around = Octahedral(grid.parallels, grid.first_row, grid.rows);
@@ -237,13 +249,7 @@ TEST(ReducedGaussianGrid, EdgesMayCrossGreenwichAndBeRounded) {
   ASSERT_TRUE(grid.ok()) << grid.status();
   EXPECT_EQ(grid->Points(), layout.Places().size());
   // The first point of a global grid with millidegrees, as in files that were GRIB1.
-  Gaussian whole;
-  whole.parallels = 32;
-  whole.first_row = 0;
-  whole.rows = 64;
-  whole.around = Octahedral(32, 0, 64);
-  whole.west_deg = 0.0;
-  whole.east_deg = 360.0 - 360.0 / 144.0;
+  Gaussian whole = GlobalOctahedral();
   EXPECT_TRUE(Read(whole.Section3()).ok());
   whole.around.assign(64, 131);
   whole.east_deg = 360.0 - 360.0 / 131.0;
@@ -376,13 +382,7 @@ TEST_F(GaussianStorm, AReducedGridIsReadByItsCells) {
 }
 
 TEST_F(GaussianStorm, AGlobalReducedGridNamesTheRemedy) {
-  Gaussian whole;
-  whole.parallels = 32;
-  whole.first_row = 0;
-  whole.rows = 64;
-  whole.around = Octahedral(32, 0, 64);
-  whole.west_deg = 0.0;
-  whole.east_deg = 360.0 - 360.0 / 144.0;
+  const Gaussian whole = GlobalOctahedral();
   const auto file = Describe(whole, std::vector<float>(whole.Places().size(), 0.0F));
   ASSERT_FALSE(file.ok());
   EXPECT_THAT(std::string(file.status().message()),

@@ -4,14 +4,27 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "storm_store/storm_store.h"
 #include "tests/support/synthetic_cf.h"
 #include "tests/support/temporary_folder.h"
 
 namespace thunderhead::storm_files {
+
+using Index = std::map<std::string, std::size_t>;  // the index along each dimension
+using Texts = std::map<std::string, std::string>;  // attributes by their names
+
+// Returns a variable with one value.
+inline testing::CfContent OfOneValue(const std::string& name, const std::vector<std::string>& on,
+                                     Texts attributes, double value) {
+  return {name, on, std::move(attributes), [value](const Index&) { return value; }};
+}
 
 class CfFileTest : public ::testing::Test {
  protected:

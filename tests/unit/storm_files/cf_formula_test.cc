@@ -18,8 +18,6 @@ using ::testing::HasSubstr;
 using testing::Middles;
 using ::testing::Not;
 using testing::SyntheticCf;
-using Index = std::map<std::string, std::size_t>;
-using Texts = std::map<std::string, std::string>;
 
 constexpr double kGas_J_per_kg_K = 287.0;
 constexpr double kGravity_m_per_s2 = 9.80665;
@@ -36,11 +34,6 @@ class CfFormula : public CfFileTest {
                 2e-3 * path_kg_per_m2);
   }
 };
-
-CfContent OnlyValue(const std::string& name, const std::vector<std::string>& on, Texts attributes,
-                    double value) {
-  return {name, on, std::move(attributes), [value](const Index&) { return value; }};
-}
 
 // Returns a variable with these values along a dimension.
 template <std::size_t count>
@@ -96,8 +89,8 @@ SyntheticCf Cmip(std::size_t cloudy) {
                      on,
                      {{"units", "kg kg-1"}},
                      [cloudy](const Index& at) { return at.at("lev") == cloudy ? 1e-4 : 0.0; }},
-                    OnlyValue("ta", on, {{"units", "K"}}, kAir_K),
-                    OnlyValue("ps", {"y", "x"}, {{"units", "Pa"}}, 1e5),
+                    OfOneValue("ta", on, {{"units", "K"}}, kAir_K),
+                    OfOneValue("ps", {"y", "x"}, {{"units", "Pa"}}, 1e5),
                     Along("ap", "lev", {{"units", "Pa"}}, kA),
                     Along("b", "lev", {}, kB),
                     BoundsBetween("ap_bnds", {}, kFaceA),
@@ -175,10 +168,10 @@ SyntheticCf Cam(bool with_terms) {
        on,
        {{"units", "kg/kg"}, {"long_name", "Grid box averaged cloud liquid amount"}},
        [](const Index& at) { return at.at("lev") == 2 ? 1e-4 : 0.0; }},
-      OnlyValue("T", on, {{"units", "K"}}, kAir_K),
-      OnlyValue("Q", on, {{"units", "kg/kg"}, {"long_name", "Specific humidity"}}, 0.01),
-      OnlyValue("PS", {"y", "x"}, {{"units", "Pa"}}, 1e5),
-      OnlyValue("P0", {}, {{"units", "Pa"}}, kReference_Pa),
+      OfOneValue("T", on, {{"units", "K"}}, kAir_K),
+      OfOneValue("Q", on, {{"units", "kg/kg"}, {"long_name", "Specific humidity"}}, 0.01),
+      OfOneValue("PS", {"y", "x"}, {{"units", "Pa"}}, 1e5),
+      OfOneValue("P0", {}, {{"units", "Pa"}}, kReference_Pa),
       Along("hyam", "lev", {}, std::array{250.0 / kReference_Pa, 0.0, 0.0, 0.0}),
       Along("hybm", "lev", {}, kB),
       Along("hyai", "ilev", {}, std::array{500.0 / kReference_Pa, 0.0, 0.0, 0.0, 0.0}),
@@ -257,7 +250,7 @@ SyntheticCf Cm1() {
                      {"time", "zh", "yh", "xh"},
                      {{"units", "kg/m^3"}},
                      [](const Index& at) { return at.at("zh") == 1 ? 1e-4 : 0.0; }},
-                    OnlyValue("zs", {"time", "yh", "xh"}, {{"units", "m"}}, 400.0)};
+                    OfOneValue("zs", {"time", "yh", "xh"}, {{"units", "m"}}, 400.0)};
   return file;
 }
 
@@ -285,11 +278,11 @@ TEST_F(CfFormula, Cm1HeightsFollowTheTerrain) {
   EXPECT_THAT(info_.assumptions, Contains(HasSubstr("CM1's nominal heights zh")));
   file.coordinates.erase(file.coordinates.begin() + 3);
   ExpectError(file, "need the height of the model's top: add zhval, zf or ztop");
-  file.variables.push_back(OnlyValue("ztop", {}, {{"units", "km"}}, 4.0));
+  file.variables.push_back(OfOneValue("ztop", {}, {{"units", "km"}}, 4.0));
   expect_layer(400.0 + 500.0 * 0.9, 400.0 + 1000.0 * 0.9);
   // Over flat ground the nominal heights are the heights.
   file = Cm1();
-  file.variables[1] = OnlyValue("zs", {"time", "yh", "xh"}, {{"units", "m"}}, 0.0);
+  file.variables[1] = OfOneValue("zs", {"time", "yh", "xh"}, {{"units", "m"}}, 0.0);
   expect_layer(500.0, 1000.0);
 }
 

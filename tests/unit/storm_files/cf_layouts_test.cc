@@ -17,7 +17,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::Middles;
 using testing::SyntheticCf;
-using Index = std::map<std::string, std::size_t>;
 
 class CfLayouts : public CfFileTest {};
 
@@ -282,7 +281,7 @@ TEST_F(CfLayouts, BoundsTakePrecedenceOverCoordinates) {
   EXPECT_GE((*fields)->grid.HighCorner_m().z, 2000.0);
 }
 
-// What the messages advise is done, and then the file is read.
+// The advice of the messages is followed, and then the file is read.
 TEST_F(CfLayouts, AnotherDimensionIsRefusedWithARemedyThatWorks) {
   SyntheticCf file = Cloud();
   SyntheticCf members = file;

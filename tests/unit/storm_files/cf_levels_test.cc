@@ -17,7 +17,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::SyntheticCf;
-using Index = std::map<std::string, std::size_t>;
 using Numbers = std::vector<double>;
 
 // A model has eight layers between these half levels, which are numbered from 1 at the top. The

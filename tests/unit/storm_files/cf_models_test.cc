@@ -21,8 +21,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::Middles;
 using testing::SyntheticCf;
-using Index = std::map<std::string, std::size_t>;
-using Texts = std::map<std::string, std::string>;
 
 constexpr std::size_t kModelColumns = 6;
 constexpr std::size_t kModelRows = 4;
@@ -48,12 +46,6 @@ class CfModels : public CfFileTest {
 
 CfCoordinate EvenAxis(const std::string& name, std::size_t count, double low, double spacing) {
   return {name, Middles(count, low, spacing), {{"units", "m"}}, {}};
-}
-
-// Returns a variable with one value.
-CfContent OfOneValue(const std::string& name, const std::vector<std::string>& on, Texts attributes,
-                     double value) {
-  return {name, on, std::move(attributes), [value](const Index&) { return value; }};
 }
 
 // Returns a variable with a value in the lowest layer. `z` is its dimension.

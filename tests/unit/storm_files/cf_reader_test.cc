@@ -24,7 +24,6 @@ using ::testing::HasSubstr;
 using testing::Middles;
 using ::testing::SizeIs;
 using testing::SyntheticCf;
-using Index = std::map<std::string, std::size_t>;
 
 // Returns a value that differs in every cell and is above zero.
 double Value(std::size_t x, std::size_t y, std::size_t z) {

@@ -22,8 +22,6 @@ using ::testing::HasSubstr;
 using testing::Middles;
 using ::testing::Not;
 using testing::SyntheticCf;
-using Index = std::map<std::string, std::size_t>;
-using Texts = std::map<std::string, std::string>;
 
 class CfUnsaid : public CfFileTest {
  protected:
@@ -42,11 +40,6 @@ SyntheticCf Water(std::size_t layers = 4) {
                          return at.at("z") == 0 ? 1e-4 : 0.0;
                        }};
   return file;
-}
-
-CfContent Same(const std::string& name, const std::vector<std::string>& on, Texts attributes,
-               double value) {
-  return {name, on, std::move(attributes), [value](const Index&) { return value; }};
 }
 
 // Adds longitudes and latitudes of all columns, `step_deg` apart from 10 E and from `south_deg`.
@@ -68,8 +61,8 @@ TEST_F(CfUnsaid, ASingleLayerNeedsBounds) {
   file.coordinates[2].faces = {};
   ExpectError(file, "z has one layer and no bounds, so its thickness is not known");
   // An array with the height of the only layer does not say how thick it is, either.
-  file.variables.push_back(Same("zg", {"z", "y", "x"},
-                                {{"units", "m"}, {"standard_name", "geopotential_height"}}, 3750));
+  file.variables.push_back(OfOneValue(
+      "zg", {"z", "y", "x"}, {{"units", "m"}, {"standard_name", "geopotential_height"}}, 3750));
   ExpectError(file, "zg has the height of one layer and not of its interfaces");
 }
 
@@ -163,7 +156,8 @@ TEST_F(CfUnsaid, ALostGridMappingIsStated) {
                                           "file, so the places are those of the coordinates."));
   // A mapping that no field names is not used.
   file = Water();
-  file.variables.push_back(Same("crs", {}, {{"grid_mapping_name", "transverse_mercator"}}, 0.0));
+  file.variables.push_back(
+      OfOneValue("crs", {}, {{"grid_mapping_name", "transverse_mercator"}}, 0.0));
   EXPECT_NE(MustRead(file), nullptr);
   EXPECT_THAT(info_.assumptions, Contains(HasSubstr("qc does not name the grid mapping crs")));
 }
@@ -255,7 +249,8 @@ TEST_F(CfUnsaid, HeightsAboveSeaLevelDoNotCountFromTheOrigin) {
 TEST_F(CfUnsaid, AGridMappingThatContradictsTheOriginIsNotUsed) {
   SyntheticCf file = Palm();
   file.variables[0].attributes["grid_mapping"] = "crs";
-  file.variables.push_back(Same("crs", {}, {{"grid_mapping_name", "transverse_mercator"}}, 0.0));
+  file.variables.push_back(
+      OfOneValue("crs", {}, {{"grid_mapping_name", "transverse_mercator"}}, 0.0));
   file.number_attributes["crs"] = {{"latitude_of_projection_origin", 0.0},
                                    {"longitude_of_central_meridian", 15.0},
                                    {"scale_factor_at_central_meridian", 0.9996},
@@ -279,7 +274,7 @@ TEST_F(CfUnsaid, LevelsInUnitsOfPressureAreThePressure) {
          on,
          {{"units", "kg kg-1"}},
          [z](const Index& at) { return at.at(z) == 1 ? 1e-4 : 0.0; }},
-        Same("ta", on, {{"units", "K"}, {"standard_name", "air_temperature"}}, 280.0),
+        OfOneValue("ta", on, {{"units", "K"}, {"standard_name", "air_temperature"}}, 280.0),
         {"zg",
          on,
          {{"units", "m"}, {"standard_name", "geopotential_height"}},
@@ -301,11 +296,11 @@ SyntheticCf Forecast(const std::string& calendar) {
   file.coordinates.push_back(
       {"time", {1.0, 2.0}, {{"units", "days since 2000-02-28"}, {"calendar", calendar}}, {}});
   file.variables[0].dimensions = {"time", "z", "y", "x"};
-  file.variables.push_back(Same("reference", {},
-                                {{"standard_name", "forecast_reference_time"},
-                                 {"units", "days since 2000-02-28"},
-                                 {"calendar", calendar}},
-                                0.0));
+  file.variables.push_back(OfOneValue("reference", {},
+                                      {{"standard_name", "forecast_reference_time"},
+                                       {"units", "days since 2000-02-28"},
+                                       {"calendar", calendar}},
+                                      0.0));
   return file;
 }
 
@@ -348,7 +343,7 @@ TEST_F(CfUnsaid, PeriodsAreAddedInTheFilesCalendar) {
   file.coordinates.pop_back();
   file.variables[0].dimensions = {"z", "y", "x"};
   file.variables.push_back(
-      Same("step", {}, {{"standard_name", "forecast_period"}, {"units", "hours"}}, 48.0));
+      OfOneValue("step", {}, {{"standard_name", "forecast_period"}, {"units", "hours"}}, 48.0));
   EXPECT_NE(MustRead(file), nullptr);
   EXPECT_EQ(info_.times[0].valid_time, "2000-03-02T00:00:00Z");
   EXPECT_EQ(info_.times[0].lead_s, 172'800.0);

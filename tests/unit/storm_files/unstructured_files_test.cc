@@ -26,7 +26,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::SyntheticCf;
 using volume::EarthPlace;
-using Index = std::map<std::string, std::size_t>;
 using Attributes = std::map<std::string, std::string>;
 
 constexpr std::size_t kLayers = 10;
