@@ -33,13 +33,13 @@ service::ServerOptions Deliver(const base::TimeSource& time) {
   return options;
 }
 
-// Advances the time until the server has reset the client's call. The response may become ready
-// only after the first advance.
+// Waits until the server has begun to send its response, then lets the client's time to read it
+// pass once, and waits until the server has reset the call. While the server prepares the response,
+// the clock must not move, because other deadlines would pass as well.
 bool AwaitReset(UntakingClient& client, RunningTime& time) {
-  return WaitFor([&] {
-    time.Advance(kDelivery);
-    return client.IsReset();
-  });
+  if (!WaitFor([&] { return client.IsAnswered(); })) return false;
+  time.Advance(2 * kDelivery);
+  return WaitFor([&] { return client.IsReset(); });
 }
 
 class PictureDelivery : public ::testing::TestWithParam<const char*> {

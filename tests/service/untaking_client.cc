@@ -94,6 +94,11 @@ void UntakingClient::TakeAll() {
   }
 }
 
+bool UntakingClient::IsAnswered() {
+  TakeAll();
+  return answered_;
+}
+
 bool UntakingClient::IsReset() {
   TakeAll();
   return reset_;
@@ -136,6 +141,7 @@ bool UntakingClient::TakeFrame() {
   if (type == kReset) reset_ = true;
   // Headers that end the call are a response of trailers only: no message was in flight.
   if (type == kHeaders && (flags & kEndStream) != 0) ++refused_;
+  if (type == kHeaders && (flags & kEndStream) == 0) answered_ = true;
   if (type == kSettings && flags != kAck) Answer(Frame(kSettings, kAck, 0, ""));
   if (type == kPing && flags != kAck) Answer(Frame(kPing, kAck, 0, payload));
   return true;

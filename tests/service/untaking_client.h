@@ -22,8 +22,11 @@ class UntakingClient {
   // Sends the headers of a call whose message never follows.
   void Announce(const std::string& method);
 
-  // Returns whether the server has reset a call. IsReset(), Refused() and IsClosed() first read all
-  // bytes that have arrived, and answer pings.
+  // Returns whether the server has begun to send a response. HTTP/2 headers need no flow-control
+  // window, so they arrive although no message can follow. IsAnswered(), IsReset(), Refused() and
+  // IsClosed() first read all bytes that have arrived, and answer pings.
+  bool IsAnswered();
+  // Returns whether the server has reset a call.
   bool IsReset();
   // Returns the number of calls that the server has refused without a message.
   int Refused();
@@ -43,6 +46,7 @@ class UntakingClient {
   base::FileDescriptor socket_;
   std::size_t stream_ = 1;  // HTTP/2 stream number of the next call
   std::string received_;
+  bool answered_ = false;
   bool reset_ = false;
   bool closed_ = false;
   int refused_ = 0;
