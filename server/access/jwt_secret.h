@@ -10,7 +10,8 @@ namespace thunderhead::access {
 
 // Returns OK if `text` may be a secret of HS256: one line of printable text (UTF-8) of 32 to 256
 // bytes that is no key in another form. Every public RSA key of at least 2048 bits is longer as
-// text. Else returns INVALID_ARGUMENT, which says what the text seems to be and how to convert it.
+// text. Otherwise returns INVALID_ARGUMENT, which says what the text seems to be and how to convert
+// it.
 absl::Status CheckSecret(const std::string& text);
 
 }  // namespace thunderhead::access

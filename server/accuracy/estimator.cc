@@ -62,8 +62,8 @@ std::optional<AccuracyReport> Estimator::Report(const scene::Scene& scene,
   const double expected_ms = costs_.SettingMs(*table, *timed, scene);
   const bool asks = !std::holds_alternative<std::monostate>(scene.accuracy);
   if (asks || costs_.Knows(full)) report.expected_ms = expected_ms;
-  // A coarse frame, or a frame with few paths, is only shown until the full frame is ready. Whether
-  // the request is met depends on the full frame.
+  // A coarse frame, or a frame with few paths, is only shown until the full frame is ready. The
+  // full frame decides whether the request is met.
   const PricedSetting& full_row = *NearestRow(*table, full);
   const bool is_full =
       quality == FrameQuality{} && row->setting.million_paths == full_row.setting.million_paths;

@@ -98,7 +98,7 @@ bool ReadRow(const Cells& cells, PricedSetting* row) {
          ReadNumber(cells[7], &row->relative_rmse);
 }
 
-// Reads the number of traced paths. Also returns true if the table has no such column.
+// Reads the number of traced paths. Returns true if it was read or if the table has no such column.
 bool ReadMillionPaths(const Cells& names, const Cells& cells, double* value) {
   const auto found = std::find(names.begin(), names.end(), kMillionPaths);
   if (found == names.end()) return true;

@@ -207,7 +207,7 @@ telemetry::Health Operation::HealthNow() {
     return {.alive = true, .ready = false, .state = "the device was lost; opening it again"};
   }
   if (load.draining) return {.alive = true, .ready = false, .state = "draining"};
-  // If a state folder or a disk of results hangs, restarting the process does not help. So the
+  // If a state folder or a disk of results hangs, restarting the process does not help, so the
   // process is reported as alive.
   if (const double hangs_s = StateHangsFor(); hangs_s > 0.0) {
     return {.alive = true,

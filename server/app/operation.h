@@ -1,4 +1,5 @@
-// What operators of `thunderhead serve` use: its log, its operator port, and its shutdown.
+// The parts of `thunderhead serve` that operators use: its log, its operator port, and its
+// shutdown.
 #pragma once
 
 #include <chrono>

@@ -10,8 +10,8 @@
 
 namespace thunderhead::app {
 
-// What light the reference traces, and when it stops. If no limit is set, it traces
-// kDefaultSamplesPerPixel.
+// The light that the reference traces, and the limits at which it stops. If no limit is set, it
+// traces kDefaultSamplesPerPixel.
 struct ReferenceFlags {
   int samples_per_pixel = 0;
   double seconds = 0.0;

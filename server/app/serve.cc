@@ -158,7 +158,7 @@ absl::Status Serve(ServeFlags flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<Operation> operation,
                                Operation::Start(flags.operation, flags.allowed_hosts));
   // Reading the storms' headers and the state may take long on slow storage, or forever on storage
-  // that hangs. So signals are handled meanwhile.
+  // that hangs. Signals are therefore handled meanwhile.
   std::jthread starting = EndIfToldWhileStarting(signals);
   THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::Door> door, MakeDoor(flags));

@@ -1,4 +1,5 @@
-// What a frame shows and how it was drawn. Plain values that are sent with the frame.
+// Descriptions of what a frame shows and how it was drawn. They are plain values that are sent with
+// the frame.
 #pragma once
 
 #include <cstdint>

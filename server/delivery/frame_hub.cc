@@ -104,8 +104,8 @@ std::optional<int> FrameHub::VideoTier(const Watch& watch, const PictureWidth& w
 }
 
 bool FrameHub::KeepsRestingFrame(const Watch& watch, const EncodedFrame& next, Time now) const {
-  // Frames by the Monte Carlo reference come too fast to wait for their resting frames. Those of
-  // other frames may be late on a busy machine, so the wait is limited.
+  // Frames of the Monte Carlo reference come too fast to wait for a resting frame of each. For
+  // other frames the wait is limited, because a busy machine may encode a resting frame late.
   if (next.refinement.has_value()) return false;
   if (resting_frame_due_since_.has_value() &&
       now - *resting_frame_due_since_ > kLongestForRestingFrame)

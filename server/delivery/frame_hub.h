@@ -91,9 +91,9 @@ class FrameHub {
   void Leave(std::uint64_t viewer_id);
 
   // Returns the newest frame or problem that the viewer has not received yet. Returns none while
-  // too many of the viewer's frames are in flight (taken but not acknowledged). Also returns none
-  // while the viewer's maximum frame rate does not allow another frame. A frame that cannot be
-  // encoded is not in flight.
+  // too many of the viewer's frames are in flight (taken but not acknowledged), or while the
+  // viewer's maximum frame rate does not allow another frame. A frame that cannot be encoded is not
+  // in flight.
   std::optional<FrameEvent> Take(std::uint64_t viewer_id, std::optional<Time> at = std::nullopt);
 
   // Acknowledges all frames up to `sequence`. Wakes the viewer only if it can now take something.

@@ -1,5 +1,5 @@
 // The order of the pictures of a video stream, and one viewer's place in the stream. A video
-// picture can be decoded only after its base picture. So a viewer that missed a base picture waits
+// picture can be decoded only after its base picture, so a viewer that missed a base picture waits
 // for a key picture. Plain values; the time is an argument.
 #pragma once
 

@@ -183,8 +183,9 @@ void DeviceTracer::Begin(std::size_t ray, std::uint32_t sample, Begun* begun,
                          std::vector<PathState>* states) const {
   begun->first_state = states->size();
   const reference::EyeSegment& segment = begun->segment;
-  // Each traced ray has its own random stream. The air and the path itself use a kind of state as
-  // the number of their stream. The numbers for the shaded light follow after the last kind.
+  // Each traced ray has its own random stream, identified by a number. For the ray through the air
+  // and for the path itself this number is the kind of their state (kPathTries, kPathFlies). The
+  // rays of shaded light use the numbers after the last kind, which is kPathMissed.
   std::uint32_t kind = shaders::kPathMissed;
   for (const reference::ThroughMedium& light : segment.shaded) {
     states->push_back(StateOf(light.ray, shaders::kPathShines, StreamOf(ray, sample, ++kind)));

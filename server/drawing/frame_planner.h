@@ -1,6 +1,6 @@
 // Decides which frame of a session to draw next. A coarse frame is drawn while its scene keeps
 // changing, a refined frame when the scene is at rest, and finally one at full quality. Plain
-// values; the time is an argument. Knows no threads and no GL.
+// values; the time is an argument. This code uses neither threads nor GL.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ struct PlannerTargets {
   // A frame at rest whose predicted time is longer than this is drawn in pieces, by a worker.
   double whole_ms = 30.0;
   // The delay before a full-quality frame that takes longer than refined_ms. Such a frame would
-  // delay the response to a next change. So it waits until the scene has very likely come to rest.
+  // delay the response to a next change, so it waits until the scene has very likely come to rest.
   session::Clock::duration settle_delay = std::chrono::milliseconds(500);
 
   // Return the times at which an unchanged scene counts as at rest, and as settled. Both times are

@@ -242,8 +242,8 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
       drawer.DeviceReplaced();
     }
     pressure.Answer([&] {
-      // The render loop can draw what the sessions' worker draws, so the worker's copy is freed
-      // first.
+      // The last frame of the sessions' worker is freed first, because the render loop can draw it
+      // again.
       if (session_worker.IsFree() && session_worker.Last().has_value()) {
         session_worker.Forget();
         workers->sessions.FreeUnused(0.0);

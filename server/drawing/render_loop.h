@@ -1,7 +1,7 @@
 // The render loop. One thread draws the sessions that have a viewer ready for a frame. It also
 // gives turns on the device to its workers, which draw long frames and single pictures and trace
-// light. Reading, encoding and the Monte Carlo reference run on other threads. Knows no GL (only
-// the frame sources do) and no message formats.
+// light. Reading, encoding and the Monte Carlo reference run on other threads. This code uses no
+// message formats, and no GL: only the frame sources use GL.
 #pragma once
 
 #include <atomic>

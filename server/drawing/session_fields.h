@@ -39,8 +39,8 @@ class SessionFields {
 
   // Returns the scene to draw now: the newest scene if its fields are available. Otherwise requests
   // the fields of the newest scene, and returns the scene whose fields have just been read, if its
-  // revision is above `shown_revision`. So a time slider that moves faster than the disk still
-  // shows something.
+  // revision is above `shown_revision`. A time slider that moves faster than the disk therefore
+  // still shows something.
   std::optional<session::NewestScene> Drawable(const session::NewestScene& newest,
                                                std::uint64_t shown_revision);
 

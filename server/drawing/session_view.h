@@ -1,6 +1,6 @@
 // The next work for a session: a state machine that leads from a changed scene to its final
-// picture. It returns work and is told the outcome by calls; the time is an argument. Knows no
-// threads and no GL.
+// picture. It returns work and is told the outcome by calls; the time is an argument. This code
+// uses neither threads nor GL.
 #pragma once
 
 #include <cstdint>

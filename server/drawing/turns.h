@@ -6,8 +6,8 @@
 //
 // Within a class all contenders get the same time, whatever the length of their pieces. A new
 // contender inherits the overuse of one that left, so that leaving and coming back gains nothing.
-// Shared views and own views are two groups that each get half of the time. So a school class whose
-// pupils all look around uses at most half of the time.
+// Shared views and own views are two groups that each get half of the time. A school class whose
+// pupils all look around therefore uses at most half of the time.
 //
 // A plain value, without a clock.
 #pragma once

@@ -21,10 +21,9 @@ bool StrictPrograms();
 // images. Each uniform must be declared on its own line.
 std::set<std::string, std::less<>> DeclaredUniforms(const std::string& text);
 
-// Checks the macros of a program. Returns INTERNAL with the name of a define that no text mentions.
-// Also returns INTERNAL with the name of an undefined macro in a preprocessor condition. A macro
-// may be defined by `defines` or by the text itself. `texts` are the shader texts of the program's
-// stages, without the defines.
+// Checks the macros of a program. Returns INTERNAL with the name of a define that no text mentions,
+// or of an undefined macro in a preprocessor condition. A macro may be defined by `defines` or by
+// the text itself. `texts` are the shader texts of the program's stages, without the defines.
 absl::Status CheckDefines(const std::vector<std::string>& texts, const Defines& defines);
 
 // Checks a linked program. Returns INTERNAL with the names of two samplers, two images or two

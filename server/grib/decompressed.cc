@@ -23,8 +23,8 @@ using Bytes = std::vector<std::byte>;
 
 constexpr std::size_t kInputBytes = 256 << 10;
 
-// Bytes in blocks of one size. Memory grows by one block at a time, and no byte is moved. So the
-// bytes take at most one block of memory in addition to their own size.
+// Bytes in blocks of one size. Memory grows by one block at a time, and no byte is moved. The bytes
+// therefore take at most one block of memory in addition to their own size.
 class Blocks {
  public:
   std::uint64_t Size_bytes() const { return size_bytes_; }

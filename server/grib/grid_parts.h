@@ -56,7 +56,8 @@ double LongitudeRange_deg(const Octets& section, double unit_deg, const Grid& gr
 absl::StatusOr<double> StepOf(const Octets& section, std::size_t octet, double unit_deg,
                               double range_deg, int count, const char* name);
 
-// Gives the only row or column of a grid, if its width is not given, that of the other axis.
+// Copies the step of the other axis to an axis with a single row or column whose step the file does
+// not give. Returns an error if neither axis has a step.
 absl::Status CompleteSteps(Grid& grid);
 
 // Returns whether winds are along the grid's axes, by the flags in `octet` (flag table 3.3).

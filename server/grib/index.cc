@@ -373,7 +373,7 @@ bool BeginsLikeGrib(std::string_view start) {
   const std::size_t last = std::min(start.size(), kLongestPreamble);
   for (std::size_t at = start.find(kStart); at < last; at = start.find(kStart, at + 1)) {
     if (at + kEditionAt >= start.size()) return false;
-    // Texts about GRIB files have the word, too.
+    // A text may also contain the word GRIB, but then a character follows it here.
     if (static_cast<unsigned char>(start[at + kEditionAt]) < kFirstText) return true;
   }
   return false;

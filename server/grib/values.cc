@@ -194,13 +194,13 @@ Shape ShapeOf(const Field& field) {
   return {field.points, 1};
 }
 
-// A field of a few values, packed by one template, with which the decoder is tried.
+// A small packed field, with which the decoder of one packing template is tested.
 struct Sample {
   Bytes packing;
   Bytes data;
 };
 
-// Numbers, each with how many octets it has.
+// Pairs of a number and the octets that it takes.
 using Numbers = std::vector<std::pair<std::uint64_t, std::size_t>>;
 
 // Makes section 5 with `values` values and the numbers that follow the number of the template.

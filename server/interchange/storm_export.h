@@ -1,5 +1,6 @@
 // Exports a storm for other programs. Each visible field becomes an OpenVDB grid of its extinction.
-// The scene's camera, sun and optical properties become JSON. Knows no GL and no messages.
+// The scene's camera, sun and optical properties become JSON. This code uses neither GL nor
+// messages.
 #pragma once
 
 #include <memory>

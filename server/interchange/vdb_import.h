@@ -27,9 +27,9 @@ struct ImportOptions {
 };
 
 // Returns the extinction on a regular grid with z up, in metres. The index of a voxel is its
-// centre. Returns INVALID_ARGUMENT if the grid's axes are rotated or sheared, or if it reaches
-// below height 0. Also if its voxels are too small or large for a storm, if a value is negative or
-// not finite, or if all are 0.
+// centre. Returns INVALID_ARGUMENT if the grid's axes are rotated or sheared, if it reaches below
+// height 0, or if its voxels are too small or large for a storm. Also returns INVALID_ARGUMENT if a
+// value is negative or not finite, or if all values are 0.
 absl::StatusOr<storm_files::CfCloud> CloudOf(const VdbVolume& volume, const ImportOptions& options);
 
 }  // namespace thunderhead::interchange

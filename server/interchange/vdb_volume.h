@@ -1,5 +1,5 @@
-// One grid of an OpenVDB file as a dense array, with the axes and units of the file. Knows no
-// OpenVDB, so that the program that imports the grid does not parse the file.
+// One grid of an OpenVDB file as a dense array, with the axes and units of the file. This code does
+// not use OpenVDB, so that the program that imports the grid does not parse the file.
 #pragma once
 
 #include <array>
@@ -29,7 +29,8 @@ struct VdbVolume {
   }
 };
 
-// Checks a volume that another process sent. The message of INTERNAL names what cannot be right.
+// Checks a volume that another process sent. Returns INTERNAL, whose message names the implausible
+// value.
 absl::Status CheckPlausible(const VdbVolume& volume);
 
 // Sends or receives the volume, as in sandbox/messages.h.

@@ -1,4 +1,4 @@
-// What a load test records while it runs. The report is made from it.
+// The record of a load test, from which its report is made.
 #pragma once
 
 #include <chrono>

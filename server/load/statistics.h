@@ -49,8 +49,8 @@ std::optional<Percentiles> PercentilesOf(const std::vector<Latency>& latencies);
 // Returns, for one viewer, the latency of each update that was sent in the period. The latency ends
 // at the first frame with the update's revision or a newer one. `updates` must be ordered by
 // revision, and `arrivals` by time. An update that was not shown by the end of the period counts
-// with its age at that time, if this age exceeds all other latencies. So a viewer that no longer
-// receives frames counts as late rather than as absent.
+// with its age at that time, if this age exceeds all other latencies. A viewer that no longer
+// receives frames therefore counts as late rather than as absent.
 std::vector<Latency> LatenciesOf(const std::vector<Update>& updates,
                                  const std::vector<Arrival>& arrivals, const Period& period);
 

@@ -76,7 +76,7 @@ class Frames {
   }
 
   // Returns the FLIP difference between a frame drawn during a move and the following frame at
-  // rest. Both have the exposure of the former.
+  // rest. Both have the exposure of the first.
   absl::StatusOr<std::optional<double>> MovingFlip() {
     renderers::StageTimes times;
     THUNDERHEAD_ASSIGN_OR_RETURN(const frame::ToneMapped moving, DrawAsMoving(&times));

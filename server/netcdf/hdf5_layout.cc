@@ -17,7 +17,7 @@ constexpr int kMostObjects = 100'000;
 
 constexpr unsigned char kSignature[] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
 
-// Closes an identifier of HDF5.
+// An HDF5 identifier, which the destructor closes.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}

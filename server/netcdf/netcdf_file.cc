@@ -251,7 +251,7 @@ std::optional<NetcdfFile::Variable> NetcdfFile::FindHolder(const std::string& va
   if (!variable.empty()) {
     return Find(variable, holder) == NC_NOERR ? std::optional(holder) : std::nullopt;
   }
-  // A group without the attribute has that of the group around it.
+  // A group without the attribute inherits it from the group around it.
   while (holder.group != handle_ &&
          nc_inq_att(holder.group, NC_GLOBAL, attribute.c_str(), nullptr, nullptr) != NC_NOERR) {
     if (nc_inq_grp_parent(holder.group, &holder.group) != NC_NOERR) break;

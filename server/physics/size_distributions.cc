@@ -143,7 +143,8 @@ std::string_view NameOf(Microphysics microphysics) {
 }
 
 bool HasDistribution(Microphysics microphysics, Hydrometeor hydrometeor) {
-  // Whether a distribution exists depends on neither content nor temperature.
+  // Any content and temperature will do, because the existence of a distribution does not depend on
+  // them.
   return Radius_m(microphysics, hydrometeor, 1e-3, 260.0).has_value();
 }
 

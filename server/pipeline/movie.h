@@ -19,7 +19,7 @@ bool IsMovieName(std::string_view path);
 
 // Returns for each picture the number of movie frames that show it. Each movie frame covers the
 // same time of the storm: the shortest step between two pictures. `valid` are the pictures' valid
-// times in order. The last picture gets one frame. So does a picture before a gap of a thousand
+// times in order. The last picture gets one frame, and so does a picture before a gap of a thousand
 // steps or more.
 std::vector<int> FramesOfPictures(const std::vector<absl::Time>& valid);
 

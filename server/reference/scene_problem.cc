@@ -139,7 +139,7 @@ GroupLook LookOf(const scene::DrawnField& field) {
   return {field.phase, static_cast<double>(field.albedo) * glm::dvec3(field.color)};
 }
 
-// A group's optics after delta scaling. `extinction` is a factor of the group's extinction.
+// A group's optics after delta scaling. The group's extinction is multiplied by `extinction`.
 struct CutOptics {
   std::shared_ptr<const SampledPhase> phase;
   glm::dvec3 albedo{1.0};

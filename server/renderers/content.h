@@ -1,4 +1,4 @@
-// What a frame shows, as reported by its technique. This code does not use GL.
+// Descriptions of what a frame shows, as reported by its technique. This code does not use GL.
 #pragma once
 
 #include <vector>

@@ -96,11 +96,10 @@ class Ground {
   gl::Texture2D shadow_;
   gl::Framebuffer shadow_target_;
   glm::dvec3 shadow_middle_m_{0.0};
-  // The dot product with an offset from shadow_middle_m_ is 1 at half the shadow's width.
+  // Axes of the shadow map. The dot product of an axis and an offset from shadow_middle_m_ is 1 at
+  // half the shadow's width (right, up) or depth (down, away from the sun).
   glm::dvec3 shadow_right_{0.0};
   glm::dvec3 shadow_up_{0.0};
-  // The dot product with an offset from shadow_middle_m_ is 1 at half the shadow's depth, in the
-  // direction away from the sun.
   glm::dvec3 shadow_down_{0.0};
 
   std::shared_ptr<const LightCorrection> correction_;

@@ -13,8 +13,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Radii of the three discs, relative to the height h. Of all discs of the sum, the share R^4 / (R^2
-// + h^2)^2 has a radius below R. For the three radii this share is 1/6, 1/2 and 5/6.
+// Radii of the three discs, relative to the height h. The share of the sum's discs that have a
+// radius below R is R^4 / (R^2 + h^2)^2. For the three radii this share is 1/6, 1/2 and 5/6.
 constexpr std::array<float, 3> kDiscRadii = {0.830F, 1.554F, 3.238F};
 
 // For each disc, the level of the map at which the disc is looked up from a height of one texel.

@@ -61,7 +61,7 @@ CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, c
   access::Credentials credentials{"", PeerOf(door, context)};
   const std::string header = Metadata(context, "authorization").value_or("");
   // If there are several tokens, a proxy in front may have checked a different one than this server
-  // would. So all of them are rejected.
+  // would. All of them are therefore rejected.
   const bool is_one = context.client_metadata().count("authorization") == 1;
   if (is_one && absl::StartsWithIgnoreCase(header, kScheme)) {
     credentials.token = header.substr(sizeof(kScheme) - 1);

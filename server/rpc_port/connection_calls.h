@@ -1,5 +1,5 @@
 // Reports which connections to gRPC's port are in use, which means that they have an admitted call.
-// gRPC reports neither its connections nor the connection of a call. But a call's peer is the
+// gRPC reports neither its connections nor the connection of a call. However, a call's peer is the
 // remote address and port of its connection, which no two open connections share. Safe to call from
 // any thread.
 #pragma once

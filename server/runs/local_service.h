@@ -35,8 +35,8 @@ absl::StatusOr<int> TimeOf(const storm_store::StormStore& store, const std::stri
 // no such file.
 bool IsLastingRefusal(const absl::Status& status);
 
-// Converts an error about a storm's file to DATA_LOSS, whatever code the store gives for a bad
-// file. So it is not reported as a wrong request.
+// Converts an error about a storm's file to DATA_LOSS, whatever its code, so that a bad file is not
+// reported as a wrong request.
 absl::Status AsFileProblem(const absl::Status& status);
 // Converts an error about the file at `path`. A damaged file that has changed within the last two
 // minutes gives UNAVAILABLE, because a model may still be writing it.

@@ -155,8 +155,8 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanSequence(
 
 // Returns the number of a time, which determines the share that it belongs to. If all times are
 // requested, the number is made of the time's index in its file and of the file's index among all
-// files, readable or not. So no time is omitted if one share searches before a file is complete and
-// another share after.
+// files, readable or not. No time is therefore omitted if one share searches before a file is
+// complete and another share after.
 std::size_t NumberOf(const PlannedPicture& picture, std::size_t index, const Found& found,
                      const std::string& times) {
   const auto place = found.places.find(picture.input);

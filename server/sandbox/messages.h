@@ -183,8 +183,8 @@ void VisitOthers(Archive& archive, std::vector<storm_files::StormFile>& others) 
   for (storm_files::StormFile& other : others) Visit(archive, other);
 }
 
-// The descriptions of several files, or why they cannot be described. Of a file, `code` is absl's
-// status code. If it is 0, `file` is set, and otherwise `message`.
+// The description of a file, or why it cannot be described. `code` is absl's status code. If it is
+// 0, `file` is set, and otherwise `message`.
 struct Description {
   std::int32_t code = 0;
   std::string message;

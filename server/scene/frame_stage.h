@@ -1,5 +1,5 @@
-// The stages whose wall times a frame reports, which are finer than scene::Stage. Also the
-// properties of a scene or storm that a frame reports as not shown.
+// The stages whose wall times a frame reports, which are finer than scene::Stage. This header also
+// lists the properties of a scene or storm that a frame can report as not shown.
 #pragma once
 
 #include <string>

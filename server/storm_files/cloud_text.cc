@@ -92,7 +92,7 @@ absl::StatusOr<bool> ReadRow(NumberText& text, const CloudHeader& header, CloudR
 // The levels at which a type of particles occurs, by the index in the file.
 using TypeLevels = std::vector<bool>;
 
-// What a whole text holds.
+// Facts about a whole text, collected in one pass over its lines.
 struct CloudScan {
   std::map<int, TypeLevels> types;
   std::optional<std::size_t> line_with_zero;     // first line with an index 0
@@ -153,8 +153,8 @@ bool HasParticles(const CloudScan& scan, int level, int first_index) {
 
 // Returns the faces between layers. A layer reaches half-way to the neighbouring grid points. The
 // programs let the fields vary linearly between grid points, and end the medium at the first and
-// the last of them. So the first and the last layer are half as thick, and each column keeps its
-// mass. Without particles there, they have their whole thickness, as in CF files.
+// the last of them. The first and the last layer are therefore half as thick, and each column keeps
+// its mass. If they have no particles, they have their whole thickness, as in CF files.
 std::vector<double> FacesOf(const CloudHeader& header, const CloudScan& scan, int first_index) {
   const std::vector<double>& z_m = header.heights_m;
   if (header.heights_are_faces) return z_m;

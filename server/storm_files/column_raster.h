@@ -10,8 +10,8 @@
 namespace thunderhead::storm_files {
 
 // Positions of a model's columns in the plane of a map, x fastest. In addition to the centres of
-// columns they include the edges of the domain, half a column outside of the outermost centres. So
-// there are (columns.x + 2) * (columns.y + 2) positions.
+// columns they include the edges of the domain, half a column outside of the outermost centres.
+// There are (columns.x + 2) * (columns.y + 2) positions.
 struct ColumnMesh {
   glm::ivec2 columns{0};
   std::vector<glm::dvec2> plane_m;

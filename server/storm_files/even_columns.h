@@ -82,8 +82,8 @@ struct EvenColumns {
 };
 
 struct EvenOptions {
-  // If set, the even columns have this number, which is that of another time of a domain that
-  // moves.
+  // If set, the number of even columns along x and y. A domain that moves must have the same number
+  // at all its times.
   std::optional<glm::ivec2> columns;
 };
 

@@ -170,7 +170,7 @@ absl::StatusOr<VerticalGrid> TimeReader::GridFor(
       storm_grid->low_m, " to ", storm_grid->High_m(), " m; give files of one run only"));
 }
 
-// Reads the terrain. Where the height is missing, the ground is the lowest interface. If the layers
+// Reads the terrain. In columns without a height, the ground is the lowest interface. If the layers
 // do not follow the terrain, it is at sea level or, if lower, at the bottom of the domain.
 absl::Status TimeReader::ReadTerrain(volume::HydrometeorFields& result) {
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> terrain, source_.Terrain_m());

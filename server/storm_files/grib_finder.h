@@ -153,7 +153,7 @@ class Finder {
     std::vector<std::string>& all = contents_.assumptions;
     if (std::ranges::find(all, sentence) == all.end()) all.push_back(std::move(sentence));
   }
-  // Adds an assumption that may be another one at each time. Of very many, the first are kept.
+  // Adds an assumption that may differ from time to time. Only the first `kMost` are kept.
   void AssumeOfTime(std::string sentence) {
     constexpr std::size_t kMost = 20;
     if (assumptions_of_times_ >= kMost) return;

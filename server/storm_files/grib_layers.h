@@ -78,7 +78,7 @@ struct GribLayers {
   bool HasWind() const { return !wind_x.Empty() && !wind_y.Empty() && !ascent.Empty(); }
 };
 
-// What GRIB files hold of one run and member.
+// The contents of the GRIB files of one run and member.
 struct GribContents {
   std::string path;               // of the storm, for errors
   std::vector<GribLayers> times;  // in ascending order

@@ -1,4 +1,4 @@
-// What the fields of GRIB files mean to a storm. Fields are identified by the numbers of
+// The meaning of the fields of GRIB files for a storm. Fields are identified by the numbers of
 // discipline, category and parameter (code table 4.2), never by names, because names differ between
 // programs.
 #pragma once

@@ -45,7 +45,8 @@ class Decoder {
   absl::StatusOr<Values> Read(const GribSeries& series, bool from_end);
 
  private:
-  // One file stays open, because it holds all fields. Of several files, each holds few.
+  // A single file stays open, because it holds all fields. If there are several files, each holds
+  // few fields and is opened when needed.
   absl::StatusOr<std::shared_ptr<const base::ByteSource>> Open(std::size_t file) {
     if (storm_.files.size() > 1) return OpenPlain(storm_.files[file]);
     const std::lock_guard lock(mutex_);

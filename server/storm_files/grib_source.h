@@ -21,8 +21,8 @@ struct GribInput {
   std::function<absl::StatusOr<std::shared_ptr<const base::ByteSource>>()> open;
 };
 
-// What a storm's GRIB files hold, and how to open them again. It does not change, and is safe to
-// use from any thread.
+// The contents of a storm's GRIB files, and the data needed to open them again. It does not change,
+// and is safe to use from any thread.
 struct GribStorm {
   std::vector<GribInput> files;
   GribIndexes indexes;    // of each file

@@ -37,7 +37,8 @@ struct GridMapping {
   glm::dvec2 metres_per_unit{1.0};
   // Values of x and y at the origin of the map.
   glm::dvec2 origin{0.0};
-  // What the attributes leave open and this code assumed, as sentences for the user.
+  // The assumptions that this code made because the attributes leave something open, as sentences
+  // for the user.
   std::vector<std::string> assumptions;
 
   // Returns the position on the map, in metres, of values of x and y.
@@ -47,7 +48,7 @@ struct GridMapping {
   }
 };
 
-// What must be known of the grid whose mapping is converted.
+// Properties of the grid whose mapping is converted.
 struct MappedGrid {
   // Values of x and y in the middle of the grid. Only grids of degrees need them.
   glm::dvec2 middle{0.0};

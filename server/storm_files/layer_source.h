@@ -30,7 +30,7 @@ enum class AirMass {
   kWhole,  // kg per kg of dry air, vapour and condensate together: a specific content
 };
 
-// What a source has of one hydrometeor.
+// The variables that a source has for one hydrometeor.
 struct LayerField {
   physics::Hydrometeor hydrometeor = physics::Hydrometeor::kCloud;
   std::string variable;  // the name in the file

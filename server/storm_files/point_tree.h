@@ -25,7 +25,7 @@ class PointTree {
   explicit PointTree(const std::vector<glm::dvec2>& points);
 
   // Fills `found` with the points nearest to `at`, the nearest first. They are nearer than the
-  // square root of `below_square`. Where there are fewer such points, the last entries are kNone.
+  // square root of `below_square`. If there are fewer such points, the last entries are kNone.
   void FindNearest(const glm::dvec2& at, double below_square, std::span<Found> found) const;
 
  private:

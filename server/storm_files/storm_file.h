@@ -51,7 +51,7 @@ inline constexpr std::size_t kMaxTimes = 1'000'000;
 // this function before it reads the file's times.
 absl::Status CheckRecords(const std::string& path, std::size_t records);
 
-// What a file contributes to a storm, if a time of the storm is spread over several files.
+// The part that a file contributes to a storm, if a time of the storm is spread over several files.
 struct StormPart {
   // A text that is equal for all files of one run on one grid, and different for other files. It is
   // empty if the file is a complete storm.

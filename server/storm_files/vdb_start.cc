@@ -4,8 +4,8 @@
 
 namespace thunderhead::storm_files {
 
-// The code is not that of a file of another kind, so that a folder's search warns of it. Nor is it
-// that of a damaged file, which may still be being written.
+// FAILED_PRECONDITION makes the search of a folder log a warning. INVALID_ARGUMENT would mean a
+// file of another kind, and DATA_LOSS a damaged file, which may still be being written.
 absl::Status RefuseVdb(const std::string& path) {
   return absl::FailedPreconditionError(absl::StrCat(
       path,

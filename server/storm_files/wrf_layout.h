@@ -1,6 +1,6 @@
 // Finds how the variables of a WRF output file are laid out: their dimensions and whether they have
-// time. Programs that process WRF output rename dimensions and drop time. So a dimension without
-// WRF's name is found by its position in WRF's variables.
+// time. Programs that process WRF output rename dimensions and drop time. A dimension without WRF's
+// name is therefore found by its position in WRF's variables.
 #pragma once
 
 #include <array>
@@ -49,7 +49,7 @@ struct WrfLayout {
 // Finds the layout of an open file. INVALID_ARGUMENT names a dimension that is missing.
 absl::StatusOr<WrfLayout> FindWrfLayout(const netcdf::NetcdfFile& file);
 
-// Whether a variable may change with time.
+// Says whether a variable may change with time.
 enum class Changes {
   kAtEachTime,  // the variable has time if the file has several times
   kNever,       // the variable may have no time, for example the height of the ground

@@ -283,9 +283,9 @@ void FindSizes(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
     const bool drawn =
         std::ranges::find(metadata.fields, name.hydrometeor) != metadata.fields.end();
     if (!drawn || !size.name.empty() || !file.HasVariable(variable)) continue;
-    // A number of particles of both phases says nothing on one phase.
+    // A number of particles of both phases says nothing about one phase.
     if (name.is_count && metadata.IsShared(name.hydrometeor)) continue;
-    // So do the sizes of one category of ice on all categories.
+    // The sizes of one category of ice say nothing about all categories together.
     if (name.hydrometeor == Hydrometeor::kIce && !metadata.more_ice.empty()) continue;
     const absl::Status fit =
         CheckVariable(file, layout, variable, layout.Layers(),

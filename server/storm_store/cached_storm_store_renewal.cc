@@ -181,8 +181,8 @@ StormChange CachedStormStore::Replace(std::size_t place, std::optional<Catalogue
   }
   std::vector<int> numbers;
   std::set<int> kept;
-  // A storm may have a million times, and readers wait for the lock. So equal times are looked up,
-  // by the members that IsSameTime compares.
+  // A storm may have a million times, and readers wait for the lock. Equal times are therefore
+  // looked up, by the members that IsSameTime compares.
   std::map<std::tuple<std::string_view, std::uint64_t, std::size_t, absl::Time>, std::size_t>
       old_times;
   const auto key_of = [](const CataloguedStorm& storm, std::size_t time) {

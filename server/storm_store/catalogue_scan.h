@@ -165,7 +165,7 @@ class CatalogueScan {
   // Returns whether the file must be opened now.
   bool Look(const Stamp& stamp, Known& known);
   bool MustOpen(const Known& known) const;
-  // Takes the description of a file that was opened.
+  // Stores in `known` the description of a file that was opened, or why it has none.
   void Take(const std::string& path, absl::StatusOr<storm_files::StormFile> file, Known& known);
   void Lose(Known& known);  // removes the description
   void LookAgainAt(Time time);
@@ -187,9 +187,9 @@ class CatalogueScan {
   bool is_unfinished_ =
       false;                  // whether a file must be described again at once, with more patience
   bool has_untried_ = false;  // whether one of them was not alone
-  // The folders with times that are spread over several files and wait: for the next scan, and
-  // those that waited for this one. Of the latter, some have their turn, and one of these
-  // certainly.
+  // Folders with times that are spread over several files. Those in waiting_together_ wait for the
+  // next scan. Those in served_together_ waited for this scan, which serves them while time
+  // remains. It serves first_together_ in any case.
   FolderSet waiting_together_;
   FolderSet served_together_;
   std::string first_together_;

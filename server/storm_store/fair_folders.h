@@ -18,8 +18,8 @@ using FolderSet = std::set<std::string, FolderOrder>;
 class FairFolders {
  public:
   // Returns the folder of `waiting` that is served next. At each level, this is the folder whose
-  // files and subfolders have used the least time so far. Of several with equal times, the one that
-  // has waited longest comes first. `waiting` must not be empty.
+  // files and subfolders have used the least time so far. If several have used equal time, the one
+  // that has waited longest comes first. `waiting` must not be empty.
   const std::string& Next(const FolderSet& waiting);
 
   // Adds the time that was spent on a folder's files.

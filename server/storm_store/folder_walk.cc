@@ -195,7 +195,7 @@ void Walk::ListAll() {
     node.entries += read;
     for (Node* each = &node; each->parent != nullptr; each = each->parent) {
       auto& waiting = each->parent->waiting;
-      // `entries` of the node itself has grown already.
+      // `entries` has grown already, but `waiting` still has the node under its earlier number.
       waiting.erase({each->entries - read, each->index});
       if (each->IsWaiting()) waiting.emplace(each->entries, each->index);
       each->parent->entries += read;

@@ -48,8 +48,8 @@ struct FolderWalk {
   std::function<void(const std::string& path)> on_folder = {};
   // Called with each folder or link that is left out, and the reason.
   std::function<void(const std::string& path, const absl::Status& why)> on_left_out;
-  // Returns the files below a folder that an earlier walk found. Where this walk stops at a limit,
-  // they are listed nevertheless. It may be empty.
+  // Returns the files below a folder that an earlier walk found. They are also listed if this walk
+  // stops at a limit before it reaches them. It may be empty.
   std::function<std::vector<std::string>(const std::string& folder)> known_below = {};
   // Maximum number of files and folders below one path, and of the time to list them.
   std::size_t most_entries = 200'000;

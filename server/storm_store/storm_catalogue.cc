@@ -282,7 +282,7 @@ void SearchFolder(const ListedFolder& folder, PathSearch& path_search,
   std::ranges::move(GroupRuns(folder.path, std::move(files)), std::back_inserter(storms));
 }
 
-// Returns the error for a file that alone is no storm, with what it lacks.
+// Returns the error for a file that is only a part of a storm. The error says what the file lacks.
 absl::Status IsPartOfTime(const std::string& path, const fs::path& at,
                           const storm_files::StormFile& file, const StormSearch& search) {
   if (!file.about.empty()) {
@@ -418,7 +418,7 @@ FoundPlace PlaceOf(const storm_files::StormFile& file, const fs::path& searched,
   const fs::path direct =
       (root / fs::path(file.path).lexically_relative(searched)).lexically_normal();
   FoundPlace place{canonical.string(), direct != canonical && direct != canonical / ""};
-  // Two times may share their first file, if it holds both. So may two storms.
+  // Two times, or two storms, may share their first file, if it holds both.
   if (!file.parts.empty()) absl::StrAppend(&place.key, " ", absl::FormatTime(file.times.front()));
   absl::StrAppend(&place.key, " ", file.first_record);
   return place;
@@ -449,8 +449,8 @@ void DropRepeated(const std::vector<std::string>& paths, std::vector<NamedStorm>
   std::erase_if(storms, [](const NamedStorm& storm) { return storm.files.empty(); });
 }
 
-// Returns whether `later` was written at least as late as `file`. Of files that were written at the
-// same time, the one with the later name counts as written later.
+// Returns whether `later` was written at least as late as `file`. If both were written at the same
+// time, the one with the later name counts as written later.
 bool WasWrittenLater(const storm_files::StormFile& file, const storm_files::StormFile& later) {
   return std::tie(later.modified_ns, later.path) >= std::tie(file.modified_ns, file.path);
 }

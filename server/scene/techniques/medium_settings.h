@@ -5,7 +5,7 @@
 
 namespace thunderhead::scene {
 
-// Which properties of the single fields a picture shows.
+// Choices of which properties of the single fields a picture shows.
 struct FieldLook {
   bool per_field_phase = true;  // if false, every field has the phase function of cloud water
   bool detail = false;          // turbulent detail finer than the grid

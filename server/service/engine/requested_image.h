@@ -27,7 +27,7 @@ class ImageListener {
   ~ImageListener() = default;
 };
 
-// Whether a call waits for the picture. Pictures with a waiting call are drawn first.
+// Says whether a call waits for the picture. Pictures with a waiting call are drawn first.
 enum class Awaited { kByACall, kByNobody };
 
 // Reads, draws and encodes a picture by a worker of the render loop. All arguments must live until

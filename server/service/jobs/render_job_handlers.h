@@ -37,8 +37,8 @@ grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, const Limits& limits
                                           const v1::CancelRenderJobRequest* request,
                                           v1::CancelRenderJobResponse* response);
 
-// What FetchRenderResult needs to read result files: separate threads, and calls to the storage
-// with a timeout.
+// The resources with which FetchRenderResult reads result files: separate threads, and calls to the
+// storage with a timeout.
 struct ResultReading {
   base::Executor& threads;
   base::PatientCalls& calls;

@@ -13,8 +13,8 @@
 namespace thunderhead::service {
 namespace {
 
-// Maximum number of storms that an error message lists, because there may be thousands. So many are
-// enough to recognise a typing error.
+// Maximum number of storms that an error message lists, because there may be thousands. This number
+// is enough to recognise a typing error.
 constexpr std::size_t kMaxNamesListed = 10;
 
 std::string NamesOf(const std::vector<storm_store::StormInfoPtr>& storms) {

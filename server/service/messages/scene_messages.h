@@ -1,4 +1,4 @@
-// Converts scenes and storms between messages and values. Also checks the rules that the limits of
+// Converts scenes and storms between messages and values, and checks the rules that the limits of
 // limits_check.h cannot express.
 #pragma once
 

@@ -2,10 +2,10 @@
 // picture. Each layer holds the missing share of airlight_before from the eye up to one of several distances. The last
 // layer holds the missing share of the whole sky's airlight. The first layer is at the distance `near_m` and is zero.
 //
-// The contribution of a step to airlight_before is proportional to the extinction of its air. Of this contribution, the
-// missing share is that of the sunlight and skylight which the step scatters. The result therefore never exceeds
-// airlight_before. Rays continue below the ground, so that shares change smoothly across the picture. Coordinates are
-// metres from the eye.
+// The contribution of a step to airlight_before is proportional to the extinction of its air. The missing share of this
+// contribution equals the missing share of the sunlight and skylight that the step scatters. The result therefore never
+// exceeds airlight_before. Rays continue below the ground, so that shares change smoothly across the picture.
+// Coordinates are metres from the eye.
 #include "common/bindings.glsl"
 #include "common/sky_hidden.glsl"
 #include "common/storm_shadow.glsl"

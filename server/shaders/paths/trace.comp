@@ -96,7 +96,7 @@ void put_on_ground() {
   path.place.z = -(low_from_touch_m.z + 0.5 * ground_curvature_per_m * dot(off_m, off_m)) / brick_m.z;
 }
 
-// Where the path is after its flight.
+// Values for the place of a path after its flight.
 const int kAtEnd = 0;
 const int kAtParticle = 1;
 const int kAtGround = 2;
