@@ -110,9 +110,9 @@ class FrameHub {
   // these viewers is due.
   std::optional<Time> WakeWaiting(Time now);
 
-  // Returns the video pictures to encode of a frame before it is published. Viewers get a frame at
-  // rest as JPEG, except viewers that take resting frames if a resting frame follows. Those get it
-  // as video if they have no resting frame of the scene, and otherwise wait for the new one.
+  // Returns the video pictures of a frame that must be encoded before it is published. Viewers get
+  // a frame at rest as JPEG. If a resting frame follows, viewers that take resting frames get video
+  // instead, or wait if they already have a resting frame of the scene.
   std::vector<VideoOrder> OrderVideo(const EncodedFrame& described, bool resting_frame_follows,
                                      std::optional<Time> at = std::nullopt);
   // Replaces the newest frame and returns its sequence. `described` is the frame without a picture.

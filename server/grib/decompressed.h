@@ -14,8 +14,8 @@ namespace thunderhead::grib {
 inline constexpr std::uint64_t kMaxDecompressed_bytes = std::uint64_t{2} << 30;
 
 // Returns the maximum size of a decompressed file that has `compressed_bytes` bytes in compressed
-// form. It is 64 MiB and 100 times these bytes, at most kMaxDecompressed_bytes. Weather data never
-// become so much smaller, but a hostile file may hold a thousand times its size.
+// form. It is 64 MiB plus 100 times these bytes, at most kMaxDecompressed_bytes. Weather data never
+// shrink by so much, but a hostile file may expand to a thousand times its size.
 std::uint64_t MaxDecompressed_bytes(std::uint64_t compressed_bytes);
 
 // Returns whether these first bytes of a file are those of a bz2 or gz file.

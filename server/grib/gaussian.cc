@@ -44,8 +44,8 @@ double ZeroOfLegendre(int i, int degree) {
   return x;
 }
 
-// Returns the index of the Gaussian latitude that is `latitude_deg`, to a twentieth of the distance
-// between latitudes.
+// Returns the index of the Gaussian latitude that equals `latitude_deg` to a twentieth of the
+// distance between latitudes.
 std::optional<int> IndexOfLatitude(int parallels, double latitude_deg) {
   constexpr double kShare = 0.05;
   const int degree = 2 * parallels;
@@ -129,8 +129,8 @@ absl::StatusOr<Grid> ReadRegular(const Octets& section, const Earth& earth) {
   return grid;
 }
 
-// Returns the cells of a row whose circle has `around` points, from the meridian 0 on, between two
-// longitudes. They may be `slack_deg` outside.
+// Returns the cells of a row between two longitudes. A whole circle has `around` cells, from the
+// meridian 0 on. Cells may lie outside of the longitudes by `slack_deg`.
 CellRow CellsOf(std::uint64_t around, double west_deg, double east_deg, double slack_deg) {
   CellRow row;
   row.step_deg = 360.0 / static_cast<double>(around);

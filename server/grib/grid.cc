@@ -120,7 +120,7 @@ absl::StatusOr<Grid> ReadRotatedByMiddle(const Octets& section) {
   return grid;
 }
 
-// The places of a projection's numbers in section 3.
+// The octets of section 3 with the numbers of a projection, and the section's least length.
 struct ProjectedLayout {
   std::size_t least_octets;
   std::size_t scanning;

@@ -38,7 +38,7 @@ absl::StatusOr<Earth> EarthOf(const Octets& section);
 // Reads the scanning mode (flag table 3.4) into the grid.
 absl::Status ReadScanning(std::uint64_t mode, Grid& grid);
 
-// Reads the number of columns and rows, which must be that of the points.
+// Reads the numbers of columns and rows, whose product must be the number of points.
 absl::Status ReadSize(const Octets& section, Grid& grid);
 
 // Sets south_west from the first point in the file.

@@ -40,7 +40,8 @@ class FailedAssertion : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The exception passes frames of C, which Debian's compilers allow. It leaks what ecCodes held.
+// The exception passes through C functions, which Debian's compilers allow. It leaks what ecCodes
+// held.
 [[noreturn]] void OnFailedAssertion(const char* message) { throw FailedAssertion(message); }
 
 void IgnoreLog(const codes_context* /*context*/, int /*level*/, const char* /*message*/) {}
@@ -124,7 +125,8 @@ Bytes PlainMessage(const PackedField& field, const Shape& shape) {
     Append(message, 6, 1);
     Append(message, 255, 1);
   } else {
-    // The indicator says that the bitmap is the field's own, also if it came from an earlier one.
+    // The indicator says that the bitmap belongs to this field, even if the message took it from an
+    // earlier field.
     Append(message, field.bitmap);
   }
   Append(message, field.data);
@@ -184,7 +186,8 @@ absl::StatusOr<Bytes> ReadSection(const base::ByteSource& file, const Extent& ex
   return section;
 }
 
-// Returns the columns and rows of the grid, which all templates that are read have at one place.
+// Returns the columns and rows of the grid, which are at the same octets in all templates that are
+// read.
 Shape ShapeOf(const Field& field) {
   constexpr std::size_t kColumns = 31;
   constexpr std::size_t kRows = 35;
@@ -224,8 +227,8 @@ Bytes SampleData(std::size_t bytes) {
   return section;
 }
 
-// Returns fields of four values. An image and blocks of CCSDS are absent where all values are the
-// same, so the bits of a value are 0 there.
+// Returns fields of four values. For JPEG 2000, PNG and CCSDS a value has 0 bits: all values are
+// then the same, and no image or block is needed.
 std::vector<Sample> Samples() {
   constexpr std::uint64_t kValues = 4;
   const auto packing = [](Packing by, const Numbers& numbers) {

@@ -42,8 +42,8 @@ std::optional<std::int64_t> DayNumber(Calendar calendar, const CalendarDate& dat
 // Returns the date of a day. It is the inverse of DayNumber for days from year -4000 to 20000.
 CalendarDate DateOf(Calendar calendar, std::int64_t day);
 
-// Returns the time from one time to another in a calendar. The dates of the times are those of the
-// calendar. If it lacks one of them, the proleptic Gregorian calendar counts.
+// Returns the duration between two times whose dates are dates of `calendar`. If the calendar lacks
+// one of these dates, the proleptic Gregorian calendar is used.
 absl::Duration DurationIn(Calendar calendar, absl::Time from, absl::Time to);
 
 }  // namespace thunderhead::storm_files

@@ -139,7 +139,7 @@ struct Neighbours {
   double mean_m = 0.0;
   double shortest_m = 0.0;
   double longest_m = 0.0;
-  std::vector<float> reach_m;  // up to which a place belongs to a cell, of each
+  std::vector<float> reach_m;  // for each cell, how far a place may be from it
 };
 
 Neighbours MeasureNeighbours(const PointTree& tree, const std::vector<glm::dvec2>& plane_m) {
@@ -246,7 +246,8 @@ class CellRaster {
       found = any[0];
     }
     last_ = found.point;
-    // The last cell is the eastern neighbour of the last but one, because each column has one.
+    // An even column refers to a cell and its eastern neighbour, so the last cell is the neighbour
+    // of the last but one.
     const auto end = static_cast<std::uint32_t>(even_.model_columns.x - 1);
     from.south_west = std::min(found.point, end - 1);
     from.east = found.point == end ? 1.0F : 0.0F;
@@ -272,7 +273,7 @@ class CellRaster {
   const Box box_;
   EvenColumns& even_;
   glm::dvec2 first_m_{0.0};       // centre of the south-western column
-  double farthest_square_ = 0.0;  // no place is inside that is farther from all cells
+  double farthest_square_ = 0.0;  // a place is outside if it is farther from all cells
   std::uint32_t last_ = 0;        // the cell of the last column
 };
 

@@ -45,8 +45,8 @@ bool IsAngle(const CfDescription& coordinate) {
   return name.ends_with("longitude") || name.ends_with("latitude");
 }
 
-// Returns whether a coordinate only numbers the cells. Then its unit has no dimension. Or it has no
-// unit, and its values are 0, 1, 2 and so on, or 1, 2, 3 and so on.
+// Returns whether a coordinate only numbers the cells. Its unit then has no dimension, or it has no
+// unit, and its values are 0, 1, 2, ... or 1, 2, 3, ...
 absl::StatusOr<bool> NumbersCells(const netcdf::NetcdfFile& file, const CfDescription& coordinate) {
   if (IsAngle(coordinate)) return false;
   if (!HasNoUnits(coordinate.units)) {

@@ -47,7 +47,7 @@ bool HoldsPlaces(const CfDescription& described, CfDirection direction) {
          DirectionOf({"", "", described.units, "", ""}) == direction;
 }
 
-// Returns the variable with a coordinate of exactly the cells. Those that the field lists come
+// Returns the variable with a coordinate of exactly the cells. Variables that the field lists come
 // first.
 std::optional<CellCoordinate> FindCoordinate(const netcdf::NetcdfFile& file,
                                              const std::string& field, const std::string& dimension,

@@ -10,7 +10,7 @@
 
 namespace thunderhead::storm_files {
 
-// Returns INVALID_ARGUMENT, which names the variable, its units and those that are wanted.
+// Returns INVALID_ARGUMENT, which names the variable, its units and the required units.
 absl::Status WrongUnits(const netcdf::NetcdfFile& file, const CfDescription& variable,
                         const std::string& wanted);
 

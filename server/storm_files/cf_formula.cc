@@ -57,9 +57,9 @@ struct SurfaceValues {
   CfColumnValue surface;
 };
 
-// Returns whether levels begin so far above the ground that there must be others below. Then
-// `above_ground`, the distance of the lowest level, is larger than `step`, that to the next. The
-// lowest of all levels is about half a step above the ground.
+// Returns whether a model must have levels below the lowest one of the file. That level has the
+// distances `above_ground` from the ground and `step` from the next level. The lowest level of a
+// model is about half a step above the ground.
 bool BeginsFarAbove(double above_ground, double step) { return above_ground > step; }
 
 // Keeps the faces of terms only if all of them have faces. Otherwise reports that faces are
@@ -264,7 +264,7 @@ absl::StatusOr<CfHeights> ReadHybridPressure(const netcdf::NetcdfFile& file,
   if (has_faces && terms.Face_Pa(0, kSurface_Pa) < terms.Face_Pa(layers, kSurface_Pa)) {
     for (auto* values : {&a.faces, &b.faces}) std::ranges::reverse(*values);
   }
-  // A face that is known is the ground, apart from rounding.
+  // If the file has faces, the lowest one must be the ground, apart from rounding.
   constexpr double kRounding = 0.1;
   const bool is_far =
       has_faces ? kSurface_Pa - terms.Face_Pa(0, kSurface_Pa) >
@@ -276,8 +276,8 @@ absl::StatusOr<CfHeights> ReadHybridPressure(const netcdf::NetcdfFile& file,
                        "begins far above the ground, and the heights of its levels follow from all "
                        "levels below; give a file with all levels");
   }
-  // Without bounds, the lowest face is the ground. The highest is as far from the last middle as
-  // the one below.
+  // Without bounds, the lowest face is the ground. The highest face is as far from the last middle
+  // as the face below it.
   heights.a = FacesOf(a, 0.0, 0.0);
   heights.b = FacesOf(b, 1.0, 0.0);
   if (!has_faces) {

@@ -194,7 +194,8 @@ absl::StatusOr<std::size_t> Match::First() {
                              "; give the missing levels"));
 }
 
-// Returns whether the array has all faces, with the numbers of another model: from 0, or by halves.
+// Returns whether the array has all faces, numbered in another way than by COSMO and ICON: from 0,
+// or by halves.
 bool Match::NumbersFacesOtherwise(const std::vector<double>& wanted) const {
   if (!has_faces_ || levels_.length != layers_.length + 1) return false;
   if ((of_levels_.back() > of_levels_.front()) != (wanted.back() > wanted.front())) return false;
@@ -238,8 +239,8 @@ absl::Status Orient(const netcdf::NetcdfFile& file, std::size_t levels, CfHeight
   return absl::OkStatus();
 }
 
-// Sets the ground to the lowest of the array's `levels` half levels, if the layers, which have
-// `used` of them, end above it.
+// Sets the ground to the lowest of the array's `levels` half levels, unless that level is one of
+// the `used` half levels of the layers.
 void TakeGround(std::size_t levels, std::size_t used, CfHeights& heights) {
   const std::size_t lowest = heights.reversed ? levels - 1 : 0;
   const std::size_t first = heights.array->first_level;

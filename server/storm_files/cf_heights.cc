@@ -22,7 +22,7 @@ namespace {
 
 std::string NameOfPath(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
-// Returns what a vertical coordinate counts that is not metres, or nothing if it is a height.
+// Returns why a vertical coordinate is not a height, or nothing if it is one.
 std::optional<std::string> WhyNoHeight(const netcdf::NetcdfFile& file, const std::string& name) {
   const CfDescription described = DescribeCf(file, name);
   const std::string& standard = described.standard_name;

@@ -280,8 +280,8 @@ void FindWind(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& 
   });
 }
 
-// Finds out whether an array of heights of which its name does not say so is above the ground: then
-// it is below the terrain somewhere.
+// Decides whether an array of heights counts from the ground, if its name does not say so. It does
+// if a height is below the terrain somewhere.
 absl::Status CheckArrayAgainstTerrain(const netcdf::NetcdfFile& file, CfMetadata* metadata) {
   CfHeights& heights = metadata->heights;
   if (!heights.array.has_value() || heights.above_ground || !metadata->terrain.has_value() ||

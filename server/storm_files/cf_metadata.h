@@ -44,7 +44,8 @@ struct CfMetadata {
   CfAxis x;
   CfAxis y;
   CfPlaces places;  // at the first record
-  // The columns at each record, if they move: null where they are as at the first. Otherwise empty.
+  // The columns at each record, if they move. A record with the columns of the first has null.
+  // Empty if the columns do not move.
   std::vector<std::shared_ptr<const CfPlaces>> moved;
   CfHeights heights;
   CfOrder order;

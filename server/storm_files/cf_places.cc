@@ -29,7 +29,7 @@ constexpr double kMetresPerDegree = kCfEarthRadius_m * std::numbers::pi / 180.0;
 
 double NormalLongitude(double degrees) { return std::remainder(degrees, 360.0); }
 
-// Returns the way from one place to a near one, in metres east and north.
+// Returns the vector from one place to a near one, in metres east and north.
 glm::dvec2 Way_m(const EarthPlace& from, const EarthPlace& to) {
   const double latitude = glm::radians(0.5 * (from.latitude_deg + to.latitude_deg));
   return kMetresPerDegree *
@@ -52,8 +52,8 @@ struct PlaceArrays {
   }
 };
 
-// Returns the name of the variable with latitudes (or longitudes) on exactly y and x. Those that
-// the field lists come first.
+// Returns the name of the variable with latitudes (or longitudes) on exactly y and x. Variables
+// that the field lists come first.
 std::optional<CfVariable> FindPlaceVariable(const netcdf::NetcdfFile& file,
                                             const std::string& field, const CfDimensions& on,
                                             CfDirection direction) {

@@ -93,8 +93,8 @@ void AddFacesByNames(const netcdf::NetcdfFile& file, const CfDimension& z,
   }
 }
 
-// Turns a term that lies along another dimension of equal length, as CDO writes hyam, into the
-// order of the layers. These must have the numbers 1, 2, 3, ..., which count the term's values.
+// Puts a term into the order of the layers, if it lies along another dimension of equal length, as
+// CDO writes hyam. The number of each layer (1, 2, 3, ...) must be that of its value in the term.
 absl::Status OrderByNumbers(const netcdf::NetcdfFile& file, const std::string& name,
                             const CfDimension& z, CfTermValues& term) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> on, file.Dimensions(name));

@@ -102,8 +102,8 @@ class Raster {
     }
   }
 
-  // Returns whether the mesh is no grid, because its quadrilaterals overlap many times. Then the
-  // search takes too long.
+  // Returns whether the quadrilaterals of the mesh overlap many times. The mesh is then no grid,
+  // and the search would take too long.
   bool IsScattered() const {
     constexpr double kMostOverlaps = 50.0;
     return tried_ > kMostOverlaps * static_cast<double>(from_.size());

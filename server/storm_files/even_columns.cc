@@ -25,7 +25,7 @@ namespace {
 using volume::EarthPlace;
 using volume::MapProjection;
 
-// The largest difference from the mean distance, as a share of it, for which columns are even.
+// Columns count as even if no distance differs from the mean distance by more than this share.
 constexpr double kEven = 0.005;
 // The number of places along each axis at which distances are measured.
 constexpr int kSamples = 65;
@@ -212,8 +212,8 @@ absl::StatusOr<double> Evener::GridNorth_rad() const {
   return std::atan2(-way_m.x, way_m.y);
 }
 
-// Returns the way from column to column along an axis, in the middle of the domain and in the plane
-// of `map`. It is NaN if the middle is not on the map.
+// Returns the vector from column to column along an axis, in the middle of the domain and in the
+// plane of `map`. It is NaN if the middle is not on the map.
 glm::dvec2 Evener::StepOn(const MapProjection& map, int axis) const {
   glm::dvec2 half(0.0);
   half[axis] = 0.5;
@@ -555,7 +555,8 @@ std::string ResampledSentence(const EvenColumns& even) {
                       ", because the true distances between the model's columns are ", ranges, ".");
 }
 
-// Returns a scale in percent, rounded to a tenth away from 100. A hundredth of a tenth is not said.
+// Returns a scale in percent, rounded to a tenth away from 100, so that errors are never
+// understated. Differences below a thousandth of a percent are ignored.
 std::string PercentText(double scale) {
   constexpr double kBeyondUse = 10.0;
   constexpr double kUnsaid = 0.01;

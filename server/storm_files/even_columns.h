@@ -44,8 +44,8 @@ struct FromColumn {
                                  // the other members describe the nearest place inside.
 };
 
-// Columns whose distances are `dx_m` and `dy_m` on a flat map. They are true distances everywhere
-// to 1 %, or if the domain is too wide for that, to `largest_error`.
+// Columns whose distances are `dx_m` and `dy_m` on a flat map. Everywhere they are within 1 % of
+// true distances, or within `largest_error` if the domain is too wide for that.
 struct EvenColumns {
   glm::ivec2 columns{0};
   double dx_m = 0.0;

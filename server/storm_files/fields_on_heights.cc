@@ -86,8 +86,8 @@ class TimeReader {
 
 absl::Status TimeReader::Advance() {
   if (!checkpoint_) return absl::OkStatus();
-  // Apart from the fields, a step each are the heights, the ground, the air, the turbulence, the
-  // wind and the end. The first step reports 0.
+  // Each field is a step. Heights, ground, air, turbulence, wind and the end are six more. The
+  // first step reports 0.
   const auto steps = static_cast<double>(domain_.fields.size() + 5);
   return checkpoint_(std::min(1.0, steps_done_++ / steps));
 }
@@ -99,8 +99,8 @@ absl::Status TimeReader::CheckSize(const std::string& what, const std::vector<fl
                                           " values where ", expected, " are expected"));
 }
 
-// Makes heights missing that no atmosphere has. A damaged temperature gives infinite ones, and fill
-// values are huge.
+// Replaces heights that no atmosphere has by NaN. A damaged temperature gives infinite heights, and
+// fill values are huge.
 void LeaveOutImpossible(std::vector<float>& heights_m) {
   constexpr float kHighest_m = 1e6F;
   for (float& height_m : heights_m) {
@@ -125,7 +125,8 @@ bool RunDownwards(const LayerAir& air) {
   return any;
 }
 
-// Returns the height at which a grid for uneven layers ends. Extinction may be that of anything.
+// Returns the height at which a grid for uneven layers ends. There is no limit for extinction,
+// because it may belong to something else than clouds.
 double TimeReader::Highest_m() const {
   const bool is_cloud = std::ranges::none_of(domain_.fields, [](const LayerField& field) {
     return field.quantity == volume::Quantity::kExtinction;

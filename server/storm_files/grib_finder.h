@@ -118,8 +118,8 @@ class Finder {
   absl::Status FindSurface(absl::Time time, GribLayers& layers);
   absl::Status FindMotion(absl::Time time, GribLayers& layers);
 
-  // Returns the levels of the fields that fulfil `is_wanted`. It is an error if a level has two.
-  // `time` is absent for fields that do not change with time.
+  // Returns the levels of the fields that fulfil `is_wanted`. It is an error if two of them are on
+  // one level. `time` is absent for fields that do not change with time.
   using IsWanted = std::function<bool(const Candidate&)>;
   absl::StatusOr<Found> Levels(const std::optional<absl::Time>& time, bool on_half_levels,
                                const IsWanted& is_wanted) const;

@@ -219,7 +219,7 @@ absl::Status Finder::FindHeights(absl::Time time, GribLayers& layers) {
     for (const GribKind kind :
          {GribKind::kGeometricHeight, GribKind::kGeopotentialHeight, GribKind::kGeopotential}) {
       THUNDERHEAD_ASSIGN_OR_RETURN(const Found found, LevelsOf(kind, time));
-      // One level is the ground's geopotential of IFS.
+      // A geopotential on a single level is that of the ground, as IFS codes it.
       if (found.levels.size() < 2) continue;
       for (const double level : layers.levels) {
         if (found.levels.contains(level)) continue;

@@ -82,7 +82,7 @@ std::string Finder::Where() const {
 }
 
 // Chooses the type of levels on which hydrometeors have the most levels. A file on isobaric levels
-// can have its hydrometeors also on one hybrid level, which is no part of the set.
+// can also have its hydrometeors on one hybrid level, which does not count.
 absl::Status Finder::ChooseLevels() {
   std::map<int, std::set<double>> levels;
   bool has_amounts = false;

@@ -1,5 +1,6 @@
-// Finds in the indexes of GRIB files the fields of which each time of a storm consists: the levels
-// that all needed fields share, with what gives their heights. This code decodes no data.
+// Finds the fields of each time of a storm in the indexes of GRIB files. They are the needed
+// fields, on the levels that all of these share. Other fields give the heights of the levels. This
+// code decodes no data.
 #pragma once
 
 #include <cstddef>
@@ -38,8 +39,8 @@ struct GribHydrometeor {
   AirMass per = AirMass::kDry;
   GribSeries amounts;
   GribSeries numbers;
-  // True if `amounts` hold liquid and ice together, of which this is the part that temperature
-  // decides.
+  // True if `amounts` hold liquid and ice together. Temperature decides which part is this
+  // hydrometeor.
   bool is_split = false;
 };
 
@@ -66,7 +67,7 @@ struct GribLayers {
   GribSeries wind_y;
   GribSeries ascent;
   GribSeries energy;
-  GribSeries surface_height;    // of one level, as are the next ones
+  GribSeries surface_height;    // of one level, like the next ones
   GribSeries surface_pressure;  // kPressure or kLogPressure
   GribSeries land_use;          // empty if its classes are unknown
   GribSeries land_share;
@@ -83,7 +84,7 @@ struct GribContents {
   std::string path;               // of the storm, for errors
   std::vector<GribLayers> times;  // in ascending order
   grib::Grid grid;
-  GribPlace cell_latitude;  // of an unstructured grid, as is the next
+  GribPlace cell_latitude;  // of an unstructured grid, like the next
   GribPlace cell_longitude;
   grib::Origin origin;
   int process = 0;

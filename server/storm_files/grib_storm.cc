@@ -22,8 +22,8 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// Places the cells of an unstructured grid by their latitudes and longitudes, which are those of
-// its rows, or fields of their own.
+// Places the cells of an unstructured grid by their latitudes and longitudes, which are in the
+// grid's rows or in separate fields.
 absl::StatusOr<EvenColumns> PlaceGribCells(const GribStorm& storm) {
   const GribContents& contents = storm.contents;
   CellPlaces places;
@@ -106,7 +106,7 @@ StormFile DescribeGribStorm(std::shared_ptr<const GribStorm> storm) {
                 static_cast<int>(contents.times.front().levels.size())};
   file.dx_m = even.dx_m;
   file.dy_m = even.dy_m;
-  // A grid that follows a storm has other true distances in each file.
+  // A grid that follows a storm has different true distances in each file.
   if (!contents.grid.IsUnstructured()) {
     file.grid = absl::StrFormat("%d x %d columns, %.6g x %.6g of its map", contents.grid.columns,
                                 contents.grid.rows, contents.grid.step.x, contents.grid.step.y);

@@ -32,7 +32,7 @@ std::vector<float> InterfacesBetween(const std::vector<float>& middles_m,
                                      std::size_t columns);
 
 // The state of the air in each layer, as the file gives it. Missing values are NaN. A file has
-// pressure and either temperature, or the density instead of all three.
+// either the pressure and one of the two temperatures, or the density instead.
 struct LayerState {
   std::vector<float> pressure_Pa;
   std::vector<float> potential_temperature_K;

@@ -40,7 +40,8 @@ class PointTree {
   static void Offer(const Point& point, const glm::dvec2& at, std::span<Found> found);
 
   // The root of the points from `low` to `high` is the one half-way between. On its axis no point
-  // before it is larger, and none after it is smaller. The axis alternates from level to level.
+  // before it has a larger coordinate, and no point after it a smaller one. The axis alternates
+  // from level to level.
   std::vector<Point> points_;
 };
 

@@ -72,8 +72,8 @@ std::optional<ColumnPlaces> InProjection(const ColumnPlaces& listed,
   return found;
 }
 
-// Returns whether the domain is long enough, along both axes, for its places to give its size. If a
-// place is missing, it is, so that the missing place becomes an error later.
+// Returns whether the domain is long enough, along both axes, for its places to give its size.
+// Returns true if a place is missing, because that is reported as an error later.
 bool IsMeasurable(const ColumnPlaces& listed) {
   const auto place = [&](std::size_t i) {
     return volume::EarthPlace{listed.latitude_deg[i], listed.longitude_deg[i]};

@@ -71,7 +71,7 @@ absl::StatusOr<std::size_t> ValuesOfTime(const netcdf::NetcdfFile& file,
                                          const std::string& variable, std::size_t rank);
 
 // Reads one time of a variable. A variable without time has the same values at all times, and so
-// has one that never changes and has one time.
+// has a variable that never changes and has only one time.
 absl::Status ReadTime(const netcdf::NetcdfFile& file, const std::string& variable, std::size_t rank,
                       std::size_t record, Changes changes, std::vector<float>& values);
 

@@ -95,8 +95,8 @@ struct WrfMetadata {
   WrfPlace place;
   std::vector<std::string> assumptions;  // for users; each text is one sentence
 
-  // Returns the distances along x and y between columns that are even as `even` says, or DX and DY
-  // if it is null. Distances that agree with DX and DY to their accuracy are DX and DY.
+  // Returns the distances between columns along x and y. They are DX and DY if `even` is null or
+  // agrees with DX and DY to their accuracy, and otherwise those of `even`.
   glm::dvec2 DistancesOf(const EvenColumns* even_at_record) const;
 
   // Returns whether another field comes from the same variable.

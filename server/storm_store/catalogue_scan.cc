@@ -93,7 +93,7 @@ bool CatalogueScan::ForgetUnseen() {
   return gone > 0;
 }
 
-// Says what waits for the next scan.
+// Records in `result` what waits for the next scan.
 void CatalogueScan::EndTurn(Result& result) {
   result.has_untried =
       has_untried_ || !waiting_together_.empty() ||

@@ -126,7 +126,7 @@ void Walk::Add(const fs::path& path, Node& parent) {
   parent.below.push_back(std::move(node));
 }
 
-// Puts an entry of a folder where it belongs.
+// Adds an entry of a folder to the node's files or subfolders, or to the links.
 void Walk::Sort(const fs::directory_entry& entry, Node& node) {
   const fs::path& path = entry.path();
   if (path.filename().string().starts_with('.')) return;
@@ -210,7 +210,7 @@ void Walk::FollowLinks() {
   std::ranges::sort(links, {}, &Link::path);
   for (const Link& link : links) {
     Add(link.path, *link.in);
-    // The folders above may have been listed to their end.
+    // The folders above may have been listed to their end, and then they do not wait any longer.
     for (Node* each = link.in; each->parent != nullptr; each = each->parent) {
       if (each->IsWaiting()) each->parent->waiting.emplace(each->entries, each->index);
     }
@@ -297,7 +297,7 @@ absl::StatusOr<std::vector<ListedFolder>> Walk::Run() {
   }
   if (has_stopped_) ReportRest();
   std::vector<ListedFolder> listed;
-  // Flatten empties the nodes' files, and leaves the rest of them.
+  // Flatten moves the files out of the nodes. AddKnown needs only the rest of the nodes.
   Flatten(root_, listed);
   if (has_stopped_) AddKnown(listed);
   return listed;

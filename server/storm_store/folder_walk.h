@@ -51,7 +51,7 @@ struct FolderWalk {
   // Returns the files below a folder that an earlier walk found. They are also listed if this walk
   // stops at a limit before it reaches them. It may be empty.
   std::function<std::vector<std::string>(const std::string& folder)> known_below = {};
-  // Maximum number of files and folders below one path, and of the time to list them.
+  // Maximum number of files and folders below one path, and maximum time to list them.
   std::size_t most_entries = 200'000;
   std::chrono::milliseconds longest = std::chrono::minutes(10);
   const base::TimeSource* time = &base::SteadyTime();

@@ -169,7 +169,7 @@ std::vector<NamedStorm> GroupRuns(const fs::path& folder,
       continue;
     }
     for (storm_files::StormFile& file : run) {
-      // No file of a time that is spread over several files stands for all of them.
+      // If a time is spread over several files, the storm is named after the folder.
       const std::string name = file.parts.empty() ? NameOfFile(file.path) : NameOfFolder(folder);
       storms.push_back({NameInFile(name, file, runs[file.path].size()), {}});
       storms.back().files.push_back(std::move(file));
@@ -226,7 +226,7 @@ void ReportLeftOut(PathSearch& path_search, const absl::Status& why) {
 std::vector<storm_files::StormFile> TimesOf(const PartsOfRun& run, const std::string& member,
                                             PathSearch& path_search) {
   std::vector<storm_files::StormFile> files;
-  // The description of some files has all their times.
+  // Some files hold all times of the run. They are described once, for all their times.
   std::set<std::vector<std::string>> described;
   for (const auto& [time, parts] : run.at) {
     // The time's own files come first, because the first path identifies it in messages.
