@@ -195,14 +195,15 @@ Command AddFit(CLI::App& app) {
       ->capture_default_str();
   fit->add_option("--solver", flags->solver, "Solver for the weights: direct or gradient")
       ->capture_default_str();
-  fit->add_flag("--non-negative", flags->options.non_negative, "Allow no negative weights");
+  fit->add_flag("--non-negative", flags->options.non_negative, "Keep all weights at 0 or above");
   fit->add_option("--iterations", flags->options.max_iterations,
                   "Maximum number of iterations for the weights")
       ->capture_default_str();
   AddSeedFlag(*fit, "Seed of the first centres", &flags->options.seed);
   fit->add_option("--threads", flags->options.threads, "Number of threads; 0: one per core")
       ->capture_default_str();
-  fit->add_flag("--json", flags->json, "Print JSON, with H after every iteration");
+  fit->add_flag("--json", flags->json,
+                "Print JSON, with the error (the paper's H) after every iteration");
   return {fit, [flags] { return Fit(*flags); }};
 }
 

@@ -139,7 +139,9 @@ Command AddGenerate(CLI::App& app) {
   auto flags = std::make_shared<GenerateFlags>();
   CLI::App* generate = app.add_subcommand("generate", "Generate a cloud without a model run");
   generate->add_option("-o,--output", flags->output, "Storm file to write: .nc")->required();
-  generate->add_option("--preset", flags->preset, absl::StrJoin(clouds::PresetNames(), ", "))
+  generate
+      ->add_option("--preset", flags->preset,
+                   "Shape of the cloud: " + absl::StrJoin(clouds::PresetNames(), ", "))
       ->capture_default_str();
   AddSeedFlag(*generate, "Seed of the noise", &flags->seed);
   const std::string otherwise = "; by default the preset's";

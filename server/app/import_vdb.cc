@@ -151,8 +151,8 @@ Command AddImportVdb(CLI::App& app) {
                       "Height in m of the lowest active voxels; by default the file's");
   command
       ->add_option("--memory", flags->memory_mib,
-                   "Maximum MiB of memory for reading the file; by default 512 and 100 times the "
-                   "file's size")
+                   "Maximum MiB of memory for reading the file; by default 512 MiB plus 100 times "
+                   "the file's size")
       ->check(CLI::Range(16.0, 1e9));
   return {command, [flags] { return ImportVdb(*flags); }};
 }

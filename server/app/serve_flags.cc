@@ -218,7 +218,7 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
   serve
       .add_option("--config", flags.config,
                   "File with settings: any of these flags, and the limits that --print-config "
-                  "lists, as `max-sessions = 200`")
+                  "lists, one per line, such as `max-sessions = 200`")
       ->configurable(false);
   serve
       .add_flag("--print-config", flags.print_config,

@@ -97,8 +97,9 @@ Command AddWatch(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--ready", flags->ready,
-                   "When a file is complete: open, age:SECONDS[,minsize:BYTES], next[,age:SECONDS] "
-                   "or marker:GLOB; it must be readable as well")
+                   "When a file is complete: open (unchanged for 2 s), age:SECONDS[,minsize:BYTES] "
+                   "(unchanged for SECONDS), next[,age:SECONDS] (a file with a later name exists) "
+                   "or marker:GLOB (a marker file exists); it must also be readable")
       ->capture_default_str();
   command
       ->add_option("--until", flags->until,
