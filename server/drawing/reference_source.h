@@ -1,6 +1,6 @@
 // The interface through which the render loop refines a picture with the Monte Carlo reference. The
 // reference implements it; service tests use a fake. A ReferenceSource is used by one thread at a
-// time. Knows no sessions.
+// time. This code does not depend on sessions.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,6 @@
 // The fields of the storm that a session shows. They are requested from a FieldsReader, which reads
 // them on another thread than the render loop's. While a time series plays, the next time is
-// prefetched. Used by the render loop's thread only. Knows no GL.
+// prefetched. Used by the render loop's thread only. This code does not use GL.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // A session's picture by the Monte Carlo reference, which a ReferenceTracer refines on another
-// thread. Used by the render loop's thread only. Knows no GL.
+// thread. Used by the render loop's thread only. This code does not use GL.
 #pragma once
 
 #include <memory>

@@ -35,7 +35,7 @@ inline constexpr double kMinShare = 0.1;
 // A session or worker that may get a turn.
 struct Contender {
   std::string id;
-  bool own_view = false;          // true for the own view of one person
+  bool own_view = false;          // true for a person's own view
   std::optional<TurnClass> work;  // pending work, if any
 };
 

@@ -74,7 +74,7 @@ struct Shape {
 
 // Makes a message with the packed data of `field`. All other sections are constant. ecCodes then
 // needs few of its definition files, always the same ones, and a hostile file cannot choose them.
-// How values are packed does not depend on the grid, so it is one of latitudes and longitudes.
+// The packing does not depend on the grid, so the message has a grid of latitudes and longitudes.
 Bytes PlainMessage(const PackedField& field, const Shape& shape) {
   constexpr std::size_t kHeaders = 16 + 21 + 72 + 34 + 6 + 4;
   Bytes message;

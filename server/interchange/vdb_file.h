@@ -1,6 +1,6 @@
 // Writes scalar grids as an OpenVDB file. The grids are sparse, have half floats on disk and a
-// linear transform to world metres. Only vdb_file.cc and vdb_grid_reader.cc include
-// OpenVDB, because its headers take long to compile. Knows no storms.
+// linear transform to world metres. Only vdb_file.cc and vdb_grid_reader.cc include OpenVDB,
+// because its headers take long to compile. This code does not depend on storms.
 #pragma once
 
 #include <array>

@@ -71,7 +71,8 @@ void Viewer::OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::
   if (response->part == Response::Part::kRefused) return errors_.Add(response->refusal);
   if (response->part != Response::Part::kFrame) return;
   Acknowledge(response->sequence, response->own_view);
-  // Until the own view exists, frames of the session's view may arrive. They are not counted.
+  // Until the viewer's own view exists, frames of the session's view may arrive. They are not
+  // counted.
   if (kind() == ViewerKind::kLooking && !response->own_view) return;
   if (waits_since_s_.has_value()) {
     record_.first_frames_ms.push_back(1e3 * (now_s - *waits_since_s_));

@@ -35,7 +35,7 @@ struct CfSurfaceTerm {
   CfColumnValue surface;
 };
 
-// The heights of layers, in the order of the file if not said otherwise.
+// The heights of layers, in the order of the file unless a member says otherwise.
 struct CfHeights {
   CfHeightKind kind = CfHeightKind::kAxis;
   std::string name;                 // of the variable, for messages

@@ -85,8 +85,8 @@ struct StormSearch {
   LinkPolicy links = {};
   // A request to stop ends the search between two files, with CANCELLED.
   std::stop_token stop = {};
-  // Called once with the files of all folders, before `describe` is called with those of each. It
-  // may describe them in another order. It may be empty.
+  // Called once with the files of all folders, before `describe` is called for the files of each
+  // folder. It may describe files in any order. The function may be empty.
   std::function<void(const std::vector<ListedFolder>&)> prepare = nullptr;
   // Called with the reason why a file is left out. If the function is empty, the reason is logged.
   std::function<void(const absl::Status&)> on_left_out = nullptr;

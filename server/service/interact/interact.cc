@@ -295,8 +295,8 @@ class InteractCall : public InteractReactor,
     return ResponseOf(response);
   }
 
-  // Returns the session that draws the person's frames: the joined session, the own view, or null.
-  // The caller must hold mutex_.
+  // Returns the session that draws the person's frames: the joined session, the person's own view,
+  // or null. The caller must hold mutex_.
   std::shared_ptr<session::Session> Watched() {
     const std::shared_ptr<session::Session> own_view = requests_->OwnView();
     if (hidden_) return nullptr;

@@ -143,8 +143,8 @@ absl::Status PersonRequests::WithCamera(const std::shared_ptr<Asker>& asker,
   return absl::OkStatus();
 }
 
-// Cameras of the own view take effect in the order of their requests, even if some wait for the
-// storm's fields. A person who returns to the session's view meanwhile stays there.
+// Cameras of a person's own view take effect in the order of their requests, even if some wait for
+// the storm's fields. A person who returns to the session's view meanwhile stays there.
 absl::Status PersonRequests::Detach(const std::shared_ptr<Asker>& asker, std::uint64_t request_id,
                                     const v1::Detach& detach) {
   const std::uint64_t returns = session_->audience().Returns(person_id_);
@@ -160,8 +160,8 @@ absl::Status PersonRequests::Detach(const std::shared_ptr<Asker>& asker, std::ui
   return asked;
 }
 
-// The person detaches only when the own view exists, so that a person whose camera is refused keeps
-// following the session's view.
+// The person leaves the session's view only when the other view exists. A person whose camera is
+// refused therefore keeps following the session's view.
 absl::Status PersonRequests::DetachTo(Asker& asker, std::uint64_t look, std::uint64_t returns,
                                       const absl::StatusOr<scene::Camera>& camera) {
   THUNDERHEAD_RETURN_IF_ERROR(camera.status());
