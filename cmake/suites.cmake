@@ -1,7 +1,8 @@
-# Settings for running the tests with ctest. `./dev test` gives ctest two places per processor and one more (ctest -j).
-# Places are units of ctest -j. A test that keeps a processor busy takes two places, so on two processors at most two
-# such tests run at once. A test that mostly waits takes one place. The classes follow from measured processor time
-# (docs/testing.md). COST only sets the order: the longest tests begin first.
+# Settings for running the tests with ctest. `./dev test` gives ctest three places per processor and one more (ctest
+# -j). Places are units of ctest -j. A busy test takes two places and a test that mostly waits takes one. A busy test
+# uses between half a processor and a whole one, because it also waits for its servers and browsers. On two processors
+# three busy tests therefore run at once. The classes follow from measured processor time (docs/testing.md). COST only
+# sets the order: the longest tests begin first.
 #
 # TIMEOUT is a limit against hangs, in seconds. It is not a performance requirement: the slowest test takes three
 # minutes on an idle machine.
