@@ -1,17 +1,20 @@
 #include "app/audit_log.h"
 
 #include <fcntl.h>
-#include <unistd.h>
+#include <sys/stat.h>
 
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string>
 
 #include "absl/strings/str_cat.h"
 #include "app/log_format.h"
+#include "base/file_descriptor.h"
 #include "base/line_writer.h"
+#include "base/status.h"
 #include "spdlog/sinks/basic_file_sink.h"
 #include "spdlog/sinks/stdout_sinks.h"
 #include "spdlog/spdlog.h"
@@ -22,6 +25,24 @@ namespace {
 // Maximum number of lines that wait to be written while the disk hangs.
 constexpr std::size_t kMaxWaitingLines = 10'000;
 
+// Creates the file, because spdlog creates files that every user may read. Anything but a regular
+// file is refused: a FIFO without a reader would block, and a device could lose the entries.
+absl::Status Create(const std::string& path) {
+  const auto refused = [&](const std::string& why) {
+    return absl::InvalidArgumentError(absl::StrCat("cannot write --audit-log ", path, ": ", why));
+  };
+  const base::FileDescriptor file(::open(
+      path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0600));
+  struct stat about {};
+  // Only a FIFO or a socket gives ENXIO.
+  if (!file.IsOpen() && errno != ENXIO) return refused(strerror(errno));
+  if (file.IsOpen() && fstat(file.Get(), &about) == 0 && S_ISREG(about.st_mode)) {
+    return absl::OkStatus();
+  }
+  return refused(
+      "it is not a regular file; name a file, or leave the flag out to write to standard error");
+}
+
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path,
@@ -30,13 +51,7 @@ absl::StatusOr<std::shared_ptr<access::Audit>> OpenAudit(const std::string& path
   if (path.empty()) {
     sink = std::make_shared<spdlog::sinks::stderr_sink_mt>();
   } else {
-    // The file is created here, because spdlog creates files that every user may read.
-    const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-    if (file < 0) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("cannot write --audit-log ", path, ": ", strerror(errno)));
-    }
-    ::close(file);
+    THUNDERHEAD_RETURN_IF_ERROR(Create(path));
     sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(path);
   }
   const auto log = std::make_shared<spdlog::logger>("audit", std::move(sink));

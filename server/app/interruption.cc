@@ -5,19 +5,13 @@
 #include <chrono>
 #include <ctime>
 
+#include "app/stop_signals.h"
+
 namespace thunderhead::app {
 namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
-
-sigset_t Signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  return signals;
-}
 
 // Waits for one of `signals`. Returns false if none came within `wait`.
 bool Taken(const sigset_t& signals, milliseconds wait) {
@@ -35,7 +29,7 @@ constexpr char kInterrupted[] = "interrupted";
 }  // namespace
 
 Interruption::Interruption() {
-  const sigset_t signals = Signals();
+  const sigset_t signals = StopSignals();
   pthread_sigmask(SIG_BLOCK, &signals, &before_);
   waiter_ = std::jthread([this, signals](const std::stop_token& ended) {
     while (!Taken(signals, milliseconds(100))) {

@@ -1,6 +1,6 @@
-// Converts Ctrl-C (SIGINT) and SIGTERM to a request to stop, for work that then reports its partial
-// result. Signals within a quarter of a second count as one request. A later signal has its default
-// effect: it ends the program.
+// Converts Ctrl-C (SIGINT) and the other signals of stop_signals.h to a request to stop, for work
+// that then reports its partial result. Signals within a quarter of a second count as one request.
+// A later signal has its default effect: it ends the program.
 #pragma once
 
 #include <csignal>

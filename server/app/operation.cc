@@ -65,9 +65,10 @@ void AddOperationFlags(CLI::App& command, OperationFlags& flags) {
       ->check(CLI::IsMember({"text", "json"}))
       ->capture_default_str();
   command
-      .add_option("--drain-seconds", flags.drain_s,
-                  "Seconds after SIGTERM in which single images already begun are finished, and "
-                  "viewers, who are notified, may leave")
+      .add_option(
+          "--drain-seconds", flags.drain_s,
+          "Seconds after SIGTERM or SIGHUP in which single images already begun are finished, and "
+          "viewers, who are notified, may leave")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   command

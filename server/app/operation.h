@@ -70,7 +70,7 @@ class Operation {
   void SetServer(service::Server* server, Resources resources);
   void SetServer(std::nullptr_t) { SetServer(nullptr, {}); }
 
-  // Waits for SIGINT or SIGTERM, which this thread must block, and then tells the clients that the
+  // Waits for one of `signals`, which this thread must block, and then tells the clients that the
   // server stops. Returns when the started pictures are delivered, or after the grace period. If a
   // second signal arrives, it calls `last`, which must be fast, and ends the process.
   void WaitAndDrain(

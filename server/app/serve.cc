@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/time/time.h"
 #include "app/address.h"
 #include "app/catalogue_flags.h"
 #include "app/clouds_folder.h"
@@ -24,6 +25,7 @@
 #include "app/roster_timeouts_file.h"
 #include "app/serve_flags.h"
 #include "app/state_folder.h"
+#include "app/stop_signals.h"
 #include "base/error_details.h"
 #include "base/program_folder.h"
 #include "base/status.h"
@@ -125,6 +127,16 @@ bool AwaitStorms(const storm_store::StormStore& store, const std::stop_token& st
   return !stop.stop_requested();
 }
 
+// Returns UNAVAILABLE if the system's clock is wrong by decades, because a wait until a later time
+// would then last for decades, too. Times after 2262 wrap around to times before 1970.
+absl::Status CheckClock(std::chrono::system_clock::time_point now) {
+  if (now.time_since_epoch().count() >= 0) return absl::OkStatus();
+  return absl::UnavailableError(
+      absl::StrCat("the system's clock shows a time before 1970 or after 2262 (",
+                   absl::FormatTime("%Y-%m-%d %H:%M", absl::FromChrono(now), absl::UTCTimeZone()),
+                   " UTC); set it, for example with timedatectl, and start the server again"));
+}
+
 // Raises the limit on open files to the maximum that the system allows. Each connection needs a
 // file descriptor, and the usual limit of 1024 was made for programs that use select().
 void RaiseFileLimit() {
@@ -146,12 +158,12 @@ std::optional<gateway::KeptFile> FindResult(service::Server& server, std::string
 absl::Status Serve(ServeFlags flags) {
   // The signals are blocked before any thread starts, so that only the code below that waits for
   // them receives them.
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
+  const sigset_t signals = StopSignals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  // The end of the process that reads the log must not end the server.
+  std::signal(SIGPIPE, SIG_IGN);
 
+  THUNDERHEAD_RETURN_IF_ERROR(CheckClock(std::chrono::system_clock::now()));
   THUNDERHEAD_ASSIGN_OR_RETURN(Address http, ParseAddress("--http", flags.http));
   THUNDERHEAD_ASSIGN_OR_RETURN(Address grpc, ParseAddress("--grpc", flags.grpc));
   THUNDERHEAD_RETURN_IF_ERROR(CheckReach(flags, http, grpc));

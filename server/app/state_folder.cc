@@ -12,6 +12,7 @@
 #include "base/whole_file.h"
 #include "spdlog/spdlog.h"
 #include "store/patient_stores.h"
+#include "store/private_files.h"
 #include "store/sqlite_job_store.h"
 #include "store/sqlite_session_store.h"
 #include "store/state_file.h"
@@ -45,6 +46,20 @@ std::string DefaultFolder() {
   return home.empty() ? "" : home + "/.local/state/thunderhead";
 }
 
+constexpr char kInstead[] =
+    "cannot keep sessions (another folder: --state FOLDER; none: --state none)";
+
+// Checks that only this user can change the folder's contents, and that the files that are not
+// checked when they are opened are regular files.
+absl::Status Check(const std::string& folder) {
+  THUNDERHEAD_RETURN_IF_ERROR(store::CheckFolder(folder));
+  const std::string ids = folder + "/" + kStormIds;
+  for (const std::string& file : {ids, base::PartialPath(ids)}) {
+    THUNDERHEAD_RETURN_IF_ERROR(store::CheckFile(file));
+  }
+  return absl::OkStatus();
+}
+
 // Creates the folder for this user only, if it does not exist.
 std::error_code Create(const std::string& folder) {
   std::error_code error;
@@ -76,12 +91,11 @@ absl::StatusOr<State> OpenState(const std::string& folder) {
                                                    "created: ",
                                                    error.message()));
   }
-  auto file = store::StateFile::Open(path + "/" + kFile);
-  if (!file.ok()) {
-    return base::Annotate(file.status(),
-                          "cannot keep sessions (another folder: --state FOLDER; "
-                          "none: --state none)");
+  if (const absl::Status checked = Check(path); !checked.ok()) {
+    return base::Annotate(checked, kInstead);
   }
+  auto file = store::StateFile::Open(path + "/" + kFile);
+  if (!file.ok()) return base::Annotate(file.status(), kInstead);
   THUNDERHEAD_ASSIGN_OR_RETURN(auto sessions, store::SqliteSessionStore::In(*file));
   THUNDERHEAD_ASSIGN_OR_RETURN(auto jobs, store::SqliteJobStore::In(*file));
   State state;

@@ -53,6 +53,7 @@ absl::Status SessionKeeper::Restore(const DecodeScene& decode) {
     }
     absl::StatusOr<DecodedScene> decoded = decode(record.scene);
     if (!decoded.ok()) {
+      telemetry::Counted().session_damages.Add();
       base::LogError(base::Annotate(
           decoded.status(),
           absl::StrCat("session ", record.id,
@@ -92,7 +93,7 @@ SessionKeeper::Outcome SessionKeeper::SaveChanges() {
   if (outcome.removed.ok()) {
     for (const std::string& id : ended) kept_.erase(id);
   }
-  if (!records.empty()) outcome.saved = store_.Save(records);
+  outcome.saved = records.empty() ? store_.Check() : store_.Save(records);
   if (outcome.saved.ok()) {
     for (auto& [id, kept] : saved) kept_[id] = std::move(kept);
   }

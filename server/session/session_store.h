@@ -19,6 +19,9 @@ class SessionStore {
   virtual absl::Status Save(const std::vector<SessionRecord>& records) = 0;
   // Removes the records with those ids; missing ids are not an error.
   virtual absl::Status Remove(const std::vector<std::string>& ids) = 0;
+  // Returns an error if Save would fail although nothing has changed, for example because the
+  // store's file was removed and cannot be written anew.
+  virtual absl::Status Check() = 0;
   // Returns the records ordered by id. Unreadable parts of a record are logged and left out.
   virtual absl::StatusOr<std::vector<SessionRecord>> Load() = 0;
 };

@@ -2,30 +2,38 @@
 // process ends for any reason.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "absl/status/statusor.h"
+#include "base/file_descriptor.h"
+#include "store/private_files.h"
 
 namespace thunderhead::store {
 
 class FileLock {
  public:
-  // Creates the file at `path`, accessible only to this user, and locks it. Waits up to two
-  // seconds, in case another process that holds the lock is just ending. Returns
-  // FAILED_PRECONDITION if the other process holds the lock for longer.
-  static absl::StatusOr<FileLock> Take(const std::string& path);
+  // Maximum time for which Take waits, in case another process that holds the lock is just ending.
+  static constexpr std::chrono::milliseconds kPatience{2000};
+
+  // Creates the file at `path`, accessible only to this user, and locks it. Returns
+  // FAILED_PRECONDITION if another process holds the lock for longer than `patience`.
+  static absl::StatusOr<FileLock> Take(const std::string& path,
+                                       std::chrono::milliseconds patience = kPatience);
   // Locks an existing folder of this user without waiting. Returns nothing if the folder belongs to
   // another user, does not exist or is already locked.
   static std::optional<FileLock> TryFolder(const std::string& folder);
-  FileLock(FileLock&& other) noexcept;
-  FileLock& operator=(FileLock&&) = delete;
-  ~FileLock();
+
+  // Returns the identity of the locked file. If another file is at its path, other processes no
+  // longer see this lock.
+  FileIdentity Identity() const { return IdentityOf(file_.Get()); }
 
  private:
-  explicit FileLock(int file) : file_(file) {}
+  explicit FileLock(base::FileDescriptor file) : file_(std::move(file)) {}
 
-  int file_;  // the locked file's descriptor, or -1 after a move
+  base::FileDescriptor file_;
 };
 
 }  // namespace thunderhead::store

@@ -78,6 +78,9 @@ class PatientSessionStore final : public session::SessionStore {
   absl::Status Remove(const std::vector<std::string>& ids) override {
     return store_.Do([ids](SessionStore& store) { return store.Remove(ids); });
   }
+  absl::Status Check() override {
+    return store_.Do([](SessionStore& store) { return store.Check(); });
+  }
   absl::StatusOr<std::vector<SessionRecord>> Load() override { return store_.Load(); }
 
  private:

@@ -129,7 +129,7 @@ absl::Status CheckTables(Database& database, const std::string& path) {
                                        "SELECT type || ' ' || name FROM sqlite_schema "
                                        "WHERE type IN ('view', 'trigger')"));
   if (!foreign.empty()) return DamagedFile(path, absl::StrCat("it has the ", *foreign.begin()));
-  THUNDERHEAD_ASSIGN_OR_RETURN(Database empty, Database::Open(":memory:"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(Database empty, Database::Open(Database::kInMemory));
   THUNDERHEAD_RETURN_IF_ERROR(RunSteps(empty, 0));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::set<std::string> wanted, TextsOf(empty, kColumns));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::set<std::string> found, TextsOf(database, kColumns));

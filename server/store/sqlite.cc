@@ -17,20 +17,30 @@ namespace {
 // while the server runs.
 constexpr int kBusyTimeoutMs = 2000;
 
+// Returns the path without links in its folder. SQLite then refuses a link in place of the file,
+// but not one that leads to the folder.
+std::string PathInFolder(const std::string& path) {
+  const std::filesystem::path file(path);
+  std::error_code error;
+  const auto folder = std::filesystem::canonical(
+      file.has_parent_path() ? file.parent_path() : std::filesystem::path("."), error);
+  return error ? path : (folder / file.filename()).string();
+}
+
 // Returns true if the disk has too little space for SQLite's own files.
 bool IsOnFullDisk(const std::string& path) {
-  constexpr std::uintmax_t kSharedMemoryBytes = 64 << 10;
+  constexpr std::uintmax_t kJournalBytes = 64 << 10;
   std::error_code error;
   const auto space = std::filesystem::space(std::filesystem::path(path).parent_path(), error);
-  return !error && space.available < kSharedMemoryBytes;
+  return !error && space.available < kJournalBytes;
 }
 
 }  // namespace
 
 absl::Status DamagedFile(const std::string& path, const std::string& why) {
   return absl::DataLossError(absl::StrCat(
-      path, " is damaged (", why, "); move it away, with ", path, "-wal and ", path,
-      "-shm if they are there, to begin without sessions, or put a backup in its place"));
+      path, " is damaged (", why, "); move it away, with ", path, "-journal and ", path,
+      "-wal if they are there, to begin without sessions, or put a backup in its place"));
 }
 
 void Database::Close::operator()(sqlite3* database) const { sqlite3_close(database); }
@@ -38,7 +48,9 @@ void Database::Close::operator()(sqlite3* database) const { sqlite3_close(databa
 absl::StatusOr<Database> Database::Open(const std::string& path) {
   Database database(path);
   sqlite3* handle = nullptr;
-  const int code = sqlite3_open_v2(path.c_str(), &handle, SQLITE_OPEN_READWRITE, nullptr);
+  const std::string file = path == kInMemory ? path : PathInFolder(path);
+  const int code =
+      sqlite3_open_v2(file.c_str(), &handle, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOFOLLOW, nullptr);
   database.handle_.reset(handle);
   if (code != SQLITE_OK) return database.Error();
   sqlite3_busy_timeout(handle, kBusyTimeoutMs);

@@ -22,7 +22,10 @@ absl::Status DamagedFile(const std::string& path, const std::string& why);
 
 class Database {
  public:
-  // Opens an existing file.
+  // The path of a new, empty database that is only in memory.
+  static constexpr char kInMemory[] = ":memory:";
+
+  // Opens an existing file. A link in its place is not followed.
   static absl::StatusOr<Database> Open(const std::string& path);
 
   // Executes statements without results.

@@ -131,12 +131,12 @@ JobRecord JobOf(const Statement& row) {
 
 class OpenJobStore final : public SqliteJobStore {
  public:
-  OpenJobStore(std::shared_ptr<StateFile> file, Database database)
-      : file_(std::move(file)), database_(std::move(database)) {}
+  explicit OpenJobStore(Connection connection) : connection_(std::move(connection)) {}
 
   absl::Status Add(const JobRecord& job) override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement add, database_.Prepare(kAddJob));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Database* const database, connection_.Use());
+    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(*database));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement add, database->Prepare(kAddJob));
     add.Bind(1, job.id);
     add.Bind(2, job.result_key);
     add.Bind(3, job.owner);
@@ -145,7 +145,7 @@ class OpenJobStore final : public SqliteJobStore {
     BindEnd(job.ended_at, 6, add);
     add.Bind(7, std::int64_t{job.cancelled});
     THUNDERHEAD_RETURN_IF_ERROR(add.Run());
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement add_picture, database_.Prepare(kAddPicture));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement add_picture, database->Prepare(kAddPicture));
     for (std::size_t i = 0; i < job.pictures.size(); ++i) {
       const ImageRecord& picture = job.pictures[i];
       BindState(picture, add_picture);
@@ -160,9 +160,10 @@ class OpenJobStore final : public SqliteJobStore {
   }
 
   absl::Status Save(const std::vector<jobs::JobChange>& changes) override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save, database_.Prepare(kSaveJob));
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save_picture, database_.Prepare(kSavePicture));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Database* const database, connection_.Use());
+    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(*database));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save, database->Prepare(kSaveJob));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save_picture, database->Prepare(kSavePicture));
     for (const jobs::JobChange& change : changes) {
       BindEnd(change.ended_at, 1, save);
       save.Bind(2, std::int64_t{change.cancelled});
@@ -179,9 +180,10 @@ class OpenJobStore final : public SqliteJobStore {
   }
 
   absl::Status Remove(const std::vector<std::string>& ids) override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Database* const database, connection_.Use());
+    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(*database));
     THUNDERHEAD_ASSIGN_OR_RETURN(Statement remove,
-                                 database_.Prepare("DELETE FROM jobs WHERE id = ?"));
+                                 database->Prepare("DELETE FROM jobs WHERE id = ?"));
     for (const std::string& id : ids) {
       remove.Bind(1, id);
       THUNDERHEAD_RETURN_IF_ERROR(remove.Run());
@@ -192,26 +194,33 @@ class OpenJobStore final : public SqliteJobStore {
   absl::StatusOr<std::vector<JobRecord>> Load() override {
     std::vector<JobRecord> records;
     std::map<std::string, std::size_t> index_by_id;
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement rows, database_.Prepare(kLoadJobs));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Database* const database, connection_.Use());
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement rows, database->Prepare(kLoadJobs));
     while (true) {
       THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, rows.Next());
       if (!found) break;
       records.push_back(JobOf(rows));
       // The id names the folder of the job's results, which is removed with the job.
       if (!jobs::IsJobId(records.back().id)) {
-        return DamagedFile(file_->Path(), "a render job has an id that is none");
+        return DamagedFile(connection_.Path(), "a render job has an id that is none");
       }
       index_by_id[records.back().id] = records.size() - 1;
     }
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement pictures, database_.Prepare(kLoadPictures));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement pictures, database->Prepare(kLoadPictures));
     while (true) {
       THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, pictures.Next());
-      if (!found) return records;
+      if (!found) break;
       const auto index = index_by_id.find(pictures.Bytes(kStateColumns));
       if (index == index_by_id.end()) {
-        return DamagedFile(file_->Path(), "a picture belongs to no render job");
+        return DamagedFile(connection_.Path(), "a picture belongs to no render job");
       }
       JobRecord& job = records[index->second];
+      // Clients identify pictures by their places, so a gap would give them other pictures.
+      if (pictures.Number(kStateColumns + 1) != static_cast<std::int64_t>(job.pictures.size())) {
+        return DamagedFile(
+            connection_.Path(),
+            absl::StrCat("render job ", job.id, " lacks picture ", job.pictures.size()));
+      }
       absl::StatusOr<ImageRecord> picture = PictureOf(pictures);
       if (!picture.ok()) {
         // An unreadable picture is replaced by a failed picture and not left out, because clients
@@ -224,19 +233,24 @@ class OpenJobStore final : public SqliteJobStore {
       }
       job.pictures.push_back(*std::move(picture));
     }
+    for (const JobRecord& job : records) {
+      if (!job.pictures.empty()) continue;
+      return DamagedFile(connection_.Path(),
+                         absl::StrCat("render job ", job.id, " lacks its pictures"));
+    }
+    return records;
   }
 
  private:
-  const std::shared_ptr<StateFile> file_;
-  Database database_;
+  Connection connection_;
 };
 
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<SqliteJobStore>> SqliteJobStore::In(
     std::shared_ptr<StateFile> file) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(Database database, file->Connect(Durability::kAtOnce));
-  return std::make_unique<OpenJobStore>(std::move(file), std::move(database));
+  THUNDERHEAD_ASSIGN_OR_RETURN(Connection connection, Connection::Open(std::move(file)));
+  return std::make_unique<OpenJobStore>(std::move(connection));
 }
 
 }  // namespace thunderhead::store

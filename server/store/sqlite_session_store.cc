@@ -13,6 +13,7 @@
 #include "store/mark_bytes.h"
 #include "store/sqlite.h"
 #include "store/times.h"
+#include "telemetry/metrics.h"
 
 namespace thunderhead::store {
 namespace {
@@ -44,7 +45,7 @@ constexpr char kLoad[] =
     "viewers_may_mark, free_when_away, scene, scene_revision, last_used_ms, marks, owner_keys, "
     "owner, control_is_free, domains, steering_key, steering_name, steering_id "
     "FROM sessions "
-    "JOIN marks ON session_id = id ORDER BY id";
+    "LEFT JOIN marks ON session_id = id ORDER BY id";
 
 // Joins the member `text` of all marks, one line for each mark.
 std::string LinesOf(const std::vector<session::Mark>& marks, std::string session::Mark::*text) {
@@ -85,15 +86,24 @@ SessionRecord RecordOf(const Statement& row) {
   return record;
 }
 
+absl::StatusOr<std::vector<session::Mark>> MarksOf(const Statement& row) {
+  // Each session is saved together with its marks, even if it has none.
+  if (row.IsNull(11)) return absl::DataLossError("they are missing");
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<session::Mark> marks, MarksFrom(row.Bytes(11)));
+  SetLines(row.Bytes(12), &session::Mark::owner_key, &marks);
+  SetLines(row.Bytes(15), &session::Mark::domain, &marks);
+  return marks;
+}
+
 class OpenSessionStore final : public SqliteSessionStore {
  public:
-  OpenSessionStore(std::shared_ptr<StateFile> file, Database database)
-      : file_(std::move(file)), database_(std::move(database)) {}
+  explicit OpenSessionStore(Connection connection) : connection_(std::move(connection)) {}
 
   absl::Status Save(const std::vector<SessionRecord>& records) override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save, database_.Prepare(kSaveSession));
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save_marks, database_.Prepare(kSaveMarks));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Database* const database, connection_.Use());
+    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(*database));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save, database->Prepare(kSaveSession));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement save_marks, database->Prepare(kSaveMarks));
     for (const SessionRecord& record : records) {
       BindAll(record, save);
       THUNDERHEAD_RETURN_IF_ERROR(save.Run());
@@ -110,9 +120,10 @@ class OpenSessionStore final : public SqliteSessionStore {
   }
 
   absl::Status Remove(const std::vector<std::string>& ids) override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(database_));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Database* const database, connection_.Use());
+    THUNDERHEAD_ASSIGN_OR_RETURN(Transaction transaction, Transaction::Begin(*database));
     THUNDERHEAD_ASSIGN_OR_RETURN(Statement remove,
-                                 database_.Prepare("DELETE FROM sessions WHERE id = ?"));
+                                 database->Prepare("DELETE FROM sessions WHERE id = ?"));
     for (const std::string& id : ids) {
       remove.Bind(1, id);
       THUNDERHEAD_RETURN_IF_ERROR(remove.Run());
@@ -120,19 +131,21 @@ class OpenSessionStore final : public SqliteSessionStore {
     return transaction.Commit();
   }
 
+  absl::Status Check() override { return connection_.Use().status(); }
+
   absl::StatusOr<std::vector<SessionRecord>> Load() override {
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement rows, database_.Prepare(kLoad));
+    THUNDERHEAD_ASSIGN_OR_RETURN(Database* const database, connection_.Use());
+    THUNDERHEAD_ASSIGN_OR_RETURN(Statement rows, database->Prepare(kLoad));
     std::vector<SessionRecord> records;
     while (true) {
       THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, rows.Next());
       if (!found) return records;
       SessionRecord record = RecordOf(rows);
-      auto marks = MarksFrom(rows.Bytes(11));
+      auto marks = MarksOf(rows);
       if (marks.ok()) {
         record.marks = *std::move(marks);
-        SetLines(rows.Bytes(12), &session::Mark::owner_key, &record.marks);
-        SetLines(rows.Bytes(15), &session::Mark::domain, &record.marks);
       } else {
+        telemetry::Counted().session_damages.Add();
         base::LogError(base::Annotate(
             marks.status(), absl::StrCat("session ", record.id, " is restored without its marks")));
       }
@@ -160,8 +173,7 @@ class OpenSessionStore final : public SqliteSessionStore {
     save.Bind(16, static_cast<std::int64_t>(record.control.viewer_id));
   }
 
-  const std::shared_ptr<StateFile> file_;
-  Database database_;
+  Connection connection_;
 };
 
 }  // namespace
@@ -174,8 +186,8 @@ absl::StatusOr<std::unique_ptr<SqliteSessionStore>> SqliteSessionStore::Open(
 
 absl::StatusOr<std::unique_ptr<SqliteSessionStore>> SqliteSessionStore::In(
     std::shared_ptr<StateFile> file) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(Database database, file->Connect(Durability::kSoon));
-  return std::make_unique<OpenSessionStore>(std::move(file), std::move(database));
+  THUNDERHEAD_ASSIGN_OR_RETURN(Connection connection, Connection::Open(std::move(file)));
+  return std::make_unique<OpenSessionStore>(std::move(connection));
 }
 
 }  // namespace thunderhead::store

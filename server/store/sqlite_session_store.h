@@ -1,5 +1,5 @@
-// A store for sessions in a server's state file. Saved data survives the end of the process. A loss
-// of power may lose the changes of the last seconds, but does not damage the file.
+// A store for sessions in a server's state file. Saved data survives the end of the process and a
+// loss of power.
 #pragma once
 
 #include <memory>

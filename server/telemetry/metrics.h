@@ -88,6 +88,7 @@ struct Metrics {
   Labelled<Counter> refusals;  // error responses, by reason
   Counter sessions_opened;
   Counter session_save_failures;  // number of failed attempts to save sessions
+  Counter session_damages;        // sessions not restored, or restored without their marks
   Labelled<Counter> job_pictures{"drawn", "failed", "dropped"};  // render jobs' images, by outcome
   Counter device_losses;  // times that the device was reset, or could not be opened again
   // Failures of the processes that read storm files, by kind of failure.

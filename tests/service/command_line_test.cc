@@ -1,5 +1,6 @@
 // Tests of the program as a user runs it, on the sample storm: its output, files and exit codes.
 #include <grpcpp/grpcpp.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -474,6 +475,73 @@ TEST_F(CommandLineTest, ServeSaysOneLineAndStopsOnASignal) {
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, MatchesRegex("Thunderhead is ready at http://127.0.0.1:[1-9][0-9]*/ "
                                         "\\(gRPC 127.0.0.1:[1-9][0-9]*\\)\n"));
+}
+
+// The server writes its log to a FIFO that no process reads, and SIGHUP ends it.
+TEST_F(CommandLineTest, ServeOutlivesTheReaderOfItsLogAndStopsWhenItsTerminalCloses) {
+  const std::string log = folder_.File("log");
+  const Outcome outcome = Shell("mkfifo " + log + "; true <" + log + " & " + PROGRAM +
+                                " serve --device software --data " + kSample +
+                                " --http 127.0.0.1:0 --grpc 127.0.0.1:0 --state none 2>" + log +
+                                " & server=$!; until [ -s " + folder_.File("out") +
+                                " ]; do kill -0 $server || break; sleep 0.1; done; "
+                                "kill -HUP $server; wait $server");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, StartsWith("Thunderhead is ready at "));
+}
+
+// nohup lets programs ignore SIGHUP. The server must not wait for the signal then.
+TEST_F(CommandLineTest, ServeIgnoresAClosedTerminalIfItsCallerDoes) {
+  const Outcome outcome =
+      Shell("trap '' HUP; " + std::string(PROGRAM) + " serve --device software --data " + kSample +
+            " --http 127.0.0.1:0 --grpc 127.0.0.1:0 --state none & server=$!; "
+            "until [ -s " +
+            folder_.File("out") +
+            " ]; do kill -0 $server || break; sleep 0.1; done; "
+            "grep SigBlk /proc/$server/status >&2; "
+            "kill -TERM $server; wait $server");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  // SIGHUP is the mask's lowest bit.
+  EXPECT_THAT(outcome.err, ContainsRegex("SigBlk:\\s*[0-9a-f]*[02468ace]\n"));
+}
+
+TEST_F(CommandLineTest, ServeWritesItsAuditToRegularFilesOnly) {
+  const std::string fifo = folder_.File("fifo");
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  const std::string serve = "serve --data " + kSample + " --state none --audit-log ";
+  for (const std::string& path : {fifo, std::string("/dev/null")}) {
+    ExpectError(serve + path, 64,
+                "cannot write --audit-log " + path + ": it is not a regular file");
+  }
+  ExpectError(serve + folder_.Path().string(), 64, "cannot write --audit-log");
+}
+
+TEST_F(CommandLineTest, ServeRefusesAStateThatOthersCouldChange) {
+  const std::string state = folder_.File("state");
+  std::filesystem::create_directory(state);
+  std::filesystem::permissions(state, std::filesystem::perms::all);
+  const std::string serve = "serve --data " + kSample + " --state " + state;
+  ExpectError(serve, 78, "other users may write the folder " + state);
+  std::filesystem::permissions(state, std::filesystem::perms::owner_all);
+  for (const char* name : {"sessions.db", "storm_ids", "storm_ids.partial"}) {
+    const std::string file = state + "/" + name;
+    std::filesystem::create_symlink(folder_.File("target"), file);
+    ExpectError(serve, 78, file + " is a link");
+    std::filesystem::remove(file);
+    ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+    ExpectError(serve, 78, file + " is not a regular file");
+    std::filesystem::remove(file);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.File("target")));
+}
+
+TEST_F(CommandLineTest, ServeRefusesAClockThatIsWrongByDecades) {
+  if (!kHasHangingStorage) GTEST_SKIP() << "a sanitizer must be the program's first library";
+  const HangingStorage hanging;
+  setenv("THUNDERHEAD_TEST_WALL_CLOCK", "-100000000", 1);
+  ExpectError("serve --data " + kSample + " --state none", 75,
+              "the system's clock shows a time before 1970 or after 2262 (1966-10-31 14:13 UTC)");
+  unsetenv("THUNDERHEAD_TEST_WALL_CLOCK");
 }
 
 TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {

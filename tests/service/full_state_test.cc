@@ -42,9 +42,9 @@ class SmallStateDisk : public ::testing::Test {
   // starts the program with the script's arguments.
   std::string Starter(const std::string& then) const {
     const std::string starter = folder_.File("start");
-    std::ofstream(starter) << "#!/bin/sh\nexec unshare -rm sh -c 'mount -t tmpfs -o size=8m none "
-                           << state_ << " && " << then << "; exec " << PROGRAM
-                           << " \"$@\"' sh \"$@\"\n";
+    std::ofstream(starter)
+        << "#!/bin/sh\nexec unshare -rm sh -c 'mount -t tmpfs -o size=8m,mode=700 none " << state_
+        << " && " << then << "; exec " << PROGRAM << " \"$@\"' sh \"$@\"\n";
     fs::permissions(starter, fs::perms::owner_all);
     return starter;
   }

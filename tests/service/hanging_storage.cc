@@ -7,7 +7,8 @@
 // The library also controls the program's monotonic clock if THUNDERHEAD_TEST_CLOCK names a file,
 // so that a slow machine is never mistaken for a storage that hangs. The clock then runs at a tenth
 // of the real speed, and is ahead by the file's number of nanoseconds (int64_t). A test may raise
-// that number.
+// that number. If THUNDERHEAD_TEST_WALL_CLOCK is set, the system's clock shows this number of
+// seconds since 1970.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <linux/futex.h>
@@ -159,6 +160,12 @@ bool __atomic_futex_unsigned_base::_M_futex_wait_until_steady(unsigned* address,
 extern "C" {
 
 int clock_gettime(clockid_t clock, timespec* time) noexcept {
+  const char* const wall =
+      clock == CLOCK_REALTIME ? getenv("THUNDERHEAD_TEST_WALL_CLOCK") : nullptr;
+  if (wall != nullptr) {
+    *time = {atoll(wall), 0};
+    return 0;
+  }
   if (clock != CLOCK_MONOTONIC || IsInGrpc(__builtin_return_address(0))) {
     static auto* const real = Real<int(clockid_t, timespec*)>("clock_gettime");
     return real(clock, time);

@@ -54,6 +54,8 @@ class FakeSessionStore final : public session::SessionStore {
     return absl::OkStatus();
   }
 
+  absl::Status Check() override { return absl::OkStatus(); }
+
   absl::StatusOr<std::vector<SessionRecord>> Load() override {
     const std::lock_guard lock(mutex_);
     std::vector<SessionRecord> records;

@@ -153,6 +153,52 @@ TEST_F(KilledServerTest, EachServerNeedsAStateFolderOfItsOwn) {
               ::testing::AllOf(::testing::HasSubstr(state_), ::testing::HasSubstr("--state")));
 }
 
+TEST_F(KilledServerTest, AStateFileThatIsRemovedIsWrittenAnew) {
+  auto program = Start();
+  ASSERT_NE(program->stub(), nullptr);
+  const v1::CreateSessionRequest request;
+  v1::CreateSessionResponse before;
+  ASSERT_TRUE(Call(*program->stub(), &Stub::CreateSession, request, &before).ok());
+  std::filesystem::remove(state_ + "/sessions.db");
+  v1::CreateSessionResponse after;
+  ASSERT_TRUE(Call(*program->stub(), &Stub::CreateSession, request, &after).ok());
+  EXPECT_TRUE(after.durable());
+  // Nothing has to change until the file is there again.
+  std::filesystem::remove(state_ + "/sessions.db");
+  EXPECT_TRUE(WaitFor([&] { return std::filesystem::exists(state_ + "/sessions.db"); }));
+  program->End(SIGKILL);
+  program = Start();
+  ASSERT_NE(program->stub(), nullptr);
+  for (const auto& session : {before, after}) {
+    Interacting viewer(*program->stub(), session.viewer_key());
+    EXPECT_TRUE(viewer.AwaitNewest(Response::kScene).has_scene());
+  }
+}
+
+TEST_F(KilledServerTest, SessionsAreNotDurableWhileTheirFileIsReplaced) {
+  ::testing::internal::CaptureStderr();
+  const auto program = Start();
+  ASSERT_NE(program->stub(), nullptr);
+  const v1::CreateSessionRequest request;
+  v1::CreateSessionResponse created;
+  ASSERT_TRUE(Call(*program->stub(), &Stub::CreateSession, request, &created).ok());
+  EXPECT_TRUE(created.durable());
+  std::filesystem::copy(state_ + "/sessions.db", state_ + "/copy");
+  std::filesystem::rename(state_ + "/copy", state_ + "/sessions.db");
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(Call(*program->stub(), &Stub::CreateSession, request, &created).ok());
+    EXPECT_FALSE(created.durable());
+  }
+  std::filesystem::remove(state_ + "/sessions.db");
+  ASSERT_TRUE(Call(*program->stub(), &Stub::CreateSession, request, &created).ok());
+  EXPECT_TRUE(created.durable());
+  const std::string log = ::testing::internal::GetCapturedStderr();
+  const std::string line = "sessions.db was replaced by another file";
+  const std::size_t first = log.find(line);
+  EXPECT_NE(first, std::string::npos) << log;
+  EXPECT_EQ(log.find(line, first + 1), std::string::npos) << log;
+}
+
 // While the object lives, programs that are started put their temporary files in a folder.
 class TemporaryFiles {
  public:

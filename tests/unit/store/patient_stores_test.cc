@@ -50,6 +50,7 @@ class Sessions final : public session::SessionStore {
   ~Sessions() override { (void)storage_->Use(); }
   absl::Status Save(const std::vector<SessionRecord>&) override { return storage_->Use(); }
   absl::Status Remove(const std::vector<std::string>&) override { return storage_->Use(); }
+  absl::Status Check() override { return storage_->Use(); }
   absl::StatusOr<std::vector<SessionRecord>> Load() override {
     return std::vector<SessionRecord>();
   }

@@ -109,6 +109,19 @@ TEST_F(SqliteJobStoreTest, KeepsEachStateOfAPictureButThatOfBeingDrawn) {
   EXPECT_THAT(*loaded, ElementsAre(job));
 }
 
+// Clients identify pictures by their places.
+TEST_F(SqliteJobStoreTest, RefusesAJobThatLacksPictures) {
+  ASSERT_TRUE(Open()->Add(JobRecordOf('a', 3)).ok());
+  ASSERT_TRUE(Open()->Add(JobRecordOf('b', 1)).ok());
+  Execute("DELETE FROM job_pictures WHERE place = 1");
+  EXPECT_THAT(std::string(Complaint().message()),
+              HasSubstr("render job " + IdOf('a') + " lacks picture 1"));
+  Execute("DELETE FROM jobs WHERE id LIKE 'a%'; DELETE FROM job_pictures");
+  EXPECT_TRUE(absl::IsDataLoss(Complaint()));
+  EXPECT_THAT(std::string(Complaint().message()),
+              HasSubstr("render job " + IdOf('b') + " lacks its pictures"));
+}
+
 TEST_F(SqliteJobStoreTest, RemovesAJobWithItsPictures) {
   const auto store = Open();
   ASSERT_TRUE(store->Add(JobRecordOf('a', 2)).ok());

@@ -180,7 +180,7 @@ TEST_F(SqliteSessionStoreTest, OnlyThisUserReadsItsFiles) {
     EXPECT_EQ(file.status().permissions(), std::filesystem::perms(0600)) << file.path();
     ++files;
   }
-  EXPECT_EQ(files, 4) << "the file, its log, its index and the lock";
+  EXPECT_EQ(files, 2) << "the file and the lock";
 }
 
 TEST_F(SqliteSessionStoreTest, WhatWasSavedOutlivesAKilledProcess) {

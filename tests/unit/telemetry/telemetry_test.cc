@@ -63,7 +63,8 @@ TEST(Exposition, HasWhatAlertsWaitForFromTheStart) {
        {"thunderhead_job_pictures_total{outcome=\"failed\"} 0\n",
         "thunderhead_job_pictures_total{outcome=\"drawn\"} 0\n",
         "thunderhead_reader_failures_total{reason=\"crashed\"} 0\n",
-        "thunderhead_session_save_failures_total 0\n", "thunderhead_device_losses_total 0\n"}) {
+        "thunderhead_session_save_failures_total 0\n", "thunderhead_session_damages_total 0\n",
+        "thunderhead_device_losses_total 0\n"}) {
     EXPECT_THAT(text, HasSubstr(line));
   }
 }
