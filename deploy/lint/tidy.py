@@ -1,9 +1,11 @@
 """Runs clang-tidy on the files named on standard input, in as many processes at a time as there are processors.
 
 clang-tidy spends nearly all of its time on the headers that a file includes. So twelve files with the same compiler
-arguments are examined as one text, as the build compiles them. If something is found in a text, its files are examined
-again one by one, and this result counts. With --alone each file is also compiled alone, which finds a forgotten
-include.
+arguments and the same checks are examined as one text, as the build compiles them. If something is found in a text, its
+files are examined again one by one, and this result counts. With --alone each file is also compiled alone, which finds
+a forgotten include.
+
+The checks of a file are those of the nearest .clang-tidy in the folders above it.
 
 A file that passed is examined again only if it, a file of this repository that it includes, its compile command or a
 check has changed. BUILD/passed.json records the files that passed, so an interrupted run can be continued. Changes of
@@ -70,6 +72,12 @@ class Sources:
                 yield pathlib.Path(folder)
 
 
+def checks_of(root, path):
+    """Returns the nearest .clang-tidy in the folders above `path`. The folder `root` has one."""
+    return next(folder / ".clang-tidy" for folder in path.parents
+                if folder == root or (folder / ".clang-tidy").is_file())
+
+
 def key_of(sources, files, command, rules):
     digest = hashlib.sha256((rules + command).encode())
     for file in sorted(files):
@@ -93,17 +101,18 @@ def compile_alone(path, arguments):
     return result.stderr if result.returncode else ""
 
 
-def tidy(path, arguments, checks):
+def tidy(path, arguments, options):
     """Runs clang-tidy on a file. Returns its messages; empty if there are none."""
-    result = subprocess.run(["clang-tidy", "--quiet", *checks, str(path), "--", *arguments], capture_output=True, text=True)
+    result = subprocess.run(["clang-tidy", "--quiet", *options, str(path), "--", *arguments], capture_output=True, text=True)
     return result.stdout if result.returncode else ""
 
 
 def batches_of(todo):
-    """Returns groups of at most FILES_AT_ONCE files with the same arguments, ordered by the first file of each group."""
+    """Returns groups of at most FILES_AT_ONCE files with the same arguments and checks, ordered by the first file of
+    each group."""
     groups = {}
     for item in todo:
-        groups.setdefault(item[1], []).append(item)
+        groups.setdefault(item[1:3], []).append(item)
     batches = [group[i:i + FILES_AT_ONCE] for group in groups.values() for i in range(0, len(group), FILES_AT_ONCE)]
     order = {item[0]: i for i, item in enumerate(todo)}
     return sorted(batches, key=lambda batch: order[batch[0][0]])
@@ -138,14 +147,15 @@ def main():
         if root / "server" / COROUTINES in files:
             say(f"left out, as it has coroutines: {name}")
             continue
-        key = key_of(sources, files, commands[path], rules)
+        config = checks_of(root, path)
+        nearest = "" if config.parent == root else config.read_text()
+        key = key_of(sources, files, commands[path], rules + nearest)
         if key in passed:
             known += 1
         else:
-            todo.append((name, tuple(arguments_of(commands[path], path)), key))
+            todo.append((name, tuple(arguments_of(commands[path], path)), config, key))
     say(f"clang-tidy on {len(todo)} files; {known} passed before and did not change")
 
-    checks = [f"--checks={flags.checks}"] if flags.checks else []
     texts = build / "batches"
     texts.mkdir(exist_ok=True)
     lock = threading.Lock()
@@ -155,18 +165,19 @@ def main():
     def examine(number, batch):
         nonlocal done
         if time.monotonic() > end:
-            left.extend(name for name, _, _ in batch)
+            left.extend(name for name, *_ in batch)
             return
-        arguments = batch[0][1]
-        found = {name: flags.alone and compile_alone(root / name, arguments) for name, _, _ in batch}
+        _, arguments, config, _ = batch[0]
+        options = [f"--config-file={config}"] + ([f"--checks={flags.checks}"] if flags.checks else [])
+        found = {name: flags.alone and compile_alone(root / name, arguments) for name, *_ in batch}
         text = texts / f"{number}.cc"
-        text.write_text("\n".join((root / name).read_text() for name, _, _ in batch))
-        if any(found.values()) or tidy(text, arguments, checks):
-            for name, _, _ in batch:
-                found[name] = found[name] or tidy(root / name, arguments, checks)
+        text.write_text("\n".join((root / name).read_text() for name, *_ in batch))
+        if any(found.values()) or tidy(text, arguments, options):
+            for name, *_ in batch:
+                found[name] = found[name] or tidy(root / name, arguments, options)
         with lock:
             done += len(batch)
-            for name, _, key in batch:
+            for name, *_, key in batch:
                 if found[name]:
                     failures.append(name)
                     print(found[name], flush=True)

@@ -139,8 +139,10 @@ TEST_F(HalfAngle, WideViewsKeepTheStormWhereRaysMeetSlicesAgainstTheirOrder) {
     int along = 0;
     int against = 0;
     for (int i = 0; i < 81; ++i) {
-      const double x = ((i % 9 + 0.5) / 9 * 2 - 1) * view.tan_half_width;
-      const double y = ((i / 9 + 0.5) / 9 * 2 - 1) * view.tan_half_height;
+      const int column = i % 9;
+      const int row = i / 9;
+      const double x = ((column + 0.5) / 9 * 2 - 1) * view.tan_half_width;
+      const double y = ((row + 0.5) / 9 * 2 - 1) * view.tan_half_height;
       const glm::dvec3 ray = glm::normalize(view.forward + x * view.right + y * view.up);
       const double climb = glm::dot(ray, slicing.normal);
       if (std::abs(climb) < 0.1) continue;

@@ -79,9 +79,10 @@ class TwilightTest : public testing::TestWithParam<accuracy::PlainTechnique> {
         reference::MediumOf(scene_, *fields_, reference::MediumOptions{.peak_cut_deg = 20.0});
     EXPECT_TRUE(medium.ok());
     const reference::Camera camera = reference::CameraOf(scene_, *fields_);
+    constexpr int kColumn = kWidth_px / 2;
     std::vector<reference::Ray> rays;
     for (const int row : rows) {
-      rays.push_back(camera.RayThrough((kWidth_px / 2 + 0.5) / kWidth_px * 2.0 - 1.0,
+      rays.push_back(camera.RayThrough((kColumn + 0.5) / kWidth_px * 2.0 - 1.0,
                                        1.0 - 2.0 * (row + 0.5) / kHeight_px));
     }
     return *reference::TraceRays(

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -167,7 +166,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
   const std::string mutated =
       thunderhead::testing::MutateGrib(thunderhead::FileOfInput(data, size), seed);
   const std::size_t count = std::min(most, mutated.size());
-  std::memcpy(data, mutated.data(), count);
+  std::copy_n(mutated.begin(), count, data);
   return count;
 }
 

@@ -25,7 +25,6 @@ namespace {
 namespace http = boost::beast::http;
 using std::chrono::seconds;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 std::string Header(const Response& response, const std::string& name) {
   return response[name].to_string();

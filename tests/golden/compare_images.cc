@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "frame/image_codec.h"
-#include "picture_difference.h"
+#include "tests/golden/picture_difference.h"
 
 namespace thunderhead {
 namespace {

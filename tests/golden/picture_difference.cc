@@ -1,4 +1,4 @@
-#include "picture_difference.h"
+#include "tests/golden/picture_difference.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Tests that the comparison of golden pictures tolerates rounding and nothing else.
-#include "picture_difference.h"
+#include "tests/golden/picture_difference.h"
 
 #include "gtest/gtest.h"
 

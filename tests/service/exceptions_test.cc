@@ -16,7 +16,6 @@ namespace {
 
 using grpc::StatusCode;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using Stub = v1::ThunderheadService::Stub;
 
 constexpr int kMaxStreams = 2;

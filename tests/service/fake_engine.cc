@@ -316,7 +316,9 @@ void FakeReference::Add(Begun begun) {
 }
 
 drawing::ReferenceSourceFactory FakeReferenceSources(std::shared_ptr<FakeReference> reference) {
-  return [reference] { return std::make_unique<FakeReferenceSource>(reference); };
+  return [reference = std::move(reference)] {
+    return std::make_unique<FakeReferenceSource>(reference);
+  };
 }
 
 void Gate::Close() {
@@ -508,13 +510,13 @@ void FakeMachine::Add(Drawn drawn) {
 }
 
 drawing::FrameSourceFactory FakeFrameSources(std::shared_ptr<FakeMachine> machine) {
-  return
-      [machine](base::DeviceTurn* turn) -> absl::StatusOr<std::unique_ptr<drawing::FrameSource>> {
-        machine->opening.Pass();
-        if (TakeOne(machine->cannot_open)) return absl::UnavailableError("there is no device");
-        ++machine->opened;
-        return std::make_unique<FakeFrameSource>(machine, turn);
-      };
+  return [machine = std::move(machine)](
+             base::DeviceTurn* turn) -> absl::StatusOr<std::unique_ptr<drawing::FrameSource>> {
+    machine->opening.Pass();
+    if (TakeOne(machine->cannot_open)) return absl::UnavailableError("there is no device");
+    ++machine->opened;
+    return std::make_unique<FakeFrameSource>(machine, turn);
+  };
 }
 
 std::uint8_t RedOf(int time_index) { return static_cast<std::uint8_t>(40 + 50 * time_index); }

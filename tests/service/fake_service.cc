@@ -30,7 +30,7 @@ service::ServerOptions Patient(const base::TimeSource& time) {
   return options;
 }
 
-FakeService::FakeService(service::ServerOptions options) {
+FakeService::FakeService(const service::ServerOptions& options) {
   auto server = service::Server::Start(options, store, FakeFrameSources(machine));
   THUNDERHEAD_CHECK(server.ok(), server.status().ToString());
   server_ = *std::move(server);

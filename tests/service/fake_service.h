@@ -31,7 +31,7 @@ service::ServerOptions Patient(const base::TimeSource& time = base::SteadyTime()
 // A server that uses the fakes, and a gRPC stub to call it.
 class FakeService {
  public:
-  explicit FakeService(service::ServerOptions options = Patient());
+  explicit FakeService(const service::ServerOptions& options = Patient());
   ~FakeService();
 
   service::Server& server() { return *server_; }

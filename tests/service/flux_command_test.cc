@@ -101,8 +101,10 @@ double TracedDirect(const std::function<double(double x_m, double y_m, double z_
   double sum = 0.0;
   double sides = 0.0;
   for (int i = 0; i < kRays * kRays; ++i) {
-    const double x = width_m * (i % kRays + 0.5) / kRays;
-    const double y = depth_m * (i / kRays + 0.5) / kRays;
+    const int column = i % kRays;
+    const int row = i / kRays;
+    const double x = width_m * (column + 0.5) / kRays;
+    const double y = depth_m * (row + 0.5) / kRays;
     double path = 0.0;
     bool left = false;
     for (int step = 0; step < kSteps && !left; ++step) {

@@ -13,9 +13,9 @@
 #include "google/protobuf/descriptor.pb.h"
 #include "google/protobuf/text_format.h"
 #include "gtest/gtest.h"
+#include "tests/service/wire_format.h"
 #include "thunderhead/v1/job.pb.h"
 #include "thunderhead/v1/thunderhead.pb.h"
-#include "wire_format.h"
 
 namespace thunderhead::service {
 namespace {

@@ -75,7 +75,7 @@ class RefineTest : public ::testing::Test {
   }
 
   const std::shared_ptr<FakeReference> reference_ = std::make_shared<FakeReference>();
-  const ManualTime time_;
+  const ManualTime time_{};
   FakeService service_{Options()};
 };
 

@@ -313,7 +313,8 @@ TEST_F(SequenceCommand, TwoAtOnceDoNotMix) {
 }
 
 TEST_F(SequenceCommand, WhatIsWrongIsToldByItsExitCodeBeforeAnythingIsDrawn) {
-  const auto expect = [&](int code, std::vector<std::string> arguments, const std::string& text) {
+  const auto expect = [&](int code, const std::vector<std::string>& arguments,
+                          const std::string& text) {
     EXPECT_EQ(Run(arguments).code, code) << text;
     EXPECT_THAT(Contents(err_), HasSubstr(text));
     EXPECT_FALSE(fs::exists(folder_.File("out")) && !fs::is_empty(folder_.File("out"))) << text;

@@ -1,4 +1,4 @@
-#include "wire_format.h"
+#include "tests/service/wire_format.h"
 
 #include <utility>
 #include <vector>

@@ -26,7 +26,7 @@ constexpr std::size_t kMib = 1 << 20;
 // A cache of memory reservations, each with the time of its last use.
 class Kept final : public MemoryBudget::Cache {
  public:
-  Kept(std::shared_ptr<MemoryBudget> budget, int first_s) : member_(budget, this) {
+  Kept(const std::shared_ptr<MemoryBudget>& budget, int first_s) : member_(budget, this) {
     for (int i = 0; i < 2; ++i) {
       entries_.emplace_back(steady_clock::time_point(std::chrono::seconds(first_s + 10 * i)),
                             budget->Reserve(MemoryUse::kFields, 10 * kMib, "kept").value());

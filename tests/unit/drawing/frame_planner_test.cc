@@ -73,7 +73,7 @@ class FramePlannerTest : public ::testing::Test {
     return last_ms_;
   }
 
-  const accuracy::OfferTables tables_;
+  const accuracy::OfferTables tables_ = accuracy::OfferTables();
   accuracy::MachineCosts costs_{tables_};
   FramePlanner planner_{PlannerTargets{}, costs_, kPlannedView};
   scene::Scene scene_ = Hd();

@@ -26,7 +26,6 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using ::testing::Not;
 using testing::Number;
 
 constexpr std::int64_t kMissing = 0xFFFFFFFF;

@@ -1,6 +1,7 @@
 // Writes small GRIB2 messages for tests, section by section, so that any number in them can be set.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -146,7 +147,7 @@ inline std::string Section7(const Message& message) {
   std::string text;
   if (message.values.size() > 1) {
     for (const float value : message.values) {
-      text += Number(static_cast<std::int64_t>((value - message.minimum) / message.step + 0.5F), 2);
+      text += Number(std::lround((value - message.minimum) / message.step), 2);
     }
   }
   return Section(7, text);

@@ -788,7 +788,7 @@ TEST_F(GribStormTest, OneHybridLevelIsNoPartOfIsobaricLevels) {
 
 // A file that was cut between two messages may lack the hydrometeors of its last levels.
 TEST_F(GribStormTest, StatesIsobaricLevelsWithoutHydrometeors) {
-  const auto assumptions_without = [this](std::vector<int> levels) {
+  const auto assumptions_without = [this](const std::vector<int>& levels) {
     Layout layout = Isobaric();
     const auto edit = layout.edit;
     layout.edit = [=](Message& message) {

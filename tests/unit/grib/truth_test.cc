@@ -23,7 +23,6 @@ namespace thunderhead::storm_files {
 namespace {
 
 using nlohmann::json;
-using physics::Hydrometeor;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -271,8 +270,10 @@ TEST_P(GribTruth, WaterPathsAndTheStrongestColumn) {
   ASSERT_TRUE(expected_m.has_value());
   const glm::dvec2 position =
       *expected_m / glm::dvec2(file->dx_m, file->dy_m) + 0.5 * (glm::dvec2(file->cells) - 1.0);
-  EXPECT_NEAR(strongest % file->cells.x, position.x, 1.0);
-  EXPECT_NEAR(strongest / file->cells.x, position.y, 1.0);
+  const std::size_t column = strongest % file->cells.x;
+  const std::size_t row = strongest / file->cells.x;
+  EXPECT_NEAR(column, position.x, 1.0);
+  EXPECT_NEAR(row, position.y, 1.0);
   const double path = truth["condensate_kg_m2"];
   EXPECT_NEAR(paths[strongest], path, 0.025 * path);
   // Resampled columns may cover more than the domain, so water is compared with that of its area.

@@ -359,7 +359,8 @@ TEST_F(VdbImportTest, TurnedAndShearedAxesAreRefused) {
 }
 
 TEST_F(VdbImportTest, ValuesAndHeightsAreChecked) {
-  const auto expect_refused = [](VdbVolume volume, const ImportOptions& options, const char* why) {
+  const auto expect_refused = [](const VdbVolume& volume, const ImportOptions& options,
+                                 const char* why) {
     const auto cloud = CloudOf(volume, options);
     ASSERT_FALSE(cloud.ok()) << why;
     EXPECT_EQ(cloud.status().code(), absl::StatusCode::kInvalidArgument);

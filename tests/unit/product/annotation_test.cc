@@ -84,7 +84,8 @@ std::string LogoPng(int width_px, int height_px) {
   const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width_px, height_px));
   const CairoContext context(cairo_create(surface.get()));
   cairo_set_source_rgb(context.get(), 1.0, 0.0, 0.0);
-  cairo_rectangle(context.get(), width_px / 2, 0, width_px - width_px / 2, height_px);
+  const int transparent_px = width_px / 2;
+  cairo_rectangle(context.get(), transparent_px, 0, width_px - transparent_px, height_px);
   cairo_fill(context.get());
   std::string png;
   cairo_surface_write_to_png_stream(

@@ -226,8 +226,9 @@ TEST(CellColumns, RefusesWhatHasNoAreaOrIsTooWide) {
   std::vector<glm::dvec2> line;
   std::vector<glm::dvec2> pairs;
   for (int i = 0; i < 100; ++i) {
+    const int row = i / 10;
     line.emplace_back(1e3 * i, 500.0 * i);
-    pairs.emplace_back(1e3 * (i % 10), 1e3 * (i / 10));
+    pairs.emplace_back(1e3 * (i % 10), 1e3 * row);
     pairs.push_back(pairs.back());
   }
   expect(PlacesOf(line, middle), "no area");
@@ -240,7 +241,8 @@ TEST(CellColumns, RefusesWhatHasNoAreaOrIsTooWide) {
   expect(meridian, "no area");
   CellPlaces wide;
   for (int i = 0; i < 60 * 80; ++i) {
-    wide.latitude_deg.push_back(-40.0 + 2.0 * (i / 80));
+    const int row = i / 80;
+    wide.latitude_deg.push_back(-40.0 + 2.0 * row);
     wide.longitude_deg.push_back(-100.0 + 2.5 * (i % 80));
   }
   expect(wide, "farther than a hemisphere; cut a region");

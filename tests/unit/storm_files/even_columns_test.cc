@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <utility>
 
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
@@ -46,7 +47,9 @@ Model ProjectedGrid(const std::string& projection, const glm::ivec2& columns,
   model.places.projection = projection;
   model.places.first = first;
   model.places.step = step;
-  model.place_of = [=](const glm::dvec2& position) { return inverse(first + position * step); };
+  model.place_of = [=, inverse = std::move(inverse)](const glm::dvec2& position) {
+    return inverse(first + position * step);
+  };
   return model;
 }
 
@@ -129,7 +132,8 @@ void ExpectEven(const Model& model, const EvenColumns& even) {
       ASSERT_NEAR(to_east_m / even.dx_m, 1.0, even.largest_error + 1e-4);
       ASSERT_NEAR(to_north_m / even.dy_m, 1.0, even.largest_error + 1e-4);
       const auto south_west = static_cast<int>(from.south_west);
-      const glm::dvec2 position(south_west % width + from.east, south_west / width + from.north);
+      const glm::ivec2 column(south_west % width, south_west / width);
+      const glm::dvec2 position(column.x + from.east, column.y + from.north);
       // Columns in the outer half of an outermost one get the values of its centre.
       const glm::dvec2 edge = glm::dvec2(model.places.columns - 1) - 1e-3;
       if (position.x < 1e-3 || position.y < 1e-3 || position.x > edge.x || position.y > edge.y) {
@@ -361,7 +365,8 @@ TEST(EvenColumns, ResamplesAWideDomainToAConformalMap) {
         if (!from.inside) continue;
         const int width = model.places.columns.x;
         const auto south_west = static_cast<int>(from.south_west);
-        const glm::dvec2 position(south_west % width + from.east, south_west / width + from.north);
+        const glm::ivec2 column(south_west % width, south_west / width);
+        const glm::dvec2 position(column.x + from.east, column.y + from.north);
         const glm::dvec2 edge = glm::dvec2(model.places.columns - 1) - 1e-3;
         if (position.x < 1e-3 || position.y < 1e-3 || position.x > edge.x || position.y > edge.y) {
           continue;

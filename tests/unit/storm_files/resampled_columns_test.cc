@@ -252,8 +252,10 @@ TEST(ResampledColumns, TheGroundAndTheAirFollowTheColumns) {
   int outside = 0;
   for (std::size_t at = 0; at < even.from.size(); ++at) {
     const FromColumn& from = even.from[at];
-    const double x = from.south_west % 90 + static_cast<double>(from.east);
-    const double y = from.south_west / 90 + static_cast<double>(from.north);
+    const std::size_t column = from.south_west % 90;
+    const std::size_t row = from.south_west / 90;
+    const double x = column + static_cast<double>(from.east);
+    const double y = row + static_cast<double>(from.north);
     ASSERT_NEAR(fields.terrain_height_m[at], 10.0 * x + y, 1e-3);
     if (std::abs(x - 44.5) > 1.0) {
       ASSERT_EQ(fields.land.texels[at].w, x < 44.5 ? 255 : 0) << x;

@@ -21,7 +21,6 @@ namespace {
 using testing::Distance_m;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using testing::SyntheticWrf;
 using testing::WrfCell;
 using volume::EarthPlace;

@@ -237,8 +237,8 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
     const std::vector<double> path = PathInFile(variable.c_str(), kRecord, air_mass);
     for (std::size_t i = 0; i < kSampleColumns; ++i) all[i] += path[i];
     const auto at = static_cast<int>(std::ranges::max_element(path) - path.begin());
-    const glm::dvec2 column_m((at % kNx - kNx / 2 + 0.5) * 1000.0,
-                              (at / kNx - kNy / 2 + 0.5) * 1000.0);
+    const glm::ivec2 path_from_middle(at % kNx - kNx / 2, at / kNx - kNy / 2);
+    const glm::dvec2 column_m = (glm::dvec2(path_from_middle) + 0.5) * 1000.0;
     EXPECT_EQ(peak.column_position_m, column_m) << variable;
     EXPECT_NEAR(peak.column_kg_per_m2 / path[static_cast<std::size_t>(at)], 1.0, 3e-5);
     // The values of the grid's cells are means over the file's layers that the cells overlap.
@@ -282,8 +282,9 @@ TEST(SampleStorm, ItsMapAndMaximaAreTheFiles) {
     }
     height_m += layers[largest].thickness / 2.0;
     const auto column = static_cast<int>(largest % kSampleColumns);
-    EXPECT_EQ(peak.position_m.x, (column % kNx - kNx / 2 + 0.5) * 1000.0) << variable;
-    EXPECT_EQ(peak.position_m.y, (column / kNx - kNy / 2 + 0.5) * 1000.0) << variable;
+    const glm::ivec2 peak_from_middle(column % kNx - kNx / 2, column / kNx - kNy / 2);
+    EXPECT_EQ(peak.position_m.x, (peak_from_middle.x + 0.5) * 1000.0) << variable;
+    EXPECT_EQ(peak.position_m.y, (peak_from_middle.y + 0.5) * 1000.0) << variable;
     EXPECT_NEAR(peak.position_m.z, height_m, fields.grid.spacing_m.z) << variable;
   }
   for (std::size_t i = 0; i < kSampleColumns; ++i) {
