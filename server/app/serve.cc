@@ -137,10 +137,12 @@ void RaiseFileLimit() {
 std::optional<gateway::KeptFile> FindResult(service::Server& server, std::string_view path) {
   std::optional<jobs::ResultPlace> result = server.FindResult(path);
   if (!result.has_value()) return std::nullopt;
+  gateway::FileContents contents{.bytes = result->bytes, .sha256 = result->sha256};
   return gateway::KeptFile{
       .path = std::move(result->path),
       .entity_tag = std::move(result->sha256),
-      .on_sent = [&server, path = std::string(path)] { server.ResultFetched(path); }};
+      .on_sent = [&server, path = std::string(path)] { server.ResultFetched(path); },
+      .contents = std::move(contents)};
 }
 
 absl::Status Serve(ServeFlags flags) {
