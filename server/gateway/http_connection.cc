@@ -42,8 +42,8 @@ constexpr uint32_t kMaxHeaderBytes = 16 << 10;
 constexpr size_t kFirstRead = 4 << 10;
 constexpr char kPageMethods[] = "GET, HEAD";
 
-// Returns whether a line of a header begins with a space or a tab, and so continues the line before
-// it (obs-fold, RFC 9112, 5.2). `received` begins at the start of a line of the header.
+// Returns whether a line of a header begins with a space or a tab. Such a line continues the line
+// before it (obs-fold, RFC 9112, 5.2). The text begins at the start of a line.
 bool HasFoldedLine(std::string_view received) {
   constexpr std::string_view kLineEnd = "\r\n";
   while (true) {
