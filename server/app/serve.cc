@@ -25,6 +25,7 @@
 #include "app/serve_flags.h"
 #include "app/state_folder.h"
 #include "base/error_details.h"
+#include "base/process_limits.h"
 #include "base/program_folder.h"
 #include "base/status.h"
 #include "drawing/gl_frame_source.h"
@@ -146,6 +147,7 @@ std::optional<gateway::KeptFile> FindResult(service::Server& server, std::string
 }
 
 absl::Status Serve(ServeFlags flags) {
+  THUNDERHEAD_RETURN_IF_ERROR(base::CheckProcessLimits(base::ReadProcessLimits()));
   // The signals are blocked before any thread starts, so that only the code below that waits for
   // them receives them.
   sigset_t signals;
