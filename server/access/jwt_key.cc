@@ -6,6 +6,7 @@
 #include <openssl/pem.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "access/jwt_claims.h"
 #include "access/jwt_secret.h"
 #include "base/status.h"
 #include "nlohmann/json.hpp"
@@ -22,20 +24,18 @@
 namespace thunderhead::access {
 namespace {
 
+using nlohmann::json;
 using Time = std::chrono::system_clock::time_point;
 
 // The minimum length of a key, as RFC 7518, 3.3 requires.
 constexpr int kMinRsaBits = 2048;
 constexpr std::size_t kMaxTokenBytes = 8192;
-constexpr std::size_t kMaxClaimBytes = 64;
-// Tolerated difference between the clocks of the issuer and the server.
-constexpr std::chrono::seconds kClockSkew{30};
-constexpr char kRoleClaim[] = "thunderhead_role";
 
 using Token = std::unique_ptr<jwt_t, decltype(&jwt_free)>;
 
-absl::Status Wrong(const std::string& problem) {
-  return absl::UnauthenticatedError(absl::StrCat("the token ", problem));
+absl::Status WrongForm() {
+  return WrongToken(
+      "does not have the form of a signed token: three parts in base64url (RFC 7515)");
 }
 
 absl::Status CheckPublicKey(const std::string& pem) {
@@ -53,81 +53,84 @@ absl::Status CheckPublicKey(const std::string& pem) {
   return absl::OkStatus();
 }
 
-std::string TextClaim(jwt_t* token, const char* name) {
-  const char* text = jwt_get_grant(token, name);
-  return text == nullptr ? "" : text;
-}
-
-// Returns the time in a claim. For a missing claim, or a claim that is not a number, the result is
-// the epoch (1970), because libjwt then returns -1 or 0. The time is limited to a day before the
-// last time that the clock can represent, in the year 2262.
-Time TimeClaim(jwt_t* token, const char* name) {
-  constexpr long kLast_s =
-      std::chrono::floor<std::chrono::seconds>(Time::max() - std::chrono::hours(24))
-          .time_since_epoch()
-          .count();
-  return std::chrono::system_clock::from_time_t(
-      std::clamp(jwt_get_grant_int(token, name), 0L, kLast_s));
-}
-
-// Returns whether the token's audience, which is a text or a list of texts (RFC 7519, 4.1.3),
-// contains `audience`.
-bool IsFor(jwt_t* token, const std::string& audience) {
-  if (TextClaim(token, "aud") == audience) return true;
-  const std::unique_ptr<char, decltype(&std::free)> json(jwt_get_grants_json(token, "aud"),
-                                                         &std::free);
-  if (json == nullptr) return false;
+// Parses a part of a token, which is a JSON object in base64url. `what` names the part in errors.
+absl::StatusOr<json> ParsePart(const std::string& part, const char* what) {
+  std::string text;
+  if (!absl::WebSafeBase64Unescape(part, &text)) return WrongForm();
   constexpr bool kThrows = false;
-  const auto list = nlohmann::json::parse(json.get(), nullptr, kThrows);
-  return list.is_array() &&
-         std::ranges::any_of(list, [&](const nlohmann::json& each) { return each == audience; });
+  json fields = json::parse(text, nullptr, kThrows);
+  if (fields.is_object()) return fields;
+  return WrongToken(absl::StrCat("has ", what, " that are not a valid JSON object in UTF-8"));
 }
 
-// Rejects two kinds of invalid tokens that libjwt accepts. The first has characters outside the
-// base64url alphabet after its signature. The second has a header that requires the reader to
-// support extensions (crit, RFC 7515, 4.1.11), because this reader supports none.
-absl::Status CheckForm(const std::string& token) {
+// Returns the reason why libjwt cannot parse a JSON value, or nothing. libjwt would report it as a
+// wrong signature.
+const char* UnreadableIn(const json& value, int depth = 0) {
+  constexpr int kMaxDepth = 100;
+  constexpr double kFirstTooLarge = 9223372036854775808.0;  // 2^63
+  if (depth > kMaxDepth) return "that are nested too deeply";
+  if (value.is_number() && std::abs(value.get<double>()) >= kFirstTooLarge) {
+    return "with a number that is too large";
+  }
+  if (value.is_string() && absl::StrContains(value.get_ref<const std::string&>(), '\0')) {
+    return "with a NUL character";
+  }
+  if (!value.is_structured()) return nullptr;
+  for (const auto& [key, each] : value.items()) {
+    if (absl::StrContains(key, '\0')) return "with a NUL character";
+    if (const char* const why = UnreadableIn(each, depth + 1); why != nullptr) return why;
+  }
+  return nullptr;
+}
+
+// Checks that the header names the algorithm of the server's key.
+absl::Status CheckAlgorithm(const json& header, const char* wanted) {
+  const auto algorithm = header.find("alg");
+  if (algorithm == header.end() || !algorithm->is_string()) {
+    return WrongToken("has a header without the algorithm of its signature (alg)");
+  }
+  if (absl::EqualsIgnoreCase(algorithm->get_ref<const std::string&>(), wanted)) {
+    return absl::OkStatus();
+  }
+  return WrongToken(absl::StrCat("has another algorithm (alg) than ", wanted,
+                                 ", which this server's key is for"));
+}
+
+// Finds what is wrong with a token apart from its signature and the meaning of its claims. Rejects
+// two kinds of invalid tokens that libjwt accepts. The first has characters outside the base64url
+// alphabet after its signature. The second has a header that requires the reader to support
+// extensions (crit, RFC 7515, 4.1.11), because this reader supports none.
+absl::Status CheckForm(const std::string& token, const char* algorithm) {
   constexpr std::string_view kBase64Url =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
   const std::vector<std::string> parts = absl::StrSplit(token, '.');
   const bool is_base64 = std::ranges::all_of(parts, [&](const std::string& part) {
-    return !part.empty() && part.find_first_not_of(kBase64Url) == std::string::npos;
+    return part.find_first_not_of(kBase64Url) == std::string::npos;
   });
-  std::string header;
-  if (parts.size() != 3 || !is_base64 || !absl::WebSafeBase64Unescape(parts[0], &header)) {
-    return Wrong("does not have the form of a signed token: three parts in base64url (RFC 7515)");
+  if (parts.size() != 3 || !is_base64 || parts[0].empty() || parts[1].empty()) return WrongForm();
+  if (parts[2].empty()) return WrongToken("has no signature");
+  THUNDERHEAD_ASSIGN_OR_RETURN(const json header, ParsePart(parts[0], "header fields"));
+  if (header.contains("crit")) {
+    return WrongToken("demands extensions (crit) that this server does not have");
   }
-  constexpr bool kThrows = false;
-  const auto fields = nlohmann::json::parse(header, nullptr, kThrows);
-  if (!fields.is_object()) return Wrong("has a header that is not a JSON object");
-  if (fields.contains("crit")) {
-    return Wrong("demands extensions (crit) that this server does not have");
+  THUNDERHEAD_RETURN_IF_ERROR(CheckAlgorithm(header, algorithm));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const json claims, ParsePart(parts[1], "claims"));
+  for (const json* const part : {&header, &claims}) {
+    const char* const why = UnreadableIn(*part);
+    if (why == nullptr) continue;
+    return WrongToken(absl::StrCat("has ", part == &header ? "header fields " : "claims ", why));
   }
   return absl::OkStatus();
 }
 
-// Returns whether the token is already valid at `now` (claim nbf, RFC 7519, 4.1.5). Returns false
-// if the claim is not a number. The claim is parsed here, because it may have fractions, and libjwt
-// returns 0 for anything but a whole number.
-bool HasBegun(jwt_t* token, Time now) {
-  const std::unique_ptr<char, decltype(&std::free)> json(jwt_get_grants_json(token, nullptr),
+// Returns the claims as libjwt has parsed them from the signed text.
+absl::StatusOr<json> ClaimsOf(jwt_t* token) {
+  const std::unique_ptr<char, decltype(&std::free)> text(jwt_get_grants_json(token, nullptr),
                                                          &std::free);
-  if (json == nullptr) return true;
   constexpr bool kThrows = false;
-  const auto claims = nlohmann::json::parse(json.get(), nullptr, kThrows);
-  if (!claims.is_object()) return false;
-  const auto begins = claims.find("nbf");
-  if (begins == claims.end()) return true;
-  const std::chrono::duration<double> latest = (now + kClockSkew).time_since_epoch();
-  return begins->is_number() && begins->get<double>() <= latest.count();
-}
-
-absl::Status CheckTimes(jwt_t* token, Time now) {
-  const Time expires = TimeClaim(token, "exp");
-  if (expires == Time()) return Wrong("has no time at which it expires (exp)");
-  if (expires + kClockSkew <= now) return Wrong("has expired");
-  if (!HasBegun(token, now)) return Wrong("is not valid yet");
-  return absl::OkStatus();
+  json claims = text == nullptr ? json() : json::parse(text.get(), nullptr, kThrows);
+  if (claims.is_object()) return claims;
+  return WrongToken("has claims that are not a valid JSON object in UTF-8");
 }
 
 }  // namespace
@@ -149,8 +152,8 @@ absl::StatusOr<JwtKey> JwtKey::Parse(const std::string& text) {
 
 absl::StatusOr<Identity> JwtKey::Verify(const std::string& token, const JwtClaims& wanted,
                                         Time now) const {
-  if (token.size() > kMaxTokenBytes) return Wrong("is too long");
-  THUNDERHEAD_RETURN_IF_ERROR(CheckForm(token));
+  if (token.size() > kMaxTokenBytes) return WrongToken("is too long");
+  THUNDERHEAD_RETURN_IF_ERROR(CheckForm(token, is_public_ ? "RS256" : "HS256"));
   jwt_t* decoded = nullptr;
   const int error =
       jwt_decode(&decoded, token.c_str(), reinterpret_cast<const unsigned char*>(key_.data()),
@@ -159,22 +162,10 @@ absl::StatusOr<Identity> JwtKey::Verify(const std::string& token, const JwtClaim
   // The token's algorithm must be that of the key. Otherwise anyone could sign a token by HS256
   // with the text of the public key as the secret.
   if (error != 0 || jwt_get_alg(decoded) != (is_public_ ? JWT_ALG_RS256 : JWT_ALG_HS256)) {
-    return Wrong("is not signed with this server's key");
+    return WrongToken("is not signed with this server's key");
   }
-  THUNDERHEAD_RETURN_IF_ERROR(CheckTimes(decoded, now));
-  if (!wanted.issuer.empty() && TextClaim(decoded, "iss") != wanted.issuer) {
-    return Wrong("is of another issuer (iss)");
-  }
-  if (!wanted.audience.empty() && !IsFor(decoded, wanted.audience)) {
-    return Wrong("is for another audience (aud)");
-  }
-  const std::string name = TextClaim(decoded, "sub");
-  if (name.empty() || name.size() > kMaxClaimBytes) {
-    return Wrong(absl::StrCat("has no name of 1 to ", kMaxClaimBytes, " bytes (sub)"));
-  }
-  const absl::StatusOr<Role> role = ParseRole(TextClaim(decoded, kRoleClaim));
-  if (!role.ok()) return Wrong(absl::StrCat("has no role (", kRoleClaim, ")"));
-  return Identity{name, *role, TimeClaim(decoded, "exp")};
+  THUNDERHEAD_ASSIGN_OR_RETURN(const json claims, ClaimsOf(decoded));
+  return IdentityOf(claims, wanted, now);
 }
 
 }  // namespace thunderhead::access

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -14,7 +16,9 @@
 #include "app/commands.h"
 #include "app/library_log.h"
 #include "app/log_format.h"
+#include "base/error_details.h"
 #include "base/loose_thread.h"
+#include "base/process_limits.h"
 #include "base/version.h"
 #include "runs/exit_codes.h"
 #include "runs/tell_user.h"
@@ -25,8 +29,23 @@ namespace thunderhead::app {
 namespace {
 
 int Report(const absl::Status& status) {
-  if (!status.ok()) runs::TellUser({status.message().data(), status.message().size()});
+  if (!status.ok()) {
+    std::string text(status.message());
+    const std::string limits = base::TextOf(base::ReadProcessLimits());
+    if (base::DetailsOf(status).reason == "OUT_OF_MEMORY" && !limits.empty()) {
+      absl::StrAppend(&text, "; ", limits);
+    }
+    runs::TellUser(text);
+  }
   return static_cast<int>(runs::ExitCodeOf(status));
+}
+
+// Reports an allocation, or the start of a thread, that failed.
+int ReportNoMemory(const char* what) {
+  return Report(
+      base::WithDetails(absl::ResourceExhaustedError(absl::StrCat(
+                            "the system gives the program no more memory or threads (", what, ")")),
+                        {.reason = "OUT_OF_MEMORY"}));
 }
 
 // Returns an error that names an unknown subcommand. The parser would only report that a subcommand
@@ -44,6 +63,7 @@ int Main(int argc, char** argv) {
   // SIGXFSZ is ignored, so that reaching the limit on the size of files is a write error and not a
   // signal.
   std::signal(SIGXFSZ, SIG_IGN);
+  base::TellLimitsAtUnhandledExceptions();
   // Standard output is for results, so the log goes to standard error.
   spdlog::set_default_logger(spdlog::stderr_color_mt("thunderhead"));
   spdlog::default_logger()->set_formatter(TextFormatter());
@@ -84,7 +104,13 @@ int main(int argc, char** argv) {
       std::_Exit(code);
     }
     return code;
+  } catch (const std::bad_alloc& error) {
+    return thunderhead::app::ReportNoMemory(error.what());
   } catch (const std::exception& error) {
+    const auto* const failed = dynamic_cast<const std::system_error*>(&error);
+    if (failed != nullptr && failed->code() == std::errc::resource_unavailable_try_again) {
+      return thunderhead::app::ReportNoMemory(error.what());
+    }
     std::fprintf(stderr, "thunderhead: %s\n", error.what());
     return static_cast<int>(thunderhead::runs::ExitCode::kProgramError);
   }

@@ -27,6 +27,7 @@
 #include "app/state_folder.h"
 #include "app/stop_signals.h"
 #include "base/error_details.h"
+#include "base/process_limits.h"
 #include "base/program_folder.h"
 #include "base/status.h"
 #include "drawing/gl_frame_source.h"
@@ -149,13 +150,16 @@ void RaiseFileLimit() {
 std::optional<gateway::KeptFile> FindResult(service::Server& server, std::string_view path) {
   std::optional<jobs::ResultPlace> result = server.FindResult(path);
   if (!result.has_value()) return std::nullopt;
+  gateway::FileContents contents{.bytes = result->bytes, .sha256 = result->sha256};
   return gateway::KeptFile{
       .path = std::move(result->path),
       .entity_tag = std::move(result->sha256),
-      .on_sent = [&server, path = std::string(path)] { server.ResultFetched(path); }};
+      .on_sent = [&server, path = std::string(path)] { server.ResultFetched(path); },
+      .contents = std::move(contents)};
 }
 
 absl::Status Serve(ServeFlags flags) {
+  THUNDERHEAD_RETURN_IF_ERROR(base::CheckProcessLimits(base::ReadProcessLimits()));
   // The signals are blocked before any thread starts, so that only the code below that waits for
   // them receives them.
   const sigset_t signals = StopSignals();

@@ -1,6 +1,7 @@
 #include "drawing/render_loop.h"
 
 #include <algorithm>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
+#include "base/guarded.h"
 #include "base/status.h"
 #include "base/thread_priority.h"
 #include "drawing/guarded_source.h"
@@ -208,13 +210,25 @@ void RenderLoop::Run(const FrameSourceFactory& make_unguarded, std::promise<absl
     techniques_ = (*source)->Techniques();
     preparation_ = (*source)->PreparationOfScenes();
   }
-  started.set_value(source.status());
-  if (source.ok()) DrawWith(*std::move(source), make_source);
+  bool is_ready = !source.ok();
+  if (is_ready) started.set_value(source.status());
+  try {
+    if (source.ok()) {
+      DrawWith(*std::move(source), make_source, [&] {
+        is_ready = true;
+        started.set_value(absl::OkStatus());
+      });
+    }
+  } catch (const std::exception&) {
+    if (is_ready) throw;
+    started.set_value(base::Guarded([]() -> absl::Status { throw; }));
+  }
   images_.RefuseAll();
 }
 
 void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
-                          const FrameSourceFactory& make_source) {
+                          const FrameSourceFactory& make_source,
+                          const std::function<void()>& on_ready) {
   MeasuredSource measured(std::move(source), options_.offer_tables(), time_);
   const auto wake = [this] { wake_.Notify(); };
   auto workers = std::make_unique<Workers>(make_source, options_.workers_yield, wake, time_);
@@ -235,6 +249,7 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
   const std::vector<Worker*> all_workers{&workers->sessions, &workers->tracing,
                                          &workers->quick_images, &workers->images};
   NoteWorkers({all_workers.begin(), all_workers.end()});
+  on_ready();
   while (!stopping_) {
     BeginTurn();
     if (device_lost_.exchange(false)) {

@@ -104,7 +104,9 @@ class RenderLoop {
              session::Sessions& sessions, base::WakeSignal& wake);
 
   void Run(const FrameSourceFactory& make_source, std::promise<absl::Status> started);
-  void DrawWith(std::unique_ptr<FrameSource> source, const FrameSourceFactory& make_source);
+  // Calls `on_ready` before the first turn. Throws before that if a worker's thread cannot start.
+  void DrawWith(std::unique_ptr<FrameSource> source, const FrameSourceFactory& make_source,
+                const std::function<void()>& on_ready);
   void NoteWorkers(std::vector<const Worker*> workers);
   // Starts the time measurement of TurnSeconds.
   void BeginTurn() { turn_began_ = time_.Now().time_since_epoch().count(); }

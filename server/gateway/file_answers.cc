@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -20,6 +21,7 @@
 #include "gateway/file_threads.h"
 #include "gateway/text_view.h"
 #include "spdlog/spdlog.h"
+#include "streams/sha256_digest.h"
 
 namespace thunderhead::gateway {
 namespace {
@@ -29,6 +31,9 @@ namespace http = boost::beast::http;
 using FileOr = absl::StatusOr<std::shared_ptr<const OpenFile>>;
 
 constexpr size_t kFilePart = 64 << 10;
+// The number of bytes whose digest is computed by one call of a file thread, for which the timeout
+// applies.
+constexpr std::uint64_t kCheckedAtOnce = 4 << 20;
 
 const char* PictureTypeOf(const std::string& path) {
   if (path.ends_with(".png")) return "image/png";
@@ -42,6 +47,50 @@ void DescribeKept(const std::string& entity_tag, http::fields& header) {
   header.set(http::field::accept_ranges, "bytes");
 }
 
+absl::Status Altered(const std::string& what) {
+  return absl::DataLossError(absl::StrCat("it was altered or damaged: ", what));
+}
+
+// Compares the digest of a file's bytes with the digest that it must have.
+absl::Status CheckDigest(streams::Sha256Digest& digest, const FileContents& wanted) {
+  const std::string found = digest.Hexadecimal();
+  if (found == wanted.sha256) return absl::OkStatus();
+  return Altered(absl::StrCat("its SHA-256 is ", found, " and must be ", wanted.sha256));
+}
+
+// Opens a file, and compares its size with the size that it must have.
+FileOr OpenKept(const KeptFile& file, const OpenFile::Opener& open,
+                std::weak_ptr<FileCloser> closer) {
+  FileOr opened = OpenFile::Open(file.path, std::move(closer), open);
+  if (!opened.ok() || !file.contents.has_value()) return opened;
+  if ((*opened)->Bytes() == file.contents->bytes) return opened;
+  return Altered(
+      absl::StrCat("it has ", (*opened)->Bytes(), " bytes and must have ", file.contents->bytes));
+}
+
+// Reads a file from its beginning, and adds its bytes to a digest. File threads share it, because a
+// read may hang.
+struct Checking {
+  std::shared_ptr<const OpenFile> file;
+  streams::Sha256Digest digest;
+  std::uint64_t read = 0;
+  absl::Status status;
+
+  void ReadOn() {
+    std::vector<char> into(kFilePart);
+    const std::uint64_t until = std::min(file->Bytes(), read + kCheckedAtOnce);
+    while (read < until) {
+      const std::ptrdiff_t bytes =
+          file->Read(read, into.data(), std::min<std::uint64_t>(kFilePart, until - read));
+      if (bytes < 0) status = absl::UnavailableError(strerror(errno));
+      if (bytes == 0) status = Altered("it has become shorter");
+      if (bytes <= 0) return;
+      digest.Add({into.data(), static_cast<size_t>(bytes)});
+      read += static_cast<std::uint64_t>(bytes);
+    }
+  }
+};
+
 }  // namespace
 
 // The part of a file that is to be sent.
@@ -51,6 +100,7 @@ struct FileAnswers::FilePart {
   std::shared_ptr<const OpenFile> file;
   std::uint64_t first = 0;
   std::uint64_t bytes = 0;
+  std::optional<FileContents> contents = std::nullopt;  // checked if the part is the whole file
 };
 
 std::string FileAnswers::FilesOwnerOf(const Request& request) const {
@@ -65,13 +115,14 @@ net::awaitable<absl::StatusOr<PageFile>> FileAnswers::FindPageFile(const Request
   // The function is stored in a variable because GCC 12 destroys some temporaries of a co_await
   // twice.
   std::function<void()> find =
-      [found, files = site_.files, path, closer = std::weak_ptr(site_.file_closer),
+      [found, files = site_.files, path, open_file = site_.options.open_file,
+       closer = std::weak_ptr(site_.file_closer),
        accepted = std::string(View(request[http::field::accept_encoding])),
        known = std::string(View(request[http::field::if_none_match])), is_read] {
         found->about = files->Find(path, accepted);
         if (!found->about.has_value() || !is_read) return;
         if (MatchesEntityTag(known, found->about->entity_tag)) return;
-        found->file = OpenFile::Open(found->about->path, closer);
+        found->file = OpenFile::Open(found->about->path, closer, open_file);
       };
   const std::string owner = FilesOwnerOf(request);
   const absl::Status done = co_await site_.page_threads.Run(executor_, owner, std::move(find));
@@ -118,21 +169,61 @@ net::awaitable<bool> FileAnswers::SendKept(const Request& request, const KeptFil
     co_return keep;
   }
   const auto opened = std::make_shared<FileOr>(absl::NotFoundError("not opened"));
-  std::function<void()> open = [opened, path = file.path,
+  std::function<void()> open = [opened, file, open_file = site_.options.open_file,
                                 closer = std::weak_ptr(site_.file_closer)] {
-    *opened = OpenFile::Open(path, closer);
+    *opened = OpenKept(file, open_file, closer);
   };
   const std::string owner = FilesOwnerOf(request);
-  const absl::Status done = co_await site_.kept_threads.Run(executor_, owner, std::move(open));
+  absl::Status done = co_await site_.kept_threads.Run(executor_, owner, std::move(open));
+  if (done.ok()) done = opened->status();
+  if (done.ok()) {
+    std::shared_ptr<const OpenFile> checked = **opened;
+    done = co_await CheckContents(request, file, std::move(checked));
+  }
   if (!done.ok()) {
-    keep = co_await SendStorageFails(request);
-  } else if (!opened->ok()) {
+    keep = co_await SendKeptFails(request, file.path, done);
+    co_return keep;
+  }
+  std::shared_ptr<const OpenFile> result = **opened;
+  keep = co_await SendKeptPart(request, file, std::move(result));
+  co_return keep;
+}
+
+net::awaitable<absl::Status> FileAnswers::CheckContents(const Request& request,
+                                                        const KeptFile& file,
+                                                        std::shared_ptr<const OpenFile> opened) {
+  if (!file.contents.has_value() || opened->Bytes() > KeptFile::kCheckedFirst_bytes) {
+    co_return absl::OkStatus();
+  }
+  const auto checking = std::make_shared<Checking>();
+  checking->file = std::move(opened);
+  const std::string owner = FilesOwnerOf(request);
+  while (checking->status.ok() && checking->read < checking->file->Bytes()) {
+    std::function<void()> read_on = [checking] { checking->ReadOn(); };
+    const absl::Status done = co_await site_.kept_threads.Run(executor_, owner, std::move(read_on));
+    if (!done.ok()) co_return done;
+  }
+  if (!checking->status.ok()) co_return checking->status;
+  co_return CheckDigest(checking->digest, *file.contents);
+}
+
+net::awaitable<bool> FileAnswers::SendKeptFails(const Request& request, const std::string& path,
+                                                const absl::Status& why) {
+  bool keep = false;
+  if (absl::IsNotFound(why)) {
     keep = co_await answers_.SendText(request, http::status::not_found,
                                       "This file no longer exists.\n");
-  } else {
-    std::shared_ptr<const OpenFile> result = **opened;
-    keep = co_await SendKeptPart(request, file, std::move(result));
+    co_return keep;
   }
+  LogFailedRead(path, why);
+  if (absl::IsDataLoss(why)) {
+    keep = co_await answers_.SendText(
+        request, http::status::internal_server_error,
+        "This result was altered or damaged after it was written, so it is not sent; request the "
+        "picture in a new job.\n");
+    co_return keep;
+  }
+  keep = co_await SendStorageFails(request);
   co_return keep;
 }
 
@@ -166,6 +257,7 @@ net::awaitable<bool> FileAnswers::SendKeptPart(const Request& request, const Kep
   header.content_length(range.bytes);
   const std::uint64_t file_bytes = opened->Bytes();
   FilePart part{site_.kept_threads, file.path, std::move(opened), range.first, range.bytes};
+  if (range.bytes == file_bytes) part.contents = file.contents;
   keep = co_await SendPart(request, header, std::move(part));
   const bool to_its_end =
       request.method() == http::verb::get && range.first + range.bytes == file_bytes;
@@ -188,24 +280,28 @@ net::awaitable<bool> FileAnswers::SendPart(const Request& request,
   struct Read {
     std::vector<char> into = std::vector<char>(kFilePart);
     std::ptrdiff_t bytes = 0;
-    std::string error;
+    absl::Status status;
+    streams::Sha256Digest digest;  // of all bytes that were read
   };
   const auto read = std::make_shared<Read>();
   const std::string owner = FilesOwnerOf(request);
   do {
     if (part.bytes > 0) {
       const auto most = static_cast<size_t>(std::min<std::uint64_t>(part.bytes, kFilePart));
-      std::function<void()> work = [read, file = part.file, first = part.first, most] {
+      std::function<void()> work = [read, file = part.file, first = part.first, most,
+                                    is_checked = part.contents.has_value()] {
         read->bytes = file->Read(first, read->into.data(), most);
-        if (read->bytes < 0) read->error = strerror(errno);
-        if (read->bytes == 0) read->error = "it has become shorter";
+        if (read->bytes < 0) read->status = absl::UnavailableError(strerror(errno));
+        if (read->bytes == 0) read->status = absl::UnavailableError("it has become shorter");
+        if (read->bytes > 0 && is_checked)
+          read->digest.Add({read->into.data(), static_cast<size_t>(read->bytes)});
       };
-      const absl::Status done = co_await part.threads.Run(executor_, owner, std::move(work));
-      if (!done.ok() || read->bytes <= 0) {
-        LogFailedRead(part.path, done.ok() ? absl::UnavailableError(read->error) : done);
-        if (unsent_header.empty()) co_return false;
-        const bool keep_refused = co_await SendStorageFails(request);
-        sent_whole_ = false;
+      absl::Status done = co_await part.threads.Run(executor_, owner, std::move(work));
+      if (done.ok()) done = read->status;
+      const bool is_last = done.ok() && static_cast<std::uint64_t>(read->bytes) == part.bytes;
+      if (is_last && part.contents.has_value()) done = CheckDigest(read->digest, *part.contents);
+      if (!done.ok()) {
+        const bool keep_refused = co_await EndFailedPart(request, part.path, done, unsent_header);
         co_return keep_refused;
       }
     }
@@ -222,6 +318,19 @@ net::awaitable<bool> FileAnswers::SendPart(const Request& request,
     part.bytes -= bytes;
   } while (part.bytes > 0);
   sent_whole_ = true;
+  co_return keep;
+}
+
+net::awaitable<bool> FileAnswers::EndFailedPart(const Request& request, const std::string& path,
+                                                const absl::Status& why,
+                                                const std::string& unsent_header) {
+  // After the beginning of a response, only the end of the connection shows the client a failure.
+  if (unsent_header.empty()) {
+    LogFailedRead(path, why);
+    co_return false;
+  }
+  const bool keep = co_await SendKeptFails(request, path, why);
+  sent_whole_ = false;
   co_return keep;
 }
 

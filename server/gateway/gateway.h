@@ -16,11 +16,19 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "base/file_descriptor.h"
+#include "base/own_file.h"
 #include "base/time_source.h"
 #include "base/trusted_proxies.h"
 #include "grpcpp/channel.h"
 
 namespace thunderhead::gateway {
+
+// The contents that a file must have.
+struct FileContents {
+  std::uint64_t bytes = 0;
+  std::string sha256;  // in lower-case hexadecimal
+};
 
 // A file that the service provides at a path that cannot be guessed, such as a render job's result.
 struct KeptFile {
@@ -29,6 +37,13 @@ struct KeptFile {
   // Called on the gateway's thread when the client has been sent the complete file. It may be
   // empty, and must not block.
   std::function<void()> on_sent = nullptr;
+  // The contents that the file was given. If the file has others, they are not sent and the
+  // response is 500. If a file of more than kCheckedFirst_bytes is wrong in spite of its size, the
+  // connection breaks before its last bytes, and parts of it are sent unchecked. If absent,
+  // anything is sent.
+  std::optional<FileContents> contents = std::nullopt;
+
+  static constexpr std::uint64_t kCheckedFirst_bytes = std::uint64_t{64} << 20;
 };
 
 // A connection or request that was refused because it violated a rule or limit of the gateway.
@@ -55,6 +70,9 @@ struct GatewayOptions {
   std::string page_directory;
   // Finds files that are not in the page's folder; may be empty. It must not block.
   std::function<std::optional<KeptFile>(std::string_view path)> find_kept_file;
+  // Opens a regular file. It may block as long as the storage does. Tests replace it.
+  std::function<absl::StatusOr<base::FileDescriptor>(const std::string& path)> open_file =
+      &base::OpenOwnFile;
   // Called on the gateway's thread for each refusal; may be empty. It must not block. It is not
   // called for mistakes: a nonexistent path, a wrong method or a malformed request.
   std::function<void(const GatewayRefusal&)> on_refusal;

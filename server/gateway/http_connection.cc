@@ -42,6 +42,23 @@ constexpr uint32_t kMaxHeaderBytes = 16 << 10;
 constexpr size_t kFirstRead = 4 << 10;
 constexpr char kPageMethods[] = "GET, HEAD";
 
+// Returns whether a line of a header begins with a space or a tab. Such a line continues the line
+// before it (obs-fold, RFC 9112, 5.2). The text begins at the start of a line.
+bool HasFoldedLine(std::string_view received) {
+  constexpr std::string_view kLineEnd = "\r\n";
+  while (true) {
+    const size_t end = received.find(kLineEnd);
+    // An empty line ends the header.
+    if (end == std::string_view::npos || end == 0) return false;
+    received.remove_prefix(end + kLineEnd.size());
+    if (received.starts_with(' ') || received.starts_with('\t')) return true;
+  }
+}
+
+std::string_view TextOf(const boost::beast::flat_buffer& buffer) {
+  return {static_cast<const char*>(buffer.cdata().data()), buffer.size()};
+}
+
 class HttpConnection {
  public:
   HttpConnection(ClientLink& link, Site& site)
@@ -66,7 +83,12 @@ class HttpConnection {
   net::awaitable<bool> AnswerCall(Parser& parser);
   net::awaitable<bool> AnswerBadHeader(error_code error);
   net::awaitable<bool> RefuseLargeCall(const Request& request);
+  // Reads a request's header. Returns bad_obs_fold if a line of it continues on the next line.
+  net::awaitable<error_code> ReadHeader(Parser& parser);
   net::awaitable<error_code> ReadBody(Parser& parser);
+  // Tells the client that its request cannot be parsed. Sends nothing if the error is that the
+  // client has left, and nothing for a timeout or a network error.
+  net::awaitable<bool> AnswerUnparsed(const Request& request, const char* part, error_code error);
 
   ClientLink& link_;
   Site& site_;
@@ -86,9 +108,7 @@ net::awaitable<bool> HttpConnection::ServeOne() {
   link_.Begin(LinkUse::kReceiving);
   // The timeout covers the whole header. It is not restarted for each part of the header.
   link_.Stream().expires_after(site_.options.header_timeout);
-  error_code error;
-  co_await http::async_read_header(link_.Stream(), link_.Received(), parser,
-                                   net::redirect_error(net::use_awaitable, error));
+  const error_code error = co_await ReadHeader(parser);
   link_.Begin(LinkUse::kSending);
   if (error) {
     const bool keep = co_await AnswerBadHeader(error);
@@ -97,6 +117,29 @@ net::awaitable<bool> HttpConnection::ServeOne() {
   answers_.SetUnreadInput(!parser.is_done());
   const bool keep = co_await Answer(parser);
   co_return keep && !answers_.HasUnreadInput();
+}
+
+// Beast joins folded lines without a trace, so they are searched for before Beast parses them.
+// Beast consumes only whole lines, and none before it has the first byte of the next.
+net::awaitable<error_code> HttpConnection::ReadHeader(Parser& parser) {
+  error_code error;
+  while (!parser.is_header_done()) {
+    if (link_.Received().size() > 0) {
+      if (HasFoldedLine(TextOf(link_.Received()))) co_return http::error::bad_obs_fold;
+      link_.Received().consume(parser.put(link_.Received().cdata(), error));
+      if (!error) continue;
+      if (error != http::error::need_more) co_return error;
+    }
+    const size_t room = link_.Received().max_size() - link_.Received().size();
+    if (room == 0) co_return http::error::buffer_overflow;
+    const size_t bytes = co_await link_.Stream().async_read_some(
+        link_.Received().prepare(std::min(kFirstRead, room)),
+        net::redirect_error(net::use_awaitable, error));
+    link_.Received().commit(bytes);
+    if (error == net::error::eof) co_return http::error::end_of_stream;
+    if (error) co_return error;
+  }
+  co_return error;
 }
 
 net::awaitable<bool> HttpConnection::AwaitRequest() {
@@ -290,6 +333,8 @@ net::awaitable<bool> HttpConnection::AnswerCall(Parser& parser) {
     answers_.SetUnreadInput(false);
     link_.Begin(LinkUse::kCalling);
     keep = co_await GrpcWebExchange(site_, link_, request).Run();
+  } else {
+    keep = co_await AnswerUnparsed(request, "body", error);
   }
   co_return keep;
 }
@@ -329,22 +374,35 @@ net::awaitable<bool> HttpConnection::RefuseLargeCall(const Request& request) {
 }
 
 net::awaitable<bool> HttpConnection::AnswerBadHeader(error_code error) {
-  // No response is sent if the client closed the connection, or after a timeout or network error.
+  Request request;
+  request.version(11);
+  request.keep_alive(false);
+  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+    answers_.Tell(request, "Request", HeaderTooLarge());
+  }
+  const bool keep = co_await AnswerUnparsed(request, "header", error);
+  co_return keep;
+}
+
+net::awaitable<bool> HttpConnection::AnswerUnparsed(const Request& request, const char* part,
+                                                    error_code error) {
   if (error.category() != http::make_error_code(http::error::bad_method).category() ||
       error == http::error::end_of_stream || error == http::error::partial_message) {
     co_return false;
   }
+  // What follows may be a part of this request or another request, so nothing of it is read.
   answers_.SetUnreadInput(true);
   const bool too_large =
       error == http::error::header_limit || error == http::error::buffer_overflow;
-  Request request;
-  request.version(11);
-  request.keep_alive(false);
-  if (too_large) answers_.Tell(request, "Request", HeaderTooLarge());
+  const std::string why =
+      error == http::error::bad_obs_fold
+          ? "a line begins with a space or a tab, and so continues the line before it (RFC 9112, "
+            "5.2); send each field on one line"
+          : error.message();
   const bool keep = co_await answers_.SendText(
       request,
       too_large ? http::status::request_header_fields_too_large : http::status::bad_request,
-      absl::StrCat("Cannot parse the request's header: ", error.message(), ".\n"));
+      absl::StrCat("Cannot parse the request's ", part, ": ", why, ".\n"));
   co_return keep;
 }
 

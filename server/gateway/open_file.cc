@@ -9,6 +9,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "base/status.h"
 
 namespace thunderhead::gateway {
 namespace {
@@ -24,15 +25,12 @@ auto Uninterrupted(const SystemCall& call) {
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const OpenFile>> OpenFile::Open(const std::string& path,
-                                                               std::weak_ptr<FileCloser> closer) {
-  base::FileDescriptor descriptor(
-      Uninterrupted([&] { return ::open(path.c_str(), O_RDONLY | O_CLOEXEC); }));
+                                                               std::weak_ptr<FileCloser> closer,
+                                                               const Opener& open) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(base::FileDescriptor descriptor, open(path));
   struct stat information = {};
-  if (!descriptor.IsOpen() || ::fstat(descriptor.Get(), &information) != 0) {
-    return absl::NotFoundError(absl::StrCat("cannot read ", path, ": ", strerror(errno)));
-  }
-  if (!S_ISREG(information.st_mode)) {
-    return absl::NotFoundError(absl::StrCat("cannot read ", path, ": it is not a regular file"));
+  if (::fstat(descriptor.Get(), &information) != 0) {
+    return absl::UnavailableError(absl::StrCat("cannot read ", path, ": ", strerror(errno)));
   }
   ::posix_fadvise(descriptor.Get(), 0, 0, POSIX_FADV_SEQUENTIAL);
   return std::shared_ptr<const OpenFile>(new OpenFile(

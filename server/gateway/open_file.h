@@ -4,22 +4,27 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "absl/status/statusor.h"
 #include "base/file_descriptor.h"
+#include "base/own_file.h"
 #include "gateway/file_closer.h"
 
 namespace thunderhead::gateway {
 
 class OpenFile {
  public:
-  // Opens a file. `closer` will close it; if the closer no longer exists then, the file is left
-  // open.
-  static absl::StatusOr<std::shared_ptr<const OpenFile>> Open(const std::string& path,
-                                                              std::weak_ptr<FileCloser> closer);
+  using Opener = std::function<absl::StatusOr<base::FileDescriptor>(const std::string& path)>;
+
+  // Opens a file by `open`, and returns its errors. `closer` will close it; if the closer no longer
+  // exists then, the file is left open.
+  static absl::StatusOr<std::shared_ptr<const OpenFile>> Open(
+      const std::string& path, std::weak_ptr<FileCloser> closer,
+      const Opener& open = &base::OpenOwnFile);
   ~OpenFile();
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;

@@ -1,6 +1,7 @@
 #include "interchange/vdb_grid_reader.h"
 
 #include <openvdb/io/Archive.h>
+#include <openvdb/io/DelayedLoadMetadata.h>
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/io.h>
 #include <openvdb/openvdb.h>
@@ -19,6 +20,7 @@
 #include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "interchange/memory_stream.h"
+#include "interchange/vdb_sizes.h"
 
 namespace thunderhead::interchange {
 namespace {
@@ -27,6 +29,8 @@ using openvdb::FloatGrid;
 using openvdb::io::GridDescriptor;
 
 constexpr int kMostGrids = 1000;
+// OpenVDB has other readers for older files. They trust positions and sizes that the file states.
+constexpr std::uint32_t kFirstFormat = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
 // Share of the work, for the progress, that reads the file. The rest fills the dense array.
 constexpr double kShareOfReading = 0.8;
 
@@ -48,14 +52,15 @@ class MemoryArchive final : public openvdb::io::Archive {
     setFormatVersion(in_);
     setLibraryVersion(in_);
     setDataCompression(in_);
-    openvdb::MetaMap().readMeta(in_);
   }
   ~MemoryArchive() override { openvdb::io::clearStreamMetadataPtr(in_); }
 
   bool HasIndex() const { return inputHasGridOffsets(); }
 
-  // Reads the names, types and places of the grids.
+  // Reads the names, types and places of the grids, which follow the file's metadata.
   absl::StatusOr<std::vector<Entry>> Entries() {
+    CheckStatedMetadata(in_);
+    openvdb::MetaMap().readMeta(in_);
     const int count = readGridCount(in_);
     if (count < 0 || count > kMostGrids) {
       return absl::DataLossError(absl::StrCat("is said to have ", count, " grids, and ", kMostGrids,
@@ -63,6 +68,7 @@ class MemoryArchive final : public openvdb::io::Archive {
     }
     std::vector<Entry> entries;
     for (int i = 0; i < count; ++i) {
+      CheckStatedEntry(in_);
       Entry& entry = entries.emplace_back();
       entry.grid = entry.descriptor.read(in_);
       entry.descriptor.seekToEnd(in_);
@@ -76,6 +82,9 @@ class MemoryArchive final : public openvdb::io::Archive {
     if (!entry.descriptor.isInstance()) return;
     for (Entry& parent : entries) {
       if (parent.descriptor.uniqueName() != entry.descriptor.instanceParentName()) continue;
+      if (parent.descriptor.gridType() != entry.descriptor.gridType()) {
+        throw std::runtime_error("a grid has the voxels of a grid of another type");
+      }
       ReadOwn(parent);
       entry.grid->setTree(parent.grid->baseTreePtr());
       return;
@@ -85,6 +94,7 @@ class MemoryArchive final : public openvdb::io::Archive {
  private:
   void ReadOwn(Entry& entry) {
     entry.descriptor.seekToGrid(in_);
+    CheckStatedGrid(in_);
     readGrid(entry.grid, entry.descriptor, in_);
   }
 
@@ -118,23 +128,29 @@ absl::StatusOr<Entry*> Find(const std::string& name, std::vector<Entry>& entries
   return absl::InvalidArgumentError(absl::StrCat("has no grid '", name, "'; ", ListOf(entries)));
 }
 
+template <typename... Texts>
+absl::Status Refused(const Entry& entry, const Texts&... why) {
+  return absl::InvalidArgumentError(absl::StrCat("its grid '", entry.Name(), "' ", why...));
+}
+
+// Returns the grid, before or after its voxels are read.
+absl::StatusOr<FloatGrid::Ptr> FloatsOf(const Entry& entry) {
+  FloatGrid::Ptr grid = openvdb::gridPtrCast<FloatGrid>(entry.grid);
+  if (grid != nullptr) return grid;
+  return Refused(entry, "has values of the type ", entry.grid->valueType(),
+                 "; a density of the type float is needed");
+}
+
 absl::StatusOr<FloatGrid::Ptr> DensityOf(const Entry& entry) {
-  const auto refused = [&entry](auto... why) {
-    return absl::InvalidArgumentError(absl::StrCat("its grid '", entry.Name(), "' ", why...));
-  };
-  const FloatGrid::Ptr grid = openvdb::gridPtrCast<FloatGrid>(entry.grid);
-  if (grid == nullptr) {
-    return refused("has values of the type ", entry.grid->valueType(),
-                   "; a density of the type float is needed");
-  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(FloatGrid::Ptr grid, FloatsOf(entry));
   if (grid->getGridClass() == openvdb::GRID_LEVEL_SET) {
-    return refused("is a level set, whose values are distances; convert it to a fog volume");
+    return Refused(entry, "is a level set, whose values are distances; convert it to a fog volume");
   }
   if (!grid->transform().isLinear()) {
-    return refused("has a frustum as its transform; resample it to a regular grid");
+    return Refused(entry, "has a frustum as its transform; resample it to a regular grid");
   }
   if (grid->background() != 0.0F) {
-    return refused("has the value ", grid->background(),
+    return Refused(entry, "has the value ", grid->background(),
                    " outside its voxels, and 0 is needed; is it a density?");
   }
   return grid;
@@ -193,12 +209,23 @@ class Filling {
   VdbVolume& volume_;
 };
 
-void Fill(const FloatGrid& grid, const std::function<void(double)>& progress, Filling filling) {
+// Returns the number of voxels in a box. A box of OpenVDB may have up to 2^96.
+double VoxelsOf(const openvdb::CoordBBox& box) {
+  return static_cast<double>(box.dim().x()) * box.dim().y() * box.dim().z();
+}
+
+// Fills the array of `voxels` voxels.
+void Fill(const FloatGrid& grid, double voxels, const std::function<void(double)>& progress,
+          Filling filling) {
+  double filled = 0.0;
   auto tile = grid.tree().cbeginValueOn();
   tile.setMaxDepth(FloatGrid::TreeType::ValueOnCIter::LEAF_DEPTH - 1);
   for (; tile; ++tile) {
     openvdb::CoordBBox box;
     tile.getBoundingBox(box);
+    // Blocks of a damaged file may overlap, so that a small file would take hours to fill.
+    filled += VoxelsOf(box);
+    if (filled > voxels) throw std::runtime_error("its blocks of equal voxels overlap");
     filling.Box(box, *tile);
   }
   const auto leaves = static_cast<double>(grid.tree().leafCount());
@@ -230,7 +257,7 @@ absl::StatusOr<VdbVolume> DenseOf(const std::string& name, const FloatGrid& grid
     volume.steps[static_cast<std::size_t>(axis)] = Vector(transform.indexToWorld(index) - first);
   }
   volume.values.assign(volume.VoxelCount(), 0.0F);
-  Fill(grid, progress, Filling(box.min(), volume));
+  Fill(grid, static_cast<double>(volume.VoxelCount()), progress, Filling(box.min(), volume));
   return volume;
 }
 
@@ -243,12 +270,18 @@ absl::StatusOr<VdbVolume> Read(std::span<const std::byte> bytes, const std::stri
   // OpenVDB does not check whether a read succeeds.
   in.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
   MemoryArchive archive(in);
+  if (archive.fileVersion() < kFirstFormat) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("has the OpenVDB file format ", archive.fileVersion(), ", and ", kFirstFormat,
+                     " is the oldest that can be read; write it again with a newer OpenVDB"));
+  }
   if (!archive.HasIndex()) {
     return absl::InvalidArgumentError(
         "was written as a stream, without an index of its grids; write it as a file");
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<Entry> entries, archive.Entries());
   THUNDERHEAD_ASSIGN_OR_RETURN(Entry* const entry, Find(name, entries));
+  THUNDERHEAD_RETURN_IF_ERROR(FloatsOf(*entry).status());
   archive.Read(*entry, entries);
   THUNDERHEAD_ASSIGN_OR_RETURN(const FloatGrid::Ptr grid, DensityOf(*entry));
   return DenseOf(name, *grid, progress);
@@ -262,7 +295,12 @@ absl::Status TooLarge(const std::string& path) {
 
 }  // namespace
 
-void PrepareVdb() { openvdb::initialize(); }
+void PrepareVdb() {
+  openvdb::initialize();
+  // This metadata helps to read a file later, piece by piece. Its parser trusts sizes that the file
+  // states. If its type is unknown, its bytes are skipped.
+  openvdb::io::DelayedLoadMetadata::unregisterType();
+}
 
 absl::StatusOr<VdbVolume> ReadVdbGrid(const std::string& path, std::span<const std::byte> bytes,
                                       const std::string& grid,

@@ -26,6 +26,13 @@ std::vector<fs::path> EntriesOf(const fs::path& folder) {
   return entries;
 }
 
+// Returns whether there is a folder at the path that is not a link to one. A link in place of a
+// job's folder would lead to files that are not results.
+bool IsOwnFolder(const fs::path& path) {
+  std::error_code error;
+  return fs::symlink_status(path, error).type() == fs::file_type::directory;
+}
+
 }  // namespace
 
 absl::StatusOr<ResultFolder> ResultFolder::Open(const std::string& path,
@@ -55,6 +62,10 @@ absl::Status ResultFolder::Write(const std::string& job_id, std::size_t place,
         const base::SlowCall slow(folder);
         std::error_code error;
         fs::create_directory(job, error);
+        if (!error && !IsOwnFolder(job)) {
+          return absl::FailedPreconditionError(
+              absl::StrCat(job, " is a link; results are written only to a folder: remove it"));
+        }
         THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(about_path, picture->about));
         return base::WriteWholeFile(path, picture->bytes);
       });
@@ -84,7 +95,12 @@ void ResultFolder::RemoveAll(const std::vector<std::string>& paths) {
   const absl::Status removed = calls_->Run(path_, [paths = removed_, folder = path_] {
     const base::SlowCall slow(folder);
     std::error_code ignored;
-    for (const std::string& path : paths) fs::remove_all(path, ignored);
+    for (const std::string& text : paths) {
+      const fs::path path(text);
+      // A link in place of a job's folder is removed. Files to which it leads are not.
+      const bool is_job = IsJobId(path.filename().string());
+      if (is_job || IsOwnFolder(path.parent_path())) fs::remove_all(path, ignored);
+    }
   });
   if (removed.ok()) removed_.clear();
 }
@@ -99,6 +115,7 @@ void ResultFolder::Clean(const std::set<std::string>& known) const {
       fs::remove_all(job, ignored);
       continue;
     }
+    if (!IsOwnFolder(job)) continue;
     for (const fs::path& file : EntriesOf(job)) {
       if (file.extension() == ".partial") fs::remove(file, ignored);
     }

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <functional>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -18,22 +20,37 @@ struct WorkPlan {
   std::function<void(double done)> progress = [](double) {};
 };
 
-// Calls work(i) for i = 0 ... chunks - 1, in no particular order.
+// Calls work(i) for i = 0 ... chunks - 1, in no particular order. If a call throws, throws its
+// exception again and makes no further calls. If a thread cannot start, the others do its work.
 template <typename Work>
 void ForEachChunk(int chunks, const WorkPlan& plan, const Work& work) {
   std::atomic<int> next = 0;
   std::mutex mutex;
   int finished = 0;
+  std::exception_ptr thrown;
   const auto run = [&] {
-    for (int chunk = next++; chunk < chunks; chunk = next++) {
-      work(chunk);
+    try {
+      for (int chunk = next++; chunk < chunks; chunk = next++) {
+        work(chunk);
+        const std::lock_guard lock(mutex);
+        plan.progress(static_cast<double>(++finished) / chunks);
+      }
+    } catch (...) {
+      next = chunks;
       const std::lock_guard lock(mutex);
-      plan.progress(static_cast<double>(++finished) / chunks);
+      thrown = std::current_exception();
     }
   };
-  std::vector<std::jthread> threads;
-  for (int i = 1; i < std::min(plan.threads, chunks); ++i) threads.emplace_back(run);
-  run();
+  {
+    std::vector<std::jthread> threads;
+    try {
+      for (int i = 1; i < std::min(plan.threads, chunks); ++i) threads.emplace_back(run);
+    } catch (const std::system_error&) {
+      // The system starts no further thread.
+    }
+    run();
+  }
+  if (thrown) std::rethrow_exception(thrown);
 }
 
 }  // namespace thunderhead::physics

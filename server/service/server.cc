@@ -104,7 +104,7 @@ class RunningServer final : public Server {
                                               keeper_.get(), *catalogue_, drain_, limits_});
     service_ = MakeThunderheadService(*engine_, *door_, *connection_calls_);
     job_service_ = std::make_unique<RenderJobService>(*engine_, *door_, *connection_calls_,
-                                                      jobs_.get(), job_files_.patience);
+                                                      jobs_.get(), job_files_);
     // This is a global setting, which applies to every server built later.
     static std::once_flag plugins;
     std::call_once(plugins, [] { grpc::reflection::InitProtoReflectionServerBuilderPlugin(); });

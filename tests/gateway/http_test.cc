@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/inotify.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <boost/beast/http/field.hpp>
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -15,6 +17,7 @@
 #include <string_view>
 
 #include "absl/strings/str_cat.h"
+#include "streams/sha256_digest.h"
 #include "tests/gateway/echo_test.h"
 #include "tests/gateway/raw_client.h"
 #include "tests/support/temporary_folder.h"
@@ -28,6 +31,12 @@ using ::testing::HasSubstr;
 
 std::string Header(const Response& response, const std::string& name) {
   return response[name].to_string();
+}
+
+std::string DigestOf(const std::string& bytes) {
+  streams::Sha256Digest digest;
+  digest.Add(bytes);
+  return digest.Hexadecimal();
 }
 
 class HttpTest : public EchoTest {
@@ -79,6 +88,84 @@ TEST_F(HttpTest, AKeptFileThatWasSentToItsEndIsTold) {
   EXPECT_EQ(Ask("GET", "/results/key/1").result(), http::status::not_found);
   Site().StopGateway();  // its thread reports the refusals
   EXPECT_EQ(sent, 3);
+}
+
+class KeptFileTest : public HttpTest {
+ protected:
+  KeptFileTest() {
+    std::ofstream(path_) << written_;
+    options_.find_kept_file = [this](std::string_view) {
+      return KeptFile{path_, "tag", [this] { ++sent_; },
+                      FileContents{written_.size(), DigestOf(written_)}};
+    };
+  }
+  ~KeptFileTest() override { site_.reset(); }
+
+  // Expects an error for each request that would get a part of the file.
+  void ExpectRefused() {
+    for (const Headers& headers : {Headers{}, Headers{{"Range", "bytes=0-9"}}}) {
+      const Response answer = Ask("GET", "/results/key/0", headers);
+      EXPECT_EQ(answer.result(), http::status::internal_server_error);
+      EXPECT_THAT(answer.body(), HasSubstr("was altered or damaged after it was written"));
+      EXPECT_FALSE(answer.count("ETag"));
+    }
+    RawClient head(Site().Port());
+    head.Send("HEAD /results/key/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_EQ(head.Read(true).result(), http::status::internal_server_error);
+  }
+
+  const std::string path_ = folder_.File("result.png");
+  const std::string written_ = std::string(9'000'000, 'x');
+  std::atomic<int> sent_{0};
+};
+
+TEST_F(KeptFileTest, IsSentAsItWasWritten) {
+  EXPECT_EQ(Ask("GET", "/results/key/0").body(), written_);
+  EXPECT_EQ(Ask("GET", "/results/key/0", {{"Range", "bytes=8999990-"}}).body(), "xxxxxxxxxx");
+  EXPECT_TRUE(testing::WaitFor([&] { return sent_ == 2; }));
+}
+
+TEST_F(KeptFileTest, AnAlteredFileIsRefused) {
+  std::fstream(path_, std::ios::in | std::ios::out).seekp(8'999'999).put('y');
+  ExpectRefused();
+  Site().StopGateway();
+  EXPECT_EQ(sent_, 0);
+}
+
+TEST_F(KeptFileTest, AFileOfAnotherSizeIsRefused) {
+  std::filesystem::resize_file(path_, written_.size() - 1);
+  ExpectRefused();
+  std::ofstream(path_) << written_ << "x";
+  ExpectRefused();
+}
+
+TEST_F(KeptFileTest, ALinkOrAPipeIsRefused) {
+  // The link leads to a file with the same contents.
+  std::filesystem::rename(path_, folder_.File("other.png"));
+  std::filesystem::create_symlink("other.png", path_);
+  ExpectRefused();
+  std::filesystem::remove(path_);
+  ASSERT_EQ(mkfifo(path_.c_str(), 0600), 0);
+  ExpectRefused();
+  std::filesystem::remove(path_);
+  EXPECT_EQ(Ask("GET", "/results/key/0").result(), http::status::not_found);
+}
+
+// A large file is checked while it is sent. Its last bytes do not arrive.
+TEST_F(KeptFileTest, TheConnectionBreaksBeforeTheEndOfALargeAlteredFile) {
+  constexpr std::uint64_t kBytes = KeptFile::kCheckedFirst_bytes + 1;
+  std::filesystem::resize_file(path_, kBytes);  // the additional bytes take no space
+  options_.find_kept_file = [this](std::string_view) {
+    return KeptFile{path_, "tag", [this] { ++sent_; },
+                    FileContents{kBytes, DigestOf("another file")}};
+  };
+  RawClient client(Site().Port());
+  client.Send("GET /results/key/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  const std::string answer = client.ReadToEnd();
+  EXPECT_TRUE(answer.starts_with("HTTP/1.1 200"));
+  EXPECT_LT(answer.size() - (answer.find("\r\n\r\n") + 4), kBytes);
+  Site().StopGateway();
+  EXPECT_EQ(sent_, 0);
 }
 
 TEST_F(HttpTest, ServesThePage) {

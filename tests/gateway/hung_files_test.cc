@@ -1,5 +1,5 @@
-// Tests of files whose storage does not answer. They use named pipes: opening a pipe for reading
-// waits for a writer.
+// Tests of files whose storage does not answer. The gateway opens its files by a function that
+// waits at the path of a named pipe until the pipe has a writer.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,6 +18,8 @@
 #include <thread>
 #include <vector>
 
+#include "base/file_descriptor.h"
+#include "base/own_file.h"
 #include "tests/gateway/echo_test.h"
 #include "tests/gateway/raw_client.h"
 #include "tests/gateway/websocket_client.h"
@@ -36,6 +38,10 @@ class HungFilesTest : public EchoTest {
     std::ofstream(folder_.File("result.png")) << "picture";
     options_.page_directory = folder_.Path().string();
     EXPECT_EQ(mkfifo(hung_.c_str(), 0600), 0);
+    options_.open_file = [hung = hung_](const std::string& path) {
+      if (path == hung) base::FileDescriptor(open(path.c_str(), O_RDONLY));
+      return base::OpenOwnFile(path);
+    };
     options_.find_kept_file = [this](std::string_view path) -> std::optional<KeptFile> {
       if (path == "/results/hung/0") {
         ++asked_;

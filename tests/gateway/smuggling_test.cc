@@ -56,6 +56,35 @@ TEST_F(SmugglingTest, TwoLengthsAreRefused) {
                 "\r\n0\r\n\r\n");
 }
 
+// The body says why, also where the lines arrive one by one.
+TEST_F(SmugglingTest, LinesThatContinueOthersAreRefused) {
+  for (const std::string folded :
+       {"X: y\r\n Transfer-Encoding: chunked\r\n", "Transfer-Encoding:\r\n chunked\r\n",
+        "X: y\r\n\tz\r\n", "X: y\r\n \r\n"}) {
+    const std::string header = "GET /healthz HTTP/1.1\r\n" + kHost + folded + "\r\n";
+    ExpectRefused(header);
+    EXPECT_NE(AnswersTo(header).find("a line begins with a space or a tab"), std::string::npos);
+    ExpectRefused(kPost + kHost + kType + "Content-Length: 5\r\n" + folded + "\r\n" + Frame(""));
+    RawClient slow(Site().Port());
+    for (const char one : header) slow.SendUntilClosed(std::string(1, one));
+    EXPECT_EQ(slow.Read().result(), boost::beast::http::status::bad_request);
+  }
+  // The first line of a body may begin with a space.
+  RawClient plain(Site().Port());
+  plain.Send("GET /healthz HTTP/1.1\r\n" + kHost + "Content-Length: 3\r\n\r\n \r\n");
+  EXPECT_EQ(plain.Read().result(), boost::beast::http::status::ok);
+}
+
+TEST_F(SmugglingTest, MalformedChunksAreRefusedWithTheReason) {
+  for (const std::string body : {"zz\r\n", "-1\r\n", "10000000000000000\r\n", "5\r\nabcdefgh\r\n",
+                                 "0\r\nX: y\r\n z\r\n: x\r\n\r\n"}) {
+    const std::string request = kPost + kHost + kType + "Transfer-Encoding: chunked\r\n\r\n" + body;
+    ExpectRefused(request);
+    EXPECT_NE(AnswersTo(request).find("Cannot parse the request's body: "), std::string::npos)
+        << body;
+  }
+}
+
 TEST_F(SmugglingTest, RepeatedHostAndOriginAreRefused) {
   const std::string get = "GET /healthz HTTP/1.1\r\n";
   ExpectRefused(get + kHost + "Host: evil.example\r\n\r\n");

@@ -1,6 +1,5 @@
 // Tests of render jobs on a fake machine: every picture is drawn once, one failure does not affect
 // others, only the owner has access, and jobs continue after a restart.
-#include <fcntl.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -15,7 +14,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "base/file_descriptor.h"
+#include "base/own_file.h"
 #include "gmock/gmock.h"
 #include "google/rpc/error_details.pb.h"
 #include "google/rpc/status.pb.h"
@@ -357,15 +356,19 @@ TEST_F(RenderJobTest, AStorageThatHangsHoldsUpOnlyItsOwnPictures) {
 TEST_F(RenderJobTest, AResultWhoseStorageHangsIsRefusedAndTheNextAtOnce) {
   ManualTime time;
   service::ServerOptions options = Options(time);
+  std::atomic<bool> hangs{false};
+  std::promise<void> storage;
+  options.job_files.open_result =
+      [&hangs, answers = storage.get_future().share()](const std::string& path) {
+        if (hangs && path.ends_with("/000000.png")) answers.wait();
+        return base::OpenOwnFile(path);
+      };
   FakeService service(options);
   Jobs jobs(service.server());
   const v1::RenderJob job = jobs.Create({Picture(0), Picture(1)});
   ASSERT_TRUE(WaitFor([&] { return jobs.Get(job.id()).job().counts().drawn() == 2; }));
   ASSERT_TRUE(jobs.Fetch(job.id(), 1).status.ok());
-  // Opening a pipe that has no writer hangs.
-  const std::string picture = absl::StrCat(folder_.File("jobs"), "/", job.id(), "/000000.png");
-  std::filesystem::rename(picture, picture + ".kept");
-  ASSERT_EQ(mkfifo(picture.c_str(), 0600), 0);
+  hangs = true;
   auto first = std::async(std::launch::async, [&] { return jobs.Fetch(job.id(), 0); });
   ASSERT_TRUE(WaitFor([&] {
     time.Advance(milliseconds(500));
@@ -378,11 +381,57 @@ TEST_F(RenderJobTest, AResultWhoseStorageHangsIsRefusedAndTheNextAtOnce) {
     EXPECT_EQ(ReasonOf(fetched.status, &retries), "STORAGE_HANGS");
     EXPECT_TRUE(retries);
   }
-  // The storage responds again, so that the fetches that opened the pipe reach its end.
-  std::filesystem::rename(picture, picture + ".pipe");
-  std::filesystem::rename(picture + ".kept", picture);
-  { const base::FileDescriptor writer(open((picture + ".pipe").c_str(), O_RDWR | O_NONBLOCK)); }
+  // The storage responds again.
+  storage.set_value();
   EXPECT_TRUE(WaitFor([&] { return jobs.Fetch(job.id(), 0).status.ok(); }));
+}
+
+TEST_F(RenderJobTest, AnAlteredResultIsNotGivenWhole) {
+  FakeService service(Options());
+  Jobs jobs(service.server());
+  const v1::RenderJob job = jobs.Create({Picture(0)});
+  ASSERT_TRUE(WaitFor([&] { return jobs.Get(job.id()).job().counts().drawn() == 1; }));
+  const std::string folder = absl::StrCat(folder_.File("jobs"), "/", job.id());
+  const std::string picture = folder + "/000000.png";
+  const std::string about = folder + "/000000.about";
+  const auto bytes = static_cast<std::uint64_t>(std::filesystem::file_size(picture));
+  const auto expect_damaged = [&](const char* why) {
+    for (const std::uint64_t offset : {std::uint64_t{0}, bytes / 2, bytes}) {
+      const Fetched fetched = jobs.Fetch(job.id(), 0, offset);
+      EXPECT_EQ(fetched.status.error_code(), grpc::StatusCode::DATA_LOSS) << why;
+      EXPECT_EQ(ReasonOf(fetched.status), "RESULT_DAMAGED") << why;
+      EXPECT_EQ(fetched.bytes, "") << why << ": its only chunk is the last";
+    }
+  };
+  std::filesystem::copy(folder, folder + ".kept", std::filesystem::copy_options::recursive);
+  const auto restore = [&] {
+    std::filesystem::remove_all(folder);
+    std::filesystem::copy(folder + ".kept", folder, std::filesystem::copy_options::recursive);
+    EXPECT_TRUE(jobs.Fetch(job.id(), 0, bytes / 2).status.ok());
+  };
+  std::fstream(picture, std::ios::in | std::ios::out).seekp(1).put('!');
+  expect_damaged("another byte");
+  restore();
+  std::filesystem::resize_file(picture, bytes - 1);
+  expect_damaged("shorter");
+  restore();
+  std::ofstream(picture, std::ios::app) << "!";
+  expect_damaged("longer");
+  restore();
+  for (const std::string& file : {picture, about}) {
+    std::filesystem::remove(file);
+    std::filesystem::create_symlink(
+        folder + ".kept/" + std::filesystem::path(file).filename().string(), file);
+    expect_damaged("a link to the same contents");
+    restore();
+    std::filesystem::remove(file);
+    ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+    expect_damaged("a pipe");
+    restore();
+  }
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directory_symlink(folder + ".kept", folder);
+  expect_damaged("a link to the folder");
 }
 
 TEST_F(RenderJobTest, CancellingFreesTheDevice) {

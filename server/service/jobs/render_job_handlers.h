@@ -9,6 +9,7 @@
 #include "jobs/jobs.h"
 #include "service/engine/engine.h"
 #include "service/engine/limits.h"
+#include "service/jobs/job_files.h"
 #include "thunderhead/v1/job.pb.h"
 
 namespace thunderhead::service {
@@ -37,11 +38,12 @@ grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, const Limits& limits
                                           const v1::CancelRenderJobRequest* request,
                                           v1::CancelRenderJobResponse* response);
 
-// The resources with which FetchRenderResult reads result files: separate threads, and calls to the
-// storage with a timeout.
+// The resources with which FetchRenderResult reads result files: separate threads, calls to the
+// storage with a timeout, and the function that opens a file.
 struct ResultReading {
   base::Executor& threads;
   base::PatientCalls& calls;
+  OpenResult open;
 };
 grpc::ServerWriteReactor<v1::FetchRenderResultResponse>* FetchRenderResult(
     jobs::Jobs& jobs, const ResultReading& reading, const Limits& limits,

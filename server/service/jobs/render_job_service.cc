@@ -19,16 +19,17 @@ absl::Status NoJobs() {
 
 RenderJobService::RenderJobService(Engine& engine, access::Door& door,
                                    rpc_port::ConnectionCalls& calls, jobs::Jobs* jobs,
-                                   std::chrono::milliseconds patience)
+                                   const JobFiles& files)
     : engine_(engine),
       jobs_(jobs),
       entrance_(door, calls, jobs != nullptr ? absl::OkStatus() : NoJobs()),
+      open_(files.open_result),
       // The executor refuses no read: each stream waits for at most one read at a time, and the
       // access control limits the number of streams.
       reading_({.threads = kReadingThreads,
                 .max_waiting = door.limits().max_streams,
                 .max_waiting_each = door.limits().max_streams_per_identity}),
-      calls_(patience, engine.sessions.time()) {}
+      calls_(files.patience, engine.sessions.time()) {}
 
 grpc::ServerUnaryReactor* RenderJobService::CreateRenderJob(
     grpc::CallbackServerContext* context, const v1::CreateRenderJobRequest* request,
@@ -74,8 +75,8 @@ grpc::ServerWriteReactor<v1::FetchRenderResultResponse>* RenderJobService::Fetch
     grpc::CallbackServerContext* context, const v1::FetchRenderResultRequest* request) {
   return entrance_.Stream<grpc::ServerWriteReactor<v1::FetchRenderResultResponse>>(
       "FetchRenderResult", context, [&](CallerRef caller) {
-        return service::FetchRenderResult(*jobs_, {reading_, calls_}, engine_.limits, context,
-                                          std::move(caller), request);
+        return service::FetchRenderResult(*jobs_, {reading_, calls_, open_}, engine_.limits,
+                                          context, std::move(caller), request);
       });
 }
 

@@ -2,14 +2,13 @@
 // handler (render_job_handlers.h).
 #pragma once
 
-#include <chrono>
-
 #include "access/door.h"
 #include "base/executor.h"
 #include "base/patient_calls.h"
 #include "jobs/jobs.h"
 #include "rpc_port/admission.h"
 #include "service/engine/engine.h"
+#include "service/jobs/job_files.h"
 #include "thunderhead/v1/job.grpc.pb.h"
 
 namespace thunderhead::service {
@@ -17,9 +16,9 @@ namespace thunderhead::service {
 class RenderJobService final : public v1::RenderJobService::CallbackService {
  public:
   // `jobs` is null if the server keeps no jobs. All arguments must outlive this object. Fetching a
-  // result fails if its storage does not respond within `patience`.
+  // result fails if its storage does not respond within `files.patience`.
   RenderJobService(Engine& engine, access::Door& door, rpc_port::ConnectionCalls& calls,
-                   jobs::Jobs* jobs, std::chrono::milliseconds patience);
+                   jobs::Jobs* jobs, const JobFiles& files);
 
   grpc::ServerUnaryReactor* CreateRenderJob(grpc::CallbackServerContext* context,
                                             const v1::CreateRenderJobRequest* request,
@@ -49,6 +48,7 @@ class RenderJobService final : public v1::RenderJobService::CallbackService {
   Engine& engine_;
   jobs::Jobs* const jobs_;
   const rpc_port::Entrance entrance_;
+  const OpenResult open_;
   base::Executor reading_;
   base::PatientCalls calls_;  // requests to the storage of results
 };

@@ -190,14 +190,17 @@ TEST_F(JwtTest, ASignedTokenIsBelieved) {
 
 TEST_F(JwtTest, ForgedTokensAreNot) {
   EXPECT_THAT(Complaint(Sign({}, JWT_ALG_HS256, std::string(32, 'x'))), HasSubstr("not signed"));
-  EXPECT_THAT(Complaint(Sign({}, JWT_ALG_NONE, "")), HasSubstr("the form"));
-  EXPECT_THAT(Complaint(Sign({}, JWT_ALG_HS512, std::string(64, 's'))), HasSubstr("not signed"));
+  EXPECT_THAT(Complaint(Sign({}, JWT_ALG_NONE, "")), HasSubstr("has no signature"));
+  EXPECT_THAT(Complaint(Sign({}, JWT_ALG_HS512, std::string(64, 's'))),
+              HasSubstr("another algorithm (alg) than HS256"));
   // Changes the payload under the signature.
   std::string token = Sign();
-  token[token.find('.') + 5] ^= 1;
+  const std::string other = Sign({.subject = "otto"});
+  token.replace(token.find('.'), token.rfind('.') - token.find('.'), other, other.find('.'),
+                other.rfind('.') - other.find('.'));
   EXPECT_THAT(Complaint(token), HasSubstr("not signed"));
   // Removes the signature, as with alg none.
-  EXPECT_THAT(Complaint(token.substr(0, token.rfind('.') + 1)), HasSubstr("the form"));
+  EXPECT_THAT(Complaint(token.substr(0, token.rfind('.') + 1)), HasSubstr("has no signature"));
   EXPECT_THAT(Complaint("nonsense"), HasSubstr("the form"));
   EXPECT_THAT(Complaint(std::string(10'000, 'a')), HasSubstr("too long"));
 }
@@ -229,17 +232,36 @@ TEST_F(JwtTest, TimesAndClaimsAreChecked) {
   EXPECT_THAT(Complaint(Sign({.begins_in_s = 253'402'300'799})), HasSubstr("not valid yet"));
   // These are kNow plus an hour, in forms that are not whole numbers.
   const auto later = std::chrono::system_clock::to_time_t(kNow) + 3600;
-  for (const std::string& nbf :
-       {absl::StrCat(later, ".5"), std::string("1e300"), absl::StrCat("\"", later, "\""),
-        std::string("null"), std::string("[]")}) {
-    EXPECT_THAT(Complaint(Sign({.json = absl::StrCat("{\"nbf\": ", nbf, "}")})),
-                HasSubstr("not valid yet"))
-        << nbf;
+  EXPECT_THAT(Complaint(Sign({.json = absl::StrCat("{\"nbf\": ", later, ".5}")})),
+              HasSubstr("not valid yet"));
+  for (const std::string& no_time : {absl::StrCat("\"", later, "\""), std::string("null"),
+                                     std::string("[]"), std::string("true")}) {
+    EXPECT_THAT(Complaint(Sign({.json = absl::StrCat("{\"nbf\": ", no_time, "}")})),
+                HasSubstr("from which it is valid (nbf) that is not a number"))
+        << no_time;
+    EXPECT_THAT(
+        Complaint(Sign({.json = absl::StrCat("{\"exp\": ", no_time, "}"), .expires_in_s = 0})),
+        HasSubstr("at which it expires (exp) that is not a number"))
+        << no_time;
+  }
+  EXPECT_EQ(Complaint(Sign({.json = absl::StrCat("{\"exp\": ", later, ".5}"), .expires_in_s = 0})),
+            "");
+  for (const char* const past : {"0", "-1", "1", "0.5"}) {
+    EXPECT_THAT(Complaint(Sign({.json = absl::StrCat("{\"exp\": ", past, "}"), .expires_in_s = 0})),
+                HasSubstr("has expired"))
+        << past;
   }
   EXPECT_EQ(Complaint(Sign({.json = "{\"nbf\": 1.5}"})), "");
   EXPECT_THAT(Complaint(Sign({.subject = ""})), HasSubstr("(sub)"));
   EXPECT_THAT(Complaint(Sign({.role = ""})), HasSubstr("no role"));
-  EXPECT_THAT(Complaint(Sign({.role = "king"})), HasSubstr("no role"));
+  EXPECT_THAT(Complaint(Sign({.role = "king"})),
+              HasSubstr("has another role (thunderhead_role) than viewer, presenter"));
+  EXPECT_THAT(Complaint(Sign({.role = "", .json = R"({"thunderhead_role": ["operator"]})"})),
+              HasSubstr("has a claim thunderhead_role that is not a text"));
+  EXPECT_THAT(Complaint(Sign({.subject = std::string(65, 'a')})),
+              HasSubstr("has a name (sub) of 65 bytes, and 1 to 64 are allowed"));
+  EXPECT_THAT(Complaint(Sign({.subject = "", .json = R"({"sub": 5})"})),
+              HasSubstr("has a claim sub that is not a text"));
   EXPECT_THAT(Complaint(Sign(), {.issuer = "us"}), HasSubstr("(iss)"));
   EXPECT_EQ(Complaint(Sign({.issuer = "us"}), {.issuer = "us"}), "");
   EXPECT_THAT(Complaint(Sign({.audience = "mail"}), {.audience = "storms"}), HasSubstr("(aud)"));
@@ -255,6 +277,26 @@ TEST_F(JwtTest, TimesAndClaimsAreChecked) {
     EXPECT_THAT(Complaint(Sign({.json = json}), {.audience = "storms"}), HasSubstr("(aud)"))
         << other;
   }
+}
+
+// libjwt cannot parse these claims, and reports that in the same way as a wrong signature.
+TEST_F(JwtTest, ClaimsThatCannotBeReadAreNotCalledAWrongSignature) {
+  const std::string token = Sign();
+  const std::string header = token.substr(0, token.find('.') + 1);
+  const auto complaint = [&](const std::string& claims) {
+    return Complaint(absl::StrCat(header, absl::WebSafeBase64Escape(claims), ".AAAA"));
+  };
+  EXPECT_THAT(complaint(R"({"exp": 9223372036854775808})"), HasSubstr("number that is too large"));
+  EXPECT_THAT(complaint(R"({"exp": 18446744073709551616})"), HasSubstr("number that is too large"));
+  EXPECT_THAT(complaint("{\"sub\": \"anna\\u0000\"}"), HasSubstr("NUL character"));
+  EXPECT_THAT(complaint("{\"x\": " + std::string(200, '[') + std::string(200, ']') + "}"),
+              HasSubstr("nested too deeply"));
+  for (const char* const text : {R"({"exp": 1e400})", "null", "[]", "{", "\"\xff\"", "{} {}"}) {
+    EXPECT_THAT(complaint(text), HasSubstr("claims that are not a valid JSON object")) << text;
+  }
+  EXPECT_THAT(complaint("{}"), HasSubstr("not signed"));
+  EXPECT_THAT(Complaint(absl::WebSafeBase64Escape("{}") + token.substr(token.find('.'))),
+              HasSubstr("without the algorithm"));
 }
 
 TEST_F(JwtTest, APublicKeyIsForRs256Alone) {

@@ -20,7 +20,9 @@
 #include <vector>
 
 #include "base/file_descriptor.h"
+#include "base/whole_file.h"
 #include "gtest/gtest.h"
+#include "jobs/result_folder.h"
 #include "tests/support/manual_time.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/wait_for.h"
@@ -349,6 +351,34 @@ TEST_F(UnwrittenPictures, OfOneJobWhoseFolderIsSomebodyElsesHoldUpNoOtherJob) {
   Create(3);
   EXPECT_TRUE(WaitFor([this] { return jobs_->Load().result_bytes == 15; }));
   EXPECT_EQ(jobs_->Load().waiting, 1U);
+}
+
+TEST_F(UnwrittenPictures, ALinkInPlaceOfAJobsFolderIsNotFollowed) {
+  Open();
+  may_take_ = false;
+  const std::string id = Create(1);
+  ASSERT_TRUE(WaitFor([this] { return begun_ > 0; }));
+  const std::string other = folder_.File("other");
+  std::filesystem::create_directory(other);
+  std::ofstream(other + "/000000.png") << "of another user";
+  std::ofstream(other + "/x.partial") << "of another user";
+  std::filesystem::create_directory_symlink(other, results_ + "/" + id);
+  may_take_ = true;
+  may_take_.notify_all();
+  Create(3);
+  EXPECT_TRUE(WaitFor([this] { return jobs_->Load().result_bytes == 15; }));
+  EXPECT_EQ(jobs_->Load().waiting, 1U);
+  EXPECT_EQ(base::ReadWholeFile(other + "/000000.png").value_or(""), "of another user");
+  EXPECT_FALSE(std::filesystem::exists(other + "/000000.about"));
+  auto folder = ResultFolder::Open(results_, patience_, Time());
+  ASSERT_TRUE(folder.ok());
+  folder->Clean({id});
+  folder->Remove(id, 0, "png");
+  EXPECT_TRUE(std::filesystem::exists(other + "/x.partial"));
+  EXPECT_TRUE(std::filesystem::exists(other + "/000000.png"));
+  folder->Remove(id);
+  EXPECT_FALSE(std::filesystem::is_symlink(results_ + "/" + id));
+  EXPECT_TRUE(std::filesystem::exists(other + "/000000.png"));
 }
 
 TEST_F(UnwrittenPictures, OfAFolderThatHangsHoldUpNeitherCallersNorTheEnd) {
