@@ -37,10 +37,10 @@ struct KeptFile {
   // Called on the gateway's thread when the client has been sent the complete file. It may be
   // empty, and must not block.
   std::function<void()> on_sent = nullptr;
-  // The contents that the file was given. If the file has others, they are not sent and the
-  // response is 500. If a file of more than kCheckedFirst_bytes is wrong in spite of its size, the
-  // connection breaks before its last bytes, and parts of it are sent unchecked. If absent,
-  // anything is sent.
+  // The size and digest that the file had when it was written. If the file differs now, the
+  // response is 500. The digest of a file larger than kCheckedFirst_bytes is computed while it is
+  // sent: if it differs, the connection breaks before the last bytes. Requests for parts of such a
+  // file are checked by size only. If absent, the file is sent unchecked.
   std::optional<FileContents> contents = std::nullopt;
 
   static constexpr std::uint64_t kCheckedFirst_bytes = std::uint64_t{64} << 20;

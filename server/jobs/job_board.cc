@@ -26,7 +26,7 @@ JobBoard::Entry& JobBoard::Insert(JobRecord record) {
   entry.order = ++created_;
   entry.version = 1;
   entry.versions.assign(entry.record.pictures.size(), 1);
-  entry.not_before.assign(entry.record.pictures.size(), Time());
+  entry.not_before.assign(entry.record.pictures.size(), Time::min());
   for (const ImageRecord& picture : entry.record.pictures) {
     ++entry.counts[IndexOf(picture.state)];
     if (picture.state == PictureState::kDrawn) AddResult(entry, picture);

@@ -1,7 +1,8 @@
 // The people of a session and their connections. An Audience changes the roster (who is present and
 // the person in control) and the board (pointers and marks) under a lock, and sends the new state
 // to all people. Each update is serialized once for all people and sent at most a few times a
-// second; older states are skipped. Safe from any thread. Knows no message formats.
+// second; older states are skipped. Any thread may call it. It does not use protobuf
+// messages.
 #pragma once
 
 #include <chrono>
@@ -163,8 +164,8 @@ class Audience {
     std::uint64_t joined_at = 0;  // revision of the roster when the person joined
   };
 
-  // The following functions need mutex_. TellDue sends the subjects whose minimum pause since the
-  // last update is over. It returns true if it sent any.
+  // The following functions need mutex_. TellDue sends the updates that are due, because the
+  // minimum pause since the last update of their kind is over. It returns true if it sent any.
   void Forget(std::uint64_t id);
   void TellMarks(Time now);
   bool TellDue(Time now);

@@ -1,6 +1,6 @@
 // The people of a session: who they are, who is in control, who asks for control, who looks around,
-// and what the rules allow each of them. A plain value; the time is an argument. Knows no
-// connections and no messages.
+// and what the rules allow each of them. A plain value; the time is an argument. It uses
+// neither connections nor messages.
 //
 // At most one person steers at a time. Control is in one of four states. A person has it. Or it
 // waits some seconds for the person who steered and lost the connection. Or it is kept for the

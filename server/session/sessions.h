@@ -1,6 +1,6 @@
 // The sessions of a server. Each session shows one scene to any number of people; every update
 // replaces the scene. People join with one of the session's two keys. A session expires when it has
-// not been used for a while. Safe from any thread. Knows no GL and no message formats.
+// not been used for a while. Any thread may call it. It uses neither GL nor protobuf messages.
 #pragma once
 
 #include <chrono>
