@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -40,6 +42,7 @@ absl::Status ReadConfigFile(CLI::App& command, const std::string& path) {
   } catch (const CLI::Error& unreadable) {
     return absl::InvalidArgumentError(absl::StrCat(path, ": ", unreadable.what()));
   }
+  std::set<const CLI::Option*> set;
   for (const CLI::ConfigItem& setting : settings) {
     if (!setting.parents.empty()) {
       return absl::InvalidArgumentError(absl::StrCat(
@@ -51,6 +54,11 @@ absl::Status ReadConfigFile(CLI::App& command, const std::string& path) {
       return absl::InvalidArgumentError(absl::StrCat(path, ": there is no setting '", setting.name,
                                                      "'; `thunderhead ", command.get_name(),
                                                      " --print-config` lists them all"));
+    }
+    if (!set.insert(option).second) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          path, ": ", setting.name,
+          " is set a second time; write each setting once, and several values on one line"));
     }
     // ConfigFileOf writes an empty value for a setting that has none. Such a setting keeps its
     // default.

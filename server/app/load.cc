@@ -13,6 +13,7 @@
 #include "app/address.h"
 #include "app/client_access.h"
 #include "app/commands.h"
+#include "app/hidden_flags.h"
 #include "app/interruption.h"
 #include "app/picture_size.h"
 #include "base/status.h"
@@ -206,7 +207,7 @@ Command AddLoad(CLI::App& app) {
           "authorities");
   AddImageFlags("--images", *load, *flags);
   // The earlier names are still accepted.
-  for (CLI::Option* earlier : AddImageFlags("--stills", *load, *flags)) earlier->group("");
+  for (CLI::Option* earlier : AddImageFlags("--stills", *load, *flags)) HideFromHelp(*earlier);
   AddBounds(*load, flags->bounds);
   load->add_flag("--json", flags->json, "Print JSON");
   return {load, [flags] { return Load(*flags); }};

@@ -14,6 +14,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "app/commands.h"
+#include "app/finite_flags.h"
+#include "app/hidden_flags.h"
 #include "app/library_log.h"
 #include "app/log_format.h"
 #include "base/error_details.h"
@@ -69,11 +71,13 @@ int Main(int argc, char** argv) {
   spdlog::default_logger()->set_formatter(TextFormatter());
   TakeLibraryLogs();
   CLI::App app("Storms from weather models as they would look in the sky.", "thunderhead");
+  app.formatter(HelpFormatter());
   app.set_version_flag("--version", "thunderhead " + base::Version());
   app.require_subcommand(1);
   const std::array commands = {AddServe(app),   AddRender(app), AddSequence(app),  AddWatch(app),
                                AddInspect(app), AddFlux(app),   AddMeasure(app),   AddGenerate(app),
                                AddFit(app),     AddExport(app), AddImportVdb(app), AddLoad(app)};
+  RefuseInfiniteNumbers(app);
   app.footer(runs::ExitCodesHelp());
   for (const Command& command : commands) command.app->footer(runs::ExitCodesHelp());
   if (const absl::Status status = CheckSubcommand(app, argc, argv); !status.ok()) {

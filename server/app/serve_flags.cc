@@ -10,6 +10,7 @@
 #include "absl/strings/str_cat.h"
 #include "access/secret_file.h"
 #include "app/audit_log.h"
+#include "app/hidden_flags.h"
 #include "base/machine_memory.h"
 #include "base/status.h"
 
@@ -250,7 +251,7 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
   AddLimitFlags(serve, flags);
   AddJobsFlags(serve, flags.jobs);
   serve.get_option("--help")->configurable(false);
-  for (const char* const name : kRarelyChanged) serve.get_option(name)->group("");
+  for (const char* const name : kRarelyChanged) HideFromHelp(*serve.get_option(name));
 }
 
 Budgets BudgetsOf(const ServeFlags& flags) {

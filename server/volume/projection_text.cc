@@ -119,7 +119,7 @@ std::string ProjectionText::Text(std::string_view parameter) const {
 
 std::optional<double> ProjectionText::Number(std::string_view parameter) const {
   double value = 0.0;
-  if (!absl::SimpleAtod(Text(parameter), &value)) return std::nullopt;
+  if (!absl::SimpleAtod(Text(parameter), &value) || !std::isfinite(value)) return std::nullopt;
   return value;
 }
 

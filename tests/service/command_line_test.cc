@@ -142,8 +142,14 @@ TEST_F(CommandLineTest, WrongSettingsAreRefusedWithTheirFile) {
   refuse("max-sessions = many", "max-sessions: ");
   refuse("max-sessions = 0", "max-sessions: ");
   refuse("insecure = perhaps", "insecure: ");
+  refuse("max-requests = nan", "max-requests: --max-requests: 'nan' is not a finite number");
+  refuse("max-sessions = 3\nmax-viewers = 7\nmax-sessions = 4",
+         "max-sessions is set a second time");
+  refuse("max-images = 3\nmax-viewers = 7\nmax-stills = 4", "max-stills is set a second time");
   ExpectError("serve --config " + folder_.File("none"), 64, "there is no such file");
   ExpectError("serve", 64, "there are no storms to serve");
+  // The name of a flag that the help omits is in the message, too.
+  ExpectError("serve --data " + kSample + " --max-requests -1", 64, "--max-requests: Value -1");
 }
 
 // The help of `serve` lists only the flags that most servers need, on two screens. The other
@@ -159,6 +165,17 @@ TEST_F(CommandLineTest, HelpOfServeIsShort) {
   EXPECT_LE(flags, 32);
   EXPECT_THAT(help, HasSubstr("--print-config"));
   EXPECT_THAT(help, Not(HasSubstr("--max-streams-per-connection")));
+}
+
+TEST_F(CommandLineTest, NumbersAreFinite) {
+  for (const char* const number : {"nan", "inf"}) {
+    ExpectError("serve --data " + kSample + " --max-requests " + number, 64, number);
+    ExpectError(render_ + " --size 16x9 --max-error " + number, 64, number);
+    ExpectError("measure frames " + kSample + " --seconds " + number, 64, number);
+    ExpectError(
+        "generate --ellipsoid 0,0,0,1,1," + std::string(number) + " -o " + folder_.File("cloud.nc"),
+        64, "--ellipsoid is '0,0,0,1,1,");
+  }
 }
 
 TEST_F(CommandLineTest, WrongUsageIsABadRequest) {

@@ -1,0 +1,29 @@
+#include "app/hidden_flags.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace thunderhead::app {
+namespace {
+
+// The heading of these flags in the file of --print-config.
+constexpr char kHidden[] = "Rarely changed";
+
+class Formatter final : public CLI::Formatter {
+ public:
+  std::string make_group(std::string group, bool is_positional,
+                         std::vector<const CLI::Option*> options) const override {
+    if (group == kHidden) return "";
+    return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
+  }
+};
+
+}  // namespace
+
+void HideFromHelp(CLI::Option& option) { option.group(kHidden); }
+
+std::shared_ptr<CLI::Formatter> HelpFormatter() { return std::make_shared<Formatter>(); }
+
+}  // namespace thunderhead::app
