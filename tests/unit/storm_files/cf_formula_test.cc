@@ -15,7 +15,6 @@ namespace {
 using testing::CfContent;
 using ::testing::Contains;
 using ::testing::HasSubstr;
-using testing::Middles;
 using ::testing::Not;
 using testing::SyntheticCf;
 
