@@ -10,8 +10,8 @@
 namespace thunderhead::app {
 namespace {
 
-// Returns the error for a text that is a number without a finite value, otherwise an empty text. A
-// text that is no number has an error of its own.
+// Returns the error for a number that is not finite, otherwise an empty text. CLI11 itself refuses
+// a text that is no number.
 std::string Check(const std::string& text) {
   double value = 0.0;
   if (!absl::SimpleAtod(text, &value) || std::isfinite(value)) return "";
