@@ -3,12 +3,18 @@
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
+#include "base/bounded_file.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "picture/exr_file.h"
 #include "runs/progress_bar.h"
 
 namespace thunderhead::app {
+namespace {
+
+constexpr std::size_t kMaxKey_bytes = 1 << 20;
+
+}  // namespace
 
 absl::StatusOr<picture::LinearPicture> KeptReference(const ReferenceRequest& request,
                                                      const volume::HydrometeorFields& fields,
@@ -18,7 +24,8 @@ absl::StatusOr<picture::LinearPicture> KeptReference(const ReferenceRequest& req
       absl::StrCat(request.scene_text, "\npeak cut: ", request.options.peak_cut_deg,
                    "\nsamples a pixel: ", request.samples_per_pixel, "\n");
   const std::string key_path = path + ".scene";
-  if (std::filesystem::exists(path) && base::ReadWholeFile(key_path).value_or("") == key) {
+  if (std::filesystem::exists(path) &&
+      base::ReadBoundedFile(key_path, kMaxKey_bytes).value_or("") == key) {
     return picture::ReadExr(path);
   }
   reference::RefineLimits limits;

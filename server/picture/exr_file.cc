@@ -19,11 +19,16 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "base/bounded_file.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 
 namespace thunderhead::picture {
 namespace {
+
+// The largest pictures that the server draws have 32 megapixels, which with nine channels of 4
+// bytes are about 1.2 GB.
+constexpr std::size_t kMaxFile_bytes = std::size_t{2} << 30;
 
 constexpr std::array<const char*, 3> kRadiance = {"R", "G", "B"};
 constexpr std::array<const char*, 3> kError = {"stderr.R", "stderr.G", "stderr.B"};
@@ -213,7 +218,7 @@ absl::Status WriteExr(const std::string& path, const LinearPicture& picture,
 }
 
 absl::StatusOr<LinearPicture> ReadExr(const std::string& path) {
-  auto bytes = base::ReadWholeFile(path);
+  auto bytes = base::ReadBoundedFile(path, kMaxFile_bytes);
   if (!bytes.ok()) {
     return absl::InvalidArgumentError(
         absl::StrCat("cannot read '", path, "': ", bytes.status().message()));

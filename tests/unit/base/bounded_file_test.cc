@@ -1,0 +1,47 @@
+#include "base/bounded_file.h"
+
+#include <sys/stat.h>
+
+#include <fstream>
+#include <string>
+
+#include "gmock/gmock.h"
+#include "gtest/gtest.h"
+#include "tests/support/temporary_folder.h"
+
+namespace thunderhead::base {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string ErrorOf(const std::string& path) {
+  const absl::Status status = ReadBoundedFile(path, 2048).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument) << path;
+  return std::string(status.message());
+}
+
+TEST(BoundedFile, OnlyRegularFilesUpToTheLimitAreRead) {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.File("file");
+  const auto write = [&path](std::size_t bytes) { std::ofstream(path) << std::string(bytes, 'x'); };
+  for (const std::size_t bytes : {0, 1, 2048}) {
+    write(bytes);
+    EXPECT_EQ(ReadBoundedFile(path, 2048).value(), std::string(bytes, 'x'));
+  }
+  write(2049);
+  EXPECT_EQ(ErrorOf(path),
+            path + " has more than 2 KiB, the limit; check that it is the right file");
+  EXPECT_EQ(ReadFileStart(path, 2048).value(), std::string(2048, 'x'));
+  // The file is read in several blocks.
+  write(200'000);
+  EXPECT_EQ(ReadBoundedFile(path, 200'000).value(), std::string(200'000, 'x'));
+
+  EXPECT_THAT(ErrorOf(folder.File("none")), HasSubstr("none cannot be read (No such file"));
+  EXPECT_THAT(ErrorOf(folder.File("")), HasSubstr("is not a regular file"));
+  EXPECT_THAT(ErrorOf("/dev/zero"), HasSubstr("/dev/zero is not a regular file"));
+  ASSERT_EQ(mkfifo(folder.File("fifo").c_str(), 0600), 0);
+  EXPECT_THAT(ErrorOf(folder.File("fifo")), HasSubstr("is not a regular file"));
+}
+
+}  // namespace
+}  // namespace thunderhead::base
