@@ -184,25 +184,34 @@ TEST_F(WrfReader, CountsNegativesAndMissingValuesAndDrawsNeither) {
   SyntheticWrf file = Uniform(1e-3);
   file.fill_values["QCLOUD"] = 0.25;  // an unusual value, but it is the file's own
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   file.stored_values = {
-      {"QCLOUD", {0, 0, 1, 0}, -1e-13},     {"QCLOUD", {0, 0, 2, 0}, -3e-13},
-      {"QCLOUD", {1, 0, 0, 0}, kNan},       {"QCLOUD", {1, 0, 1, 0}, kInfinity},
-      {"QCLOUD", {1, 0, 2, 0}, -kInfinity}, {"QCLOUD", {1, 0, 3, 0}, 9.969209968386869e36},
-      {"QCLOUD", {1, 0, 4, 0}, 1e35},       {"QCLOUD", {1, 0, 5, 0}, -999.0},
+      {"QCLOUD", {0, 0, 1, 0}, -1e-13}, {"QCLOUD", {0, 0, 2, 0}, -3e-13},
+      {"QCLOUD", {1, 0, 0, 0}, kNan},   {"QCLOUD", {1, 0, 3, 0}, 9.969209968386869e36},
+      {"QCLOUD", {1, 0, 4, 0}, 1e35},   {"QCLOUD", {1, 0, 5, 0}, -999.0},
       {"QCLOUD", {1, 0, 6, 0}, 0.25},
   };
   const auto fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   const volume::FieldStatistics& statistics = fields->fields[0].statistics;
   EXPECT_EQ(statistics.negative_cells, 2);
-  EXPECT_EQ(statistics.missing_cells, 7);
+  EXPECT_EQ(statistics.missing_cells, 5);
   EXPECT_FLOAT_EQ(statistics.minimum, -3e-13F);
   EXPECT_FLOAT_EQ(statistics.maximum, 1e-3F);
   EXPECT_NEAR(ColumnPath(*fields, 0, 0, 0), 1e-3 * kDensity_kg_per_m3 * 3000.0, 1e-4);
   EXPECT_NEAR(ColumnPath(*fields, 0, 1, 0), 1e-3 * kDensity_kg_per_m3 * 500.0, 1e-4);
   for (const float mass : fields->fields[0].concentration_kg_per_m3) {
     ASSERT_TRUE(mass >= 0.0F && mass < 1.0F) << mass;
+  }
+}
+
+TEST_F(WrfReader, RefusesInfiniteAmounts) {
+  for (const double sign : {1.0, -1.0}) {
+    SyntheticWrf file = Uniform(1e-3);
+    file.stored_values = {{"QCLOUD", {1, 0, 1, 0}, sign * std::numeric_limits<double>::infinity()}};
+    const auto fields = Read(file);
+    EXPECT_EQ(fields.status().code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_THAT(std::string(fields.status().message()),
+                ::testing::HasSubstr("QCLOUD holds the value"));
   }
 }
 
