@@ -62,7 +62,13 @@ absl::Status ResultFolder::Write(const std::string& job_id, std::size_t place,
         const base::SlowCall slow(folder);
         std::error_code error;
         fs::create_directory(job, error);
-        if (!error && !IsOwnFolder(job)) {
+        if (!IsOwnFolder(job)) {
+          if (error) {
+            return base::WriteProblem(
+                absl::StrCat(job, " cannot be created (", error.message(),
+                             "); check that its folder exists, may be written to and has room"),
+                error.value());
+          }
           return absl::FailedPreconditionError(
               absl::StrCat(job, " is a link; results are written only to a folder: remove it"));
         }
