@@ -186,7 +186,8 @@ TEST_F(WrfReader, CountsNegativesAndMissingValuesAndDrawsNeither) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   file.stored_values = {
       {"QCLOUD", {0, 0, 1, 0}, -1e-13}, {"QCLOUD", {0, 0, 2, 0}, -3e-13},
-      {"QCLOUD", {1, 0, 0, 0}, kNan},   {"QCLOUD", {1, 0, 3, 0}, 9.969209968386869e36},
+      {"QCLOUD", {1, 0, 0, 0}, kNan},   {"QCLOUD", {1, 0, 1, 0}, kNan},
+      {"QCLOUD", {1, 0, 2, 0}, 1e35},   {"QCLOUD", {1, 0, 3, 0}, 9.969209968386869e36},
       {"QCLOUD", {1, 0, 4, 0}, 1e35},   {"QCLOUD", {1, 0, 5, 0}, -999.0},
       {"QCLOUD", {1, 0, 6, 0}, 0.25},
   };
@@ -194,7 +195,7 @@ TEST_F(WrfReader, CountsNegativesAndMissingValuesAndDrawsNeither) {
   ASSERT_TRUE(fields.ok()) << fields.status();
   const volume::FieldStatistics& statistics = fields->fields[0].statistics;
   EXPECT_EQ(statistics.negative_cells, 2);
-  EXPECT_EQ(statistics.missing_cells, 5);
+  EXPECT_EQ(statistics.missing_cells, 7);
   EXPECT_FLOAT_EQ(statistics.minimum, -3e-13F);
   EXPECT_FLOAT_EQ(statistics.maximum, 1e-3F);
   EXPECT_NEAR(ColumnPath(*fields, 0, 0, 0), 1e-3 * kDensity_kg_per_m3 * 3000.0, 1e-4);
