@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "base/regular_file.h"
 #include "base/status.h"
 
 namespace thunderhead::app {
@@ -31,6 +32,7 @@ absl::Status Set(CLI::Option& option, const CLI::ConfigItem& setting) {
 }  // namespace
 
 absl::Status ReadConfigFile(CLI::App& command, const std::string& path) {
+  THUNDERHEAD_RETURN_IF_ERROR(base::CheckRegularFile(path));
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) {
     return absl::InvalidArgumentError(

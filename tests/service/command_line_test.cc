@@ -193,7 +193,16 @@ TEST_F(CommandLineTest, WrongUsageIsABadRequest) {
   ExpectError("serve --data " + kSample + " --grpc 0.0.0.0:0", 64, "no token is needed");
   ExpectError("serve --data " + kSample + " --metrics 0.0.0.0:0", 64,
               "--metrics 0.0.0.0:0 can be reached");
-  ExpectError("serve --data " + kSample + " --auth tokens /dev/null", 78, "is not a file");
+  const std::string fifo = folder_.File("fifo");
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  for (const std::string& not_a_file : {fifo, std::string("/dev/null")}) {
+    const std::string says = not_a_file + " is not a file";
+    for (const std::string flag :
+         {"--auth tokens ", "--auth jwt ", "--config ", "--roster-timeouts ",
+          "--tls-key x --tls-cert ", "--tls-cert x --tls-key "}) {
+      ExpectError("serve --data " + kSample + " --state none " + flag + not_a_file, 78, says);
+    }
+  }
   ExpectError("serve --data " + kSample + " --auth king", 64, "none, tokens FILE or jwt FILE");
   ExpectError("serve --data " + kSample + " --tls-cert x", 64, "belong together");
   ExpectError("serve --data " + kSample + " --state /proc/none", 64, "--state is '/proc/none'");
