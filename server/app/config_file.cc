@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/bounded_file.h"
+#include "base/regular_file.h"
 #include "base/status.h"
 
 namespace thunderhead::app {
@@ -48,6 +49,7 @@ absl::Status Set(CLI::Option& option, const CLI::ConfigItem& setting) {
 }  // namespace
 
 absl::Status ReadConfigFile(CLI::App& command, const std::string& path) {
+  THUNDERHEAD_RETURN_IF_ERROR(base::CheckRegularFile(path));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<CLI::ConfigItem> settings, ReadSettings(path));
   std::set<const CLI::Option*> set;
   for (const CLI::ConfigItem& setting : settings) {

@@ -8,6 +8,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/file_stamp.h"
+#include "base/regular_file.h"
+#include "base/status.h"
 #include "spdlog/spdlog.h"
 
 namespace thunderhead::app {
@@ -20,6 +22,7 @@ using Seconds = std::chrono::duration<double>;
 }  // namespace
 
 absl::StatusOr<session::RosterTimeouts> ReadRosterTimeouts(const std::string& path) {
+  THUNDERHEAD_RETURN_IF_ERROR(base::CheckRegularFile(path));
   std::ifstream file(path);
   if (!file.is_open()) return absl::NotFoundError(absl::StrCat("cannot read ", path));
   session::RosterTimeouts timeouts;

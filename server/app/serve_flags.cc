@@ -12,6 +12,7 @@
 #include "app/audit_log.h"
 #include "app/hidden_flags.h"
 #include "base/machine_memory.h"
+#include "base/regular_file.h"
 #include "base/status.h"
 
 namespace thunderhead::app {
@@ -304,6 +305,7 @@ absl::Status CompleteFlags(ServeFlags& flags) {
     return absl::InvalidArgumentError("--tls-cert and --tls-key belong together: give both");
   }
   if (!flags.tls.key.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(base::CheckRegularFile(flags.tls.certificate));
     THUNDERHEAD_RETURN_IF_ERROR(access::ReadSecretFile(flags.tls.key).status());
   }
   flags.limits.max_render_time = std::chrono::milliseconds(std::lround(1e3 * flags.max_render_s));

@@ -107,9 +107,7 @@ JobView JobBoard::ViewOf(const Entry& entry, const Unfetched& unfetched) const {
   view.cancelled = entry.record.cancelled;
   view.counts = entry.counts;
   view.result_bytes = entry.result_bytes;
-  if (entry.counts[IndexOf(PictureState::kWaiting)] > 0) {
-    view.paused = PausedBecause(entry.record.owner, unfetched);
-  }
+  view.paused = PauseOf(entry, unfetched);
   return view;
 }
 

@@ -49,7 +49,8 @@ struct JobView {
   bool cancelled = false;
   PictureCounts counts{};
   std::uint64_t result_bytes = 0;
-  // Set if no further picture may be begun until clients have fetched results.
+  // Set if no further picture may be begun until clients have fetched results, or if the job's
+  // results cannot be written.
   std::optional<Problem> paused;
 };
 
@@ -136,6 +137,11 @@ class JobBoard {
   // Marks the picture as waiting again, to be begun at `not_before` or later. `counts` says whether
   // the ended attempt counts towards kMaxAttempts.
   bool PutBack(const PicturePlace& picture, bool counts, Time not_before);
+  // Records why the job's results cannot be written, or nothing if they can. Does nothing if the
+  // job does not exist.
+  void SetUnwritable(const std::string& id, std::optional<Problem> why);
+  // Records why no job's results can be written, or nothing.
+  void SetAllUnwritable(std::optional<Problem> why);
   bool IsDrawing(const PicturePlace& picture) const;
   // Returns false if the picture has been begun more than kMaxAttempts times, including the attempt
   // that Begin has just counted.
@@ -202,7 +208,8 @@ class JobBoard {
     // lost at a restart.
     Time last_used = {};
     bool saved = false;
-    bool was_paused = false;  // whether the job was paused at the last TakePauses
+    std::optional<Problem> unwritable;  // why the job's results cannot be written
+    bool was_paused = false;            // whether the job was paused at the last TakePauses
   };
   using Jobs = std::map<std::string, Entry>;
 
@@ -215,6 +222,10 @@ class JobBoard {
   Entry& Insert(JobRecord record);
   void Erase(Jobs::iterator job);
   JobView ViewOf(const Entry& entry, const Unfetched& unfetched) const;
+  // Returns why the results of a job that has not ended cannot be written, or nothing.
+  std::optional<Problem> UnwritableBecause(const Entry& entry) const;
+  // Returns why the job's pictures wait, or nothing if they are begun or the job has ended.
+  std::optional<Problem> PauseOf(const Entry& entry, const Unfetched& unfetched) const;
   Unfetched UnfetchedBytes() const;
   // Returns why no picture of `owner` may be begun because of unfetched results, or nothing if a
   // picture may be begun.
@@ -246,6 +257,7 @@ class JobBoard {
 
   const JobLimits limits_;
   Jobs jobs_;
+  std::optional<Problem> all_unwritable_;  // why no job's results can be written
   std::map<std::string, std::string> id_by_key_;
   std::uint64_t created_ = 0;
   std::uint64_t result_bytes_ = 0;

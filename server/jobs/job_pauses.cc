@@ -43,15 +43,36 @@ std::optional<Problem> JobBoard::PausedBecause(const std::string& owner,
   return std::nullopt;
 }
 
+std::optional<Problem> JobBoard::UnwritableBecause(const Entry& entry) const {
+  if (Unended(entry) == 0) return std::nullopt;
+  return entry.unwritable.has_value() ? entry.unwritable : all_unwritable_;
+}
+
+std::optional<Problem> JobBoard::PauseOf(const Entry& entry, const Unfetched& unfetched) const {
+  std::optional<Problem> unwritable = UnwritableBecause(entry);
+  if (unwritable.has_value() || entry.counts[IndexOf(PictureState::kWaiting)] == 0) {
+    return unwritable;
+  }
+  return PausedBecause(entry.record.owner, unfetched);
+}
+
+void JobBoard::SetUnwritable(const std::string& id, std::optional<Problem> why) {
+  const auto job = jobs_.find(id);
+  if (job != jobs_.end()) job->second.unwritable = std::move(why);
+}
+
+void JobBoard::SetAllUnwritable(std::optional<Problem> why) { all_unwritable_ = std::move(why); }
+
 std::vector<std::string> JobBoard::TakePauses() {
   std::vector<std::string> changed;
   const Unfetched unfetched = UnfetchedBytes();
   for (auto& [id, entry] : jobs_) {
     const bool waits = entry.counts[IndexOf(PictureState::kWaiting)] > 0;
-    const bool is_paused = waits && PausedBecause(entry.record.owner, unfetched).has_value();
+    const bool is_paused = PauseOf(entry, unfetched).has_value();
     // A change of a job without waiting pictures is not reported, because watchers were already
     // notified when its last picture ended.
-    if (std::exchange(entry.was_paused, is_paused) == is_paused || !waits) continue;
+    const bool is_told = waits || is_paused;
+    if (std::exchange(entry.was_paused, is_paused) == is_paused || !is_told) continue;
     ++entry.version;
     changed.push_back(id);
   }

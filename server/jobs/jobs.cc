@@ -33,6 +33,13 @@ Problem ProblemOf(const absl::Status& status) {
   return {status.code(), base::DetailsOf(status).reason, std::string(status.message())};
 }
 
+Problem NotWritten(const absl::Status& status) {
+  Problem problem = ProblemOf(status);
+  if (problem.reason.empty()) problem.reason = "RESULTS_NOT_WRITTEN";
+  problem.message = absl::StrCat("pictures wait until they can be written: ", problem.message);
+  return problem;
+}
+
 Problem EndedServer() {
   return {absl::StatusCode::kInternal, "PICTURE_ENDED_SERVER",
           absl::StrCat("it was begun ", JobBoard::kMaxAttempts,
@@ -413,6 +420,7 @@ void Jobs::WriteAgain(Lock& lock) {
     if (!kept.ok()) Refuse(place, kept);
   }
   lock.lock();
+  if (unwritten_.empty()) board_.SetAllUnwritable(std::nullopt);
 }
 
 void Jobs::Keep(Unwritten picture) {
@@ -425,6 +433,7 @@ void Jobs::Keep(Unwritten picture) {
                         drawn.bytes.size()};
   const absl::Status written = results_.Write(job_id, place, picture.drawn);
   lock.lock();
+  board_.SetUnwritable(job_id, std::nullopt);
   if (!written.ok() && !std::exchange(cannot_write_, true)) {
     base::LogError(
         base::Annotate(written, "pictures of render jobs wait until they can be written"));
@@ -432,10 +441,12 @@ void Jobs::Keep(Unwritten picture) {
   // Possibly only this job's folder cannot be written, for example because it belongs to another
   // user. Other jobs therefore continue.
   if (absl::IsFailedPrecondition(written)) {
+    board_.SetUnwritable(job_id, NotWritten(written));
     board_.PutBack(picture.place, false, Now() + kUnwritablePause);
     return;
   }
   if (!written.ok()) {
+    board_.SetAllUnwritable(NotWritten(written));
     paused_until_ = Now() + kUnwrittenPause;
     unwritten_.push_back(std::move(picture));
     return;

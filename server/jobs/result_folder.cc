@@ -54,20 +54,27 @@ absl::StatusOr<ResultFolder> ResultFolder::Open(const std::string& path,
 absl::Status ResultFolder::Write(const std::string& job_id, std::size_t place,
                                  std::shared_ptr<const DrawnPicture> picture) const {
   const std::string path = PathOf(job_id, place, picture->extension);
-  return calls_->Ask(path_,
-                     [folder = path_, job = absl::StrCat(path_, "/", job_id),
-                      about_path = AboutPathOf(job_id, place), path, write_file = write_file_,
-                      picture = std::move(picture)]() -> absl::Status {
-                       const base::SlowCall slow(folder);
-                       std::error_code error;
-                       fs::create_directory(job, error);
-                       if (!error && !IsOwnFolder(job)) {
-                         return absl::FailedPreconditionError(absl::StrCat(
-                             job, " is a link; results are written only to a folder: remove it"));
-                       }
-                       THUNDERHEAD_RETURN_IF_ERROR(write_file(about_path, picture->about));
-                       return write_file(path, picture->bytes);
-                     });
+  return calls_->Ask(
+      path_,
+      [folder = path_, job = absl::StrCat(path_, "/", job_id),
+       about_path = AboutPathOf(job_id, place), path,
+       picture = std::move(picture)]() -> absl::Status {
+        const base::SlowCall slow(folder);
+        std::error_code error;
+        fs::create_directory(job, error);
+        if (!IsOwnFolder(job)) {
+          if (error) {
+            return base::WriteProblem(
+                absl::StrCat(job, " cannot be created (", error.message(),
+                             "); check that its folder exists, may be written to and has room"),
+                error.value());
+          }
+          return absl::FailedPreconditionError(
+              absl::StrCat(job, " is a link; results are written only to a folder: remove it"));
+        }
+        THUNDERHEAD_RETURN_IF_ERROR(write_file(about_path, picture->about));
+        return write_file(path, picture->bytes);
+      });
 }
 
 std::string ResultFolder::PathOf(const std::string& job_id, std::size_t place,

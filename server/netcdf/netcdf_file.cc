@@ -334,8 +334,9 @@ absl::StatusOr<std::vector<double>> NetcdfFile::ReadDoubles(const std::string& v
   if (const int code = nc_get_var_double(found.group, found.id, values.data()); code != NC_NOERR) {
     return ReadError(variable, code);
   }
-  const Packing packing = PackingOf(found.group, found.id);
-  for (double& value : values) value = Unpacked(value, packing);
+  const absl::StatusOr<Packing> packing = PackingOf(found.group, found.id);
+  if (!packing.ok()) return base::Annotate(packing.status(), absl::StrCat(path_, ": ", variable));
+  for (double& value : values) value = Unpacked(value, *packing);
   return values;
 }
 
@@ -490,7 +491,9 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
     const NetcdfLock lock;
     THUNDERHEAD_ASSIGN_OR_RETURN(const Variable found, NumbersId(variable, count.size()));
     const auto [group, id] = found;
-    packing = PackingOf(group, id);
+    absl::StatusOr<Packing> read = PackingOf(group, id);
+    if (!read.ok()) return base::Annotate(read.status(), absl::StrCat(path_, ": ", variable));
+    packing = *std::move(read);
     // The chunk cache is off. Every chunk is read once, and the cache would keep a second copy of
     // each variable.
     nc_set_var_chunk_cache(group, id, 0, 0, 0.0F);
@@ -503,12 +506,14 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
     }
     if (code != NC_NOERR) return ReadError(variable, code);
   }
-  if (packing.PlainFloat()) {
-    CleanPlainFloats(packing, values);
-  } else {
-    for (std::size_t i = 0; i < total; ++i) values[i] = FlushedFloat(Unpacked(packed[i], packing));
-  }
-  return absl::OkStatus();
+  const std::optional<double> impossible = packing.PlainFloat()
+                                               ? CleanPlainFloats(packing, values)
+                                               : Unpack(packed, packing, absl::MakeSpan(values));
+  if (!impossible.has_value()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      path_, ": ", variable, " holds the value ", *impossible,
+      ", which no quantity has; if it marks cells without data, write it into the attribute "
+      "_FillValue or missing_value; otherwise write the file again with correct values"));
 }
 
 absl::StatusOr<NetcdfFile::Variable> NetcdfFile::NumbersId(const std::string& variable,

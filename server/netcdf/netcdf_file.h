@@ -80,15 +80,16 @@ class NetcdfFile {
   absl::StatusOr<std::size_t> RecordLength(const std::string& variable) const;
 
   // Reads one record (an index of the slowest dimension) of a numeric variable. Unpacks values
-  // (_Unsigned, scale_factor, add_offset). Missing values become NaN: the variable's fill values
-  // (_FillValue, missing_value), values outside its valid range (valid_min, valid_max,
-  // valid_range), values of magnitude 1e30 or more, NaN and infinities. Subnormal values become
-  // zero. Reuses the memory of `values`.
+  // (_Unsigned, scale_factor, add_offset). Missing values become NaN. They are the variable's fill
+  // values (_FillValue, missing_value), values outside its valid range (valid_min, valid_max,
+  // valid_range), NaN, and the codes that packing.h describes. Returns INVALID_ARGUMENT for other
+  // values of magnitude 1e30 or more, infinities included, and if scale_factor or add_offset is not
+  // one finite number. Subnormal values become zero. Reuses the memory of `values`.
   absl::Status ReadRecord(const std::string& variable, std::size_t record,
                           std::vector<float>& values) const;
 
   // Reads a whole numeric variable in double precision, for coordinates. Missing values become NaN
-  // as in ReadRecord.
+  // as in ReadRecord, and so do all values of magnitude 1e30 or more.
   absl::StatusOr<std::vector<double>> ReadDoubles(const std::string& variable) const;
 
   // Reads a hyperslab of a variable. Missing values become NaN as in ReadRecord.

@@ -1,7 +1,6 @@
 #include "netcdf/netcdf_writer.h"
 
 #include <netcdf_mem.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <memory>
@@ -14,14 +13,8 @@ constexpr int kCompression = 4;
 
 }  // namespace
 
-NetcdfWriter::NetcdfWriter(const std::string& path, Where where) : where_(where) {
-  if (where == Where::kOnDisk) {
-    // A planted link is replaced, and not followed.
-    unlink(path.c_str());
-    Keep(nc_create(path.c_str(), NC_NETCDF4 | NC_NOCLOBBER, &file_));
-  } else {
-    Keep(nc_create_mem(path.c_str(), NC_NETCDF4, 0, &file_));
-  }
+NetcdfWriter::NetcdfWriter(const std::string& name) {
+  Keep(nc_create_mem(name.c_str(), NC_NETCDF4, 0, &file_));
   open_ = Good();
 }
 
@@ -62,15 +55,6 @@ void NetcdfWriter::Values(int variable, absl::Span<const float> values) {
 
 void NetcdfWriter::Values(int variable, absl::Span<const double> values) {
   if (Good()) Keep(nc_put_var_double(file_, variable, values.data()));
-}
-
-void NetcdfWriter::Close() {
-  if (where_ == Where::kInMemory) {
-    (void)Take();
-  } else if (open_) {
-    open_ = false;
-    Keep(nc_close(file_));
-  }
 }
 
 std::string NetcdfWriter::Take() {

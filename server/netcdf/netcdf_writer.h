@@ -1,5 +1,6 @@
-// A writer of one netCDF-4 file. It holds NetcdfLock as long as it lives. It keeps the code of the
-// first error; after an error, further calls do nothing.
+// A writer of one netCDF-4 file in memory. The caller writes the bytes to a disk, because netCDF-C
+// does not say why a file cannot be written, such as a full disk. The writer holds NetcdfLock as
+// long as it lives. It keeps the code of the first error; after an error, further calls do nothing.
 #pragma once
 
 #include <netcdf.h>
@@ -14,11 +15,9 @@ namespace thunderhead::netcdf {
 
 class NetcdfWriter {
  public:
-  // kOnDisk replaces the file at `path`. kInMemory writes no file, and netCDF-C uses `path` only as
-  // a name.
-  enum class Where { kOnDisk, kInMemory };
-  explicit NetcdfWriter(const std::string& path, Where where = Where::kOnDisk);
-  ~NetcdfWriter() { Close(); }
+  // NetCDF-C uses `name` only as a name.
+  explicit NetcdfWriter(const std::string& name);
+  ~NetcdfWriter() { (void)Take(); }
   NetcdfWriter(const NetcdfWriter&) = delete;
   NetcdfWriter& operator=(const NetcdfWriter&) = delete;
 
@@ -40,9 +39,7 @@ class NetcdfWriter {
   void Values(int variable, absl::Span<const float> values);
   void Values(int variable, absl::Span<const double> values);
 
-  // Closes the file. The file is then complete, unless there was an error.
-  void Close();
-  // Closes a file in memory and returns its bytes.
+  // Closes the file and returns its bytes, which are complete unless there was an error.
   std::string Take();
 
   bool Good() const { return code_ == NC_NOERR; }
@@ -54,7 +51,6 @@ class NetcdfWriter {
   }
 
   const NetcdfLock lock_;
-  const Where where_;
   int file_ = 0;
   int code_ = NC_NOERR;
   bool open_ = false;

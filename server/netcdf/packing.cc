@@ -7,18 +7,33 @@
 #include <cmath>
 #include <optional>
 
+#include "absl/strings/str_cat.h"
+#include "base/status.h"
+
 namespace thunderhead::netcdf {
 namespace {
 
 // Models write fill values from 1e30 (a common choice) to 9.969e36 (netCDF's own). No quantity in a
 // storm is that large.
 constexpr double kLargestValue = 1e30;
+constexpr double kLargestFill = 1e37;
 
 constexpr double kMissingValue = std::numeric_limits<double>::quiet_NaN();
 
 double OneNumberOr(int group, int variable, const char* name, double otherwise) {
   const std::vector<double> numbers = NumbersOf(group, variable, name);
   return numbers.size() == 1 ? numbers.front() : otherwise;
+}
+
+// Returns the number of scale_factor or add_offset, or `otherwise` if the attribute is absent.
+absl::StatusOr<double> PackingNumber(int group, int variable, const char* name, double otherwise) {
+  if (nc_inq_att(group, variable, name, nullptr, nullptr) != NC_NOERR) return otherwise;
+  const std::vector<double> numbers = NumbersOf(group, variable, name);
+  if (numbers.size() == 1 && std::isfinite(numbers.front())) return numbers.front();
+  return absl::InvalidArgumentError(
+      absl::StrCat("its attribute ", name,
+                   " is not one finite number, so its values cannot be unpacked; write one finite "
+                   "number there, or remove the attribute if the values are not packed"));
 }
 
 double DefaultFill(nc_type type) {
@@ -123,6 +138,35 @@ bool IsMissing(double packed, const Packing& packing) {
          std::ranges::find(packing.missing, packed) != packing.missing.end();
 }
 
+float FlushedFloat(double value) {
+  const bool subnormal = std::abs(value) < std::numeric_limits<float>::min();
+  return subnormal ? 0.0F : static_cast<float>(value);
+}
+
+// Judges the values of a variable that are too large for any quantity and that the file does not
+// declare as missing.
+class HugeValues {
+ public:
+  void Take(double value) {
+    const double size = std::abs(value);
+    const bool is_default = static_cast<float>(size) == NC_FILL_FLOAT || size == NC_FILL_DOUBLE;
+    if (is_default || impossible_.has_value()) return;
+    if (!(size <= kLargestFill) || (fill_.has_value() && *fill_ != value)) {
+      impossible_ = value;
+    } else {
+      fill_ = value;
+    }
+  }
+  void TakeImpossible(double value) {
+    if (!impossible_.has_value()) impossible_ = value;
+  }
+  std::optional<double> Impossible() const { return impossible_; }
+
+ private:
+  std::optional<double> fill_;  // the undeclared code for missing values
+  std::optional<double> impossible_;
+};
+
 }  // namespace
 
 std::vector<double> NumbersOf(int group, int variable, const char* attribute) {
@@ -138,13 +182,13 @@ std::vector<double> NumbersOf(int group, int variable, const char* attribute) {
   return read ? values : std::vector<double>();
 }
 
-Packing PackingOf(int group, int variable) {
+absl::StatusOr<Packing> PackingOf(int group, int variable) {
   Packing packing;
   nc_type type = NC_FLOAT;
   nc_inq_vartype(group, variable, &type);
   packing.floats = type == NC_FLOAT;
-  packing.scale = OneNumberOr(group, variable, "scale_factor", 1.0);
-  packing.offset = OneNumberOr(group, variable, "add_offset", 0.0);
+  THUNDERHEAD_ASSIGN_OR_RETURN(packing.scale, PackingNumber(group, variable, "scale_factor", 1.0));
+  THUNDERHEAD_ASSIGN_OR_RETURN(packing.offset, PackingNumber(group, variable, "add_offset", 0.0));
   const double span = SignedSpan(type);
   const std::optional<bool> is_unsigned = IsUnsigned(group, variable);
   // The attribute _Unsigned has an effect only if the type has the other signedness.
@@ -164,26 +208,49 @@ double Unpacked(double stored, const Packing& packing) {
   return std::abs(value) < kLargestValue ? value : kMissingValue;
 }
 
-float FlushedFloat(double value) {
-  const bool subnormal = std::abs(value) < std::numeric_limits<float>::min();
-  return subnormal ? 0.0F : static_cast<float>(value);
+std::optional<double> Unpack(absl::Span<const double> packed, const Packing& packing,
+                             absl::Span<float> values) {
+  HugeValues huge;
+  for (std::size_t i = 0; i < packed.size(); ++i) {
+    const double value = Unpacked(packed[i], packing);
+    values[i] = FlushedFloat(value);
+    if (!std::isnan(value)) continue;
+    const double meant = Meant(packed[i], packing);
+    if (std::isnan(meant) || IsMissing(meant, packing)) continue;
+    if (std::abs(meant) >= kLargestValue) {
+      huge.Take(meant);
+    } else {
+      huge.TakeImpossible(meant * packing.scale + packing.offset);
+    }
+  }
+  return huge.Impossible();
 }
 
-void CleanPlainFloats(const Packing& packing, std::vector<float>& values) {
+std::optional<double> CleanPlainFloats(const Packing& packing, std::vector<float>& values) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   const auto fill = static_cast<float>(packing.fill);
   const auto lowest = static_cast<float>(packing.lowest);
   const auto highest = static_cast<float>(packing.highest);
+  for (const double missing : packing.missing) {
+    std::ranges::replace(values, static_cast<float>(missing), kNan);
+  }
+  std::size_t huge_values = 0;
   for (float& value : values) {
     const float size = std::abs(value);
-    const bool present = size < static_cast<float>(kLargestValue) && value != fill &&
-                         value >= lowest && value <= highest;
+    // All comparisons fail for NaN.
+    const bool present = value != fill && value >= lowest && value <= highest;
+    huge_values += present && size >= static_cast<float>(kLargestValue) ? 1 : 0;
     const float flushed = size < std::numeric_limits<float>::min() ? 0.0F : value;
-    value = present ? flushed : std::numeric_limits<float>::quiet_NaN();
+    value = present ? flushed : kNan;
   }
-  for (const double missing : packing.missing) {
-    std::ranges::replace(values, static_cast<float>(missing),
-                         std::numeric_limits<float>::quiet_NaN());
+  HugeValues huge;
+  if (huge_values == 0) return huge.Impossible();
+  for (float& value : values) {
+    if (!(std::abs(value) >= static_cast<float>(kLargestValue))) continue;
+    huge.Take(value);
+    value = kNan;
   }
+  return huge.Impossible();
 }
 
 }  // namespace thunderhead::netcdf

@@ -3,7 +3,11 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
 
 namespace thunderhead::netcdf {
 
@@ -26,8 +30,9 @@ struct Packing {
 };
 
 // Reads the attributes scale_factor, add_offset, _FillValue, missing_value, valid_min, valid_max,
-// valid_range and _Unsigned.
-Packing PackingOf(int group, int variable);
+// valid_range and _Unsigned. Returns INVALID_ARGUMENT, with the attribute's name and the remedy, if
+// scale_factor or add_offset is not one finite number.
+absl::StatusOr<Packing> PackingOf(int group, int variable);
 
 // Returns the numbers of an attribute, or an empty array if it is absent or a text.
 std::vector<double> NumbersOf(int group, int variable, const char* attribute);
@@ -35,10 +40,16 @@ std::vector<double> NumbersOf(int group, int variable, const char* attribute);
 // Returns the unpacked value, or NaN if it is missing.
 double Unpacked(double stored, const Packing& packing);
 
-// Returns the value as a float, and 0 for a subnormal one.
-float FlushedFloat(double value);
+// The functions Unpack and CleanPlainFloats replace missing values by NaN, and subnormal ones by 0.
+// They return a value that no quantity has and that is no code for missing values, or nothing if
+// there is no such value. Codes for missing values are those that the file declares, the default
+// fill value of netCDF, and one undeclared number from 1e30 to 1e37, which many models write.
 
-// Replaces missing values by NaN and subnormal ones by 0, in place. For Packing::PlainFloat().
-void CleanPlainFloats(const Packing& packing, std::vector<float>& values);
+// Unpacks `packed` into `values`, which has the same length.
+std::optional<double> Unpack(absl::Span<const double> packed, const Packing& packing,
+                             absl::Span<float> values);
+
+// Changes `values` in place. For Packing::PlainFloat().
+std::optional<double> CleanPlainFloats(const Packing& packing, std::vector<float>& values);
 
 }  // namespace thunderhead::netcdf

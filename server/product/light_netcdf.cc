@@ -35,8 +35,7 @@ std::string AttributeName(const std::string& name) {
 // declarations.
 class LightFile {
  public:
-  LightFile(const LightMap& map, const std::string& what)
-      : map_(map), file_(what, NetcdfWriter::Where::kInMemory) {}
+  LightFile(const LightMap& map, const std::string& what) : map_(map), file_(what) {}
 
   absl::StatusOr<std::string> Write() {
     THUNDERHEAD_RETURN_IF_ERROR(Axes());

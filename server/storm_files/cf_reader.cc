@@ -252,6 +252,12 @@ absl::StatusOr<LayerAmounts> CfSource::Amounts(std::size_t field) {
   const CfField& from = metadata_.fields[field];
   LayerAmounts read;
   THUNDERHEAD_ASSIGN_OR_RETURN(read.amounts, ReadScaled(from.variable, from.quantity.scale));
+  if (std::ranges::all_of(read.amounts, [](float value) { return std::isnan(value); })) {
+    return absl::DataLossError(absl::StrCat(
+        metadata_.path, ": ", from.variable.name, " of record ", domain_.record,
+        " holds nothing but missing values; write the file again, with values of this variable or "
+        "without it"));
+  }
   if (from.quantity.mixed == MixedWater::kNone) return read;
   THUNDERHEAD_ASSIGN_OR_RETURN(const LayerState state, Air());
   const std::vector<float> temperature_K = Temperature(state);

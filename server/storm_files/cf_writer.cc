@@ -1,9 +1,7 @@
 #include "storm_files/cf_writer.h"
 
 #include <array>
-#include <filesystem>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
@@ -48,7 +46,8 @@ void WriteAxis(netcdf::NetcdfWriter& file, const AxisVariables& axis, double low
   file.Values(axis.bounds, bounds_m);
 }
 
-int Write(const CfCloud& cloud, const std::string& path) {
+// Returns the bytes of the file.
+absl::StatusOr<std::string> Encoded(const CfCloud& cloud, const std::string& path) {
   const volume::RegularGrid& grid = cloud.grid;
   netcdf::NetcdfWriter file(path);
   file.Text(NC_GLOBAL, "Conventions", "CF-1.8");
@@ -78,8 +77,11 @@ int Write(const CfCloud& cloud, const std::string& path) {
               grid.spacing_m[axis], grid.cells[axis]);
   }
   file.Values(field, cloud.values);
-  file.Close();
-  return file.Code();
+  std::string bytes = file.Take();
+  if (file.Good()) return bytes;
+  return absl::UnavailableError(absl::StrCat(path, " cannot be encoded by netCDF-C (",
+                                             nc_strerror(file.Code()),
+                                             "); check that the machine has free memory"));
 }
 
 }  // namespace
@@ -87,13 +89,8 @@ int Write(const CfCloud& cloud, const std::string& path) {
 absl::Status WriteCfCloud(const CfCloud& cloud, const std::string& path) {
   THUNDERHEAD_CHECK(cloud.quantity != volume::Quantity::kMixingRatio, path);
   THUNDERHEAD_CHECK(cloud.values.size() == cloud.grid.CellCount(), path);
-  const std::string partial = base::PartialPath(path);
-  const int code = Write(cloud, partial);
-  if (code == NC_NOERR) return base::PublishFile(path);
-  std::error_code ignored;
-  std::filesystem::remove(partial, ignored);
-  return absl::UnavailableError(absl::StrCat(path, " cannot be written (", nc_strerror(code),
-                                             "); check that its folder exists and has room"));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::string bytes, Encoded(cloud, path));
+  return base::WriteWholeFile(path, bytes);
 }
 
 }  // namespace thunderhead::storm_files

@@ -155,7 +155,7 @@ TEST_F(CommandLineTest, WrongSettingsAreRefusedWithTheirFile) {
          "max-sessions is set a second time");
   refuse("max-images = 3\nmax-viewers = 7\nmax-stills = 4", "max-stills is set a second time");
   ExpectError("serve --config " + folder_.File("none"), 64, "none cannot be read");
-  ExpectError("serve --config /dev/zero", 64, "/dev/zero is neither a regular file nor a pipe");
+  ExpectError("serve --config /dev/zero", 78, "/dev/zero is not a file");
   ExpectError("serve", 64, "there are no storms to serve");
   // The name of a flag that the help omits is in the message, too.
   ExpectError("serve --data " + kSample + " --max-requests -1", 64, "--max-requests: Value -1");
@@ -201,7 +201,10 @@ TEST_F(CommandLineTest, IntegersAreDecimalAndNotTooLarge) {
   ExpectError(cloud + " --cells 4x4x4.5", 64, "must be an integer from 1 to 4096");
   ExpectError(cloud + " --seed -1", 64, "it must be 0 or more");
   ExpectError(render_ + " --time 4294967296", 64, "--time");
-  EXPECT_EQ(Run(cloud + " --cells 4x4x4 --seed 18446744073709551615").code, 0);
+  EXPECT_EQ(Run(cloud + " --spacing 200 --cells 24x24x16 --ellipsoid 0,0,1600,1800,1800,1200 "
+                        "--seed 18446744073709551615")
+                .code,
+            0);
 }
 
 // In these flags, 0 is not a way to ask for the default.
@@ -256,6 +259,7 @@ TEST_F(CommandLineTest, OnlyRegularFilesOfALimitedSizeAreRead) {
   };
   for (const std::string& command : commands) {
     for (const char* const path : {"/", "/dev/zero", "/dev/null"}) {
+      if (command.starts_with("serve")) continue;  // serve accepts no pipes, either
       ExpectError(command + path, 64, std::string(path) + " is neither a regular file nor a pipe");
     }
     ExpectError(command + huge, 64, " has more than ");
@@ -278,7 +282,16 @@ TEST_F(CommandLineTest, WrongUsageIsABadRequest) {
   ExpectError("serve --data " + kSample + " --grpc 0.0.0.0:0", 64, "no token is needed");
   ExpectError("serve --data " + kSample + " --metrics 0.0.0.0:0", 64,
               "--metrics 0.0.0.0:0 can be reached");
-  ExpectError("serve --data " + kSample + " --auth tokens /dev/null", 78, "is not a file");
+  const std::string fifo = folder_.File("fifo");
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  for (const std::string& not_a_file : {fifo, std::string("/dev/null")}) {
+    const std::string says = not_a_file + " is not a file";
+    for (const std::string flag :
+         {"--auth tokens ", "--auth jwt ", "--config ", "--roster-timeouts ",
+          "--tls-key x --tls-cert ", "--tls-cert x --tls-key "}) {
+      ExpectError("serve --data " + kSample + " --state none " + flag + not_a_file, 78, says);
+    }
+  }
   ExpectError("serve --data " + kSample + " --auth king", 64, "none, tokens FILE or jwt FILE");
   ExpectError("serve --data " + kSample + " --tls-cert x", 64, "belong together");
   ExpectError("serve --data " + kSample + " --state /proc/none", 64, "--state is '/proc/none'");

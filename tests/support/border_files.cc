@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/status.h"
+#include "base/whole_file.h"
 #include "netcdf/netcdf_writer.h"
 #include "physics/field_pattern.h"
 
@@ -19,7 +20,7 @@ using Numbers = std::vector<double>;
 // A netCDF file that is being written. Each variable has its own dimension.
 class BinnedFile {
  public:
-  explicit BinnedFile(const std::string& path) : file_(path) {}
+  explicit BinnedFile(const std::string& path) : path_(path), file_(path) {}
 
   void Add(const char* name, nc_type type, const Numbers& values) {
     const std::string dimension = std::string("of_") + name;
@@ -30,8 +31,9 @@ class BinnedFile {
   void Write() {
     file_.EndDefinitions();
     for (const auto& [variable, values] : added_) file_.Values(variable, values);
-    file_.Close();
-    THUNDERHEAD_CHECK(file_.Good(), "the file is written");
+    const std::string bytes = file_.Take();
+    THUNDERHEAD_CHECK(file_.Good(), "the file is encoded");
+    THUNDERHEAD_CHECK(base::WriteWholeFile(path_, bytes).ok(), path_);
   }
 
  private:
@@ -40,6 +42,7 @@ class BinnedFile {
     Numbers values;
   };
 
+  const std::string path_;
   netcdf::NetcdfWriter file_;
   std::vector<Added> added_;
 };

@@ -3,8 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/resource.h>
+
 #include <bit>
 #include <cmath>
+#include <csignal>
+#include <filesystem>
 #include <limits>
 
 #include "clouds/presets.h"
@@ -214,7 +218,27 @@ TEST(WriteCfCloud, ReadsBackAsItWas) {
   EXPECT_EQ((*extinction)->fields[0].concentration_kg_per_m3, water);
   const absl::Status nowhere = storm_files::WriteCfCloud(
       {shape.grid, volume::Quantity::kExtinction, water, "", "", ""}, folder.File("none/ball.nc"));
-  EXPECT_THAT(std::string(nowhere.message()), HasSubstr("none/ball.nc"));
+  EXPECT_THAT(std::string(nowhere.message()),
+              HasSubstr("none/ball.nc cannot be written (No such file or directory)"));
+}
+
+// A limit on the size of files stands for a full disk.
+TEST(WriteCfCloud, NamesTheCauseIfItCannotBeWritten) {
+  const testing::TemporaryFolder folder;
+  const CloudShape shape = Ball();
+  const std::vector<float> water = Made(shape);
+  const auto before = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit small{.rlim_cur = 1000, .rlim_max = limit.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const absl::Status full = storm_files::WriteCfCloud(
+      {shape.grid, volume::Quantity::kMassConcentration, water, "", "", ""},
+      folder.File("ball.nc"));
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  std::signal(SIGXFSZ, before);
+  EXPECT_THAT(std::string(full.message()), HasSubstr("ball.nc cannot be written (File too large)"));
+  EXPECT_FALSE(std::filesystem::exists(folder.File("ball.nc.partial")));
 }
 
 }  // namespace

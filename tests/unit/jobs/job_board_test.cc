@@ -226,6 +226,30 @@ TEST(JobBoard, WhetherAJobIsPausedIsNews) {
   EXPECT_THAT(board.NewsOf("a", before)->pictures, IsEmpty());
 }
 
+TEST(JobBoard, WhetherResultsCanBeWrittenIsNews) {
+  JobBoard board({});
+  Add(board, "a", "anna", 2);
+  Add(board, "b", "bert", 1);
+  EXPECT_EQ(DrawNext(board, 1.0), "a");
+  EXPECT_EQ(DrawNext(board, 1.0), "b");
+  const Problem problem{absl::StatusCode::kUnavailable, "RESULTS_NOT_WRITTEN", "the disk is full"};
+  board.SetUnwritable("a", problem);
+  board.SetUnwritable("b", problem);
+  EXPECT_THAT(board.TakePauses(), ElementsAre("a")) << "the other job has ended";
+  EXPECT_EQ(board.NewsOf("a", 0)->job.paused->message, "the disk is full");
+  EXPECT_FALSE(board.NewsOf("b", 0)->job.paused.has_value());
+  board.SetUnwritable("a", std::nullopt);
+  EXPECT_THAT(board.TakePauses(), ElementsAre("a"));
+  // A job whose last picture is drawn but not written waits, too.
+  ASSERT_TRUE(board.Begin(kNow).has_value());
+  board.SetAllUnwritable(problem);
+  EXPECT_THAT(board.TakePauses(), ElementsAre("a"));
+  EXPECT_THAT(board.TakePauses(), IsEmpty());
+  EXPECT_TRUE(board.NewsOf("a", 0)->job.paused.has_value());
+  board.SetAllUnwritable(std::nullopt);
+  EXPECT_FALSE(board.NewsOf("a", 0)->job.paused.has_value());
+}
+
 // Otherwise two owners who fetch nothing would block all others forever.
 TEST(JobBoard, WhoNeverFetchesLosesThePausedJobAndOthersGoOn) {
   JobLimits limits;

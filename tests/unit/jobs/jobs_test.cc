@@ -13,11 +13,13 @@
 #include <memory>
 #include <mutex>
 #include <new>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/whole_file.h"
+#include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "jobs/result_folder.h"
 #include "tests/support/manual_time.h"
@@ -27,6 +29,7 @@
 namespace thunderhead::jobs {
 namespace {
 
+using ::testing::HasSubstr;
 using testing::ManualTime;
 using testing::WaitFor;
 
@@ -283,6 +286,11 @@ class UnwrittenPictures : public ::testing::Test {
     return created.get_future().get();
   }
 
+  std::optional<Problem> PauseOf(const std::string& id) const {
+    const auto news = jobs_->Get(id, {.name = "night"});
+    return news.ok() ? news->job.paused : std::nullopt;
+  }
+
   // Makes the first result of a job hang while it is written. Sets the job's id.
   void HangFirstResult(std::string& id) {
     patience_ = std::chrono::seconds(10);
@@ -335,9 +343,17 @@ TEST_F(UnwrittenPictures, AreKeptUntilTheyCanBeWrittenAndNotDrawnAgain) {
   }
   EXPECT_LE(begun_, 4) << "none is begun while none can be written";
   EXPECT_EQ(jobs_->Load().result_bytes, 0U);
+  // Every job says why it waits, even one without a drawn picture.
+  for (const std::string& waiting : {id, Create(1)}) {
+    const std::optional<Problem> paused = PauseOf(waiting);
+    ASSERT_TRUE(paused.has_value());
+    EXPECT_EQ(paused->reason, "RESULTS_NOT_WRITTEN");
+    EXPECT_THAT(paused->message, HasSubstr(".about cannot be written (File too large)"));
+  }
   Unblock();
-  EXPECT_TRUE(Await([this] { return jobs_->Load().result_bytes == 50; }));
-  EXPECT_EQ(begun_, 10);
+  EXPECT_TRUE(Await([this] { return jobs_->Load().result_bytes == 55; }));
+  EXPECT_EQ(begun_, 11);
+  EXPECT_FALSE(PauseOf(id).has_value());
 }
 
 TEST_F(UnwrittenPictures, GoWithTheirJobAndHoldUpNoEnd) {
@@ -363,9 +379,17 @@ TEST_F(UnwrittenPictures, OfOneJobWhoseFolderIsSomebodyElsesHoldUpNoOtherJob) {
   std::ofstream(results_ + "/" + first) << "in the way";
   may_take_ = true;
   may_take_.notify_all();
-  Create(3);
+  const std::string second = Create(3);
   EXPECT_TRUE(WaitFor([this] { return jobs_->Load().result_bytes == 15; }));
   EXPECT_EQ(jobs_->Load().waiting, 1U);
+  EXPECT_FALSE(PauseOf(second).has_value());
+  const std::optional<Problem> paused = PauseOf(first);
+  ASSERT_TRUE(paused.has_value());
+  EXPECT_EQ(paused->reason, "RESULTS_NOT_WRITTEN");
+  EXPECT_THAT(paused->message, HasSubstr(first + " cannot be created (File exists)"));
+  std::filesystem::remove(results_ + "/" + first);
+  EXPECT_TRUE(Await([this] { return jobs_->Load().result_bytes == 20; }));
+  EXPECT_FALSE(PauseOf(first).has_value());
 }
 
 TEST_F(UnwrittenPictures, ALinkInPlaceOfAJobsFolderIsNotFollowed) {

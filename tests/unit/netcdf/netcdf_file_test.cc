@@ -6,6 +6,11 @@
 #include <netcdf.h>
 
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/status.h"
 #include "netcdf/filters.h"
@@ -15,6 +20,7 @@ namespace thunderhead::netcdf {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsNan;
 
 void Must(int code) { THUNDERHEAD_CHECK(code == NC_NOERR, nc_strerror(code)); }
@@ -50,6 +56,8 @@ class NetcdfValues : public ::testing::Test {
     }
     return *part;
   }
+
+  absl::Status Problem() { return NetcdfFile::Open(path_)->ReadPart("v", {0}, {4}).status(); }
 
   thunderhead::testing::TemporaryFolder folder_;
   const std::string path_ = folder_.File("values.nc");
@@ -104,6 +112,74 @@ TEST_F(NetcdfValues, FloatsHaveMissingValuesAndRanges) {
   Must(nc_put_var_float(file_, v, values));
   Close();
   EXPECT_THAT(Read(), ElementsAre(IsNan(), 2.0F, IsNan(), -0.5F));
+}
+
+// Each attribute is one that no value can be unpacked with.
+TEST_F(NetcdfValues, PackingAttributesMustBeOneFiniteNumber) {
+  const float nan = std::nanf("");
+  const float infinity = std::numeric_limits<float>::infinity();
+  const float two[] = {1.0F, 2.0F};
+  const auto numbers = [&](int v, const char* name, const float* values, std::size_t count) {
+    Must(nc_put_att_float(file_, v, name, NC_FLOAT, count, values));
+  };
+  for (const char* name : {"scale_factor", "add_offset"}) {
+    for (const auto& write :
+         std::vector<std::function<void(int)>>{[&](int v) { numbers(v, name, &nan, 1); },
+                                               [&](int v) { numbers(v, name, &infinity, 1); },
+                                               [&](int v) { numbers(v, name, two, 2); },
+                                               [&](int v) { Text(file_, v, name, "two"); }}) {
+      if (file_ < 0) Must(nc_create(path_.c_str(), NC_NETCDF4, &file_));
+      const int v = Define(NC_FLOAT, file_);
+      write(v);
+      Close();
+      EXPECT_THAT(std::string(Problem().message()),
+                  HasSubstr(std::string("values.nc: v: its attribute ") + name +
+                            " is not one finite number"));
+      EXPECT_FALSE(NetcdfFile::Open(path_)->ReadDoubles("v").ok());
+    }
+  }
+}
+
+TEST_F(NetcdfValues, OneUndeclaredHugeNumberIsACodeForMissingValues) {
+  const int v = Define(NC_FLOAT, file_);
+  const float values[] = {1e30F, 2.0F, NC_FILL_FLOAT, 1e30F};
+  Must(nc_put_var_float(file_, v, values));
+  Close();
+  EXPECT_THAT(Read(), ElementsAre(IsNan(), 2.0F, IsNan(), IsNan()));
+}
+
+TEST_F(NetcdfValues, OtherHugeValuesMustBeDeclared) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const nc_type type : {NC_FLOAT, NC_DOUBLE}) {
+    for (const auto& [first, second] : std::vector<std::pair<float, float>>{
+             {infinity, 1.0F}, {-infinity, 1.0F}, {1e38F, 1.0F}, {1e31F, 1e32F}}) {
+      for (const bool declared : {false, true}) {
+        if (file_ < 0) Must(nc_create(path_.c_str(), NC_NETCDF4, &file_));
+        const int v = Define(type, file_);
+        const double both[] = {first, second};
+        if (declared) Must(nc_put_att_double(file_, v, "missing_value", NC_DOUBLE, 2, both));
+        const float values[] = {2.0F, first, second, 3.0F};
+        Must(nc_put_var_float(file_, v, values));
+        Close();
+        if (declared) {
+          EXPECT_TRUE(std::isnan(Read()[1])) << first;
+        } else {
+          EXPECT_THAT(std::string(Problem().message()), HasSubstr("which no quantity has"));
+        }
+      }
+    }
+  }
+}
+
+// A scale factor that makes values huge is a mistake. The values are not missing.
+TEST_F(NetcdfValues, HugeUnpackedValuesAreNotMissing) {
+  const int v = Define(NC_SHORT, file_);
+  const float scale = 1e33F;
+  Must(nc_put_att_float(file_, v, "scale_factor", NC_FLOAT, 1, &scale));
+  const short values[] = {0, 1, 1, 0};
+  Must(nc_put_var_short(file_, v, values));
+  Close();
+  EXPECT_THAT(std::string(Problem().message()), HasSubstr("v holds the value 1e+33"));
 }
 
 TEST_F(NetcdfValues, VariablesMayBeInAGroup) {

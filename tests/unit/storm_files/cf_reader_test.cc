@@ -526,6 +526,15 @@ TEST_F(CfReader, MissingAndNegativeCellsAreEmptyAndCounted) {
   EXPECT_EQ((*fields)->condensate, (volume::CellBox{{3, 0, 0}, {4, 3, 2}}));
 }
 
+TEST_F(CfReader, RefusesAFieldWithoutAnyValue) {
+  SyntheticCf file = Small();
+  file.variables[0].value = [](Index) { return std::nan(""); };
+  const auto fields = Read(file);
+  ASSERT_FALSE(fields.ok());
+  EXPECT_THAT(std::string(fields.status().message()),
+              HasSubstr("holds nothing but missing values"));
+}
+
 TEST_F(CfReader, SaysWhatAFileLacks) {
   SyntheticCf file = Small();
   file.variables[0].name = "brightness";

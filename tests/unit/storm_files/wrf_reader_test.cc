@@ -184,12 +184,11 @@ TEST_F(WrfReader, CountsNegativesAndMissingValuesAndDrawsNeither) {
   SyntheticWrf file = Uniform(1e-3);
   file.fill_values["QCLOUD"] = 0.25;  // an unusual value, but it is the file's own
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   file.stored_values = {
-      {"QCLOUD", {0, 0, 1, 0}, -1e-13},     {"QCLOUD", {0, 0, 2, 0}, -3e-13},
-      {"QCLOUD", {1, 0, 0, 0}, kNan},       {"QCLOUD", {1, 0, 1, 0}, kInfinity},
-      {"QCLOUD", {1, 0, 2, 0}, -kInfinity}, {"QCLOUD", {1, 0, 3, 0}, 9.969209968386869e36},
-      {"QCLOUD", {1, 0, 4, 0}, 1e35},       {"QCLOUD", {1, 0, 5, 0}, -999.0},
+      {"QCLOUD", {0, 0, 1, 0}, -1e-13}, {"QCLOUD", {0, 0, 2, 0}, -3e-13},
+      {"QCLOUD", {1, 0, 0, 0}, kNan},   {"QCLOUD", {1, 0, 1, 0}, kNan},
+      {"QCLOUD", {1, 0, 2, 0}, 1e35},   {"QCLOUD", {1, 0, 3, 0}, 9.969209968386869e36},
+      {"QCLOUD", {1, 0, 4, 0}, 1e35},   {"QCLOUD", {1, 0, 5, 0}, -999.0},
       {"QCLOUD", {1, 0, 6, 0}, 0.25},
   };
   const auto fields = Read(file);
@@ -203,6 +202,17 @@ TEST_F(WrfReader, CountsNegativesAndMissingValuesAndDrawsNeither) {
   EXPECT_NEAR(ColumnPath(*fields, 0, 1, 0), 1e-3 * kDensity_kg_per_m3 * 500.0, 1e-4);
   for (const float mass : fields->fields[0].concentration_kg_per_m3) {
     ASSERT_TRUE(mass >= 0.0F && mass < 1.0F) << mass;
+  }
+}
+
+TEST_F(WrfReader, RefusesInfiniteAmounts) {
+  for (const double sign : {1.0, -1.0}) {
+    SyntheticWrf file = Uniform(1e-3);
+    file.stored_values = {{"QCLOUD", {1, 0, 1, 0}, sign * std::numeric_limits<double>::infinity()}};
+    const auto fields = Read(file);
+    EXPECT_EQ(fields.status().code(), absl::StatusCode::kInvalidArgument);
+    EXPECT_THAT(std::string(fields.status().message()),
+                ::testing::HasSubstr("QCLOUD holds the value"));
   }
 }
 
