@@ -3,10 +3,24 @@
 #include <cstdlib>
 
 #include "absl/strings/ascii.h"
+#include "base/bounded_file.h"
 #include "base/status.h"
-#include "base/whole_file.h"
 
 namespace thunderhead::app {
+namespace {
+
+constexpr std::size_t kMaxToken_bytes = 64 << 10;
+// The certificates of all public authorities together have about 200 KiB.
+constexpr std::size_t kMaxTlsRoots_bytes = 4 << 20;
+
+absl::StatusOr<std::string> ReadNamed(const char* flag, const std::string& path,
+                                      std::size_t max_bytes) {
+  absl::StatusOr<std::string> text = base::ReadBoundedFile(path, max_bytes);
+  if (!text.ok()) return base::Annotate(text.status(), flag);
+  return text;
+}
+
+}  // namespace
 
 void AddClientAccessFlags(CLI::App& command, ClientAccessFlags& flags) {
   command.add_option("--token-file", flags.token_file,
@@ -20,7 +34,8 @@ void AddClientAccessFlags(CLI::App& command, ClientAccessFlags& flags) {
 absl::StatusOr<load::Access> ReadClientAccess(const ClientAccessFlags& flags) {
   load::Access access;
   if (!flags.token_file.empty()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(access.token, base::ReadWholeFile(flags.token_file));
+    THUNDERHEAD_ASSIGN_OR_RETURN(access.token,
+                                 ReadNamed("--token-file", flags.token_file, kMaxToken_bytes));
   } else if (const char* token = std::getenv("THUNDERHEAD_TOKEN"); token != nullptr) {
     access.token = token;
   }
@@ -34,7 +49,8 @@ absl::StatusOr<load::Access> ReadClientAccess(const ClientAccessFlags& flags) {
     }
   }
   if (!flags.tls_roots.empty()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(access.tls_roots, base::ReadWholeFile(flags.tls_roots));
+    THUNDERHEAD_ASSIGN_OR_RETURN(access.tls_roots,
+                                 ReadNamed("--tls-roots", flags.tls_roots, kMaxTlsRoots_bytes));
   }
   return access;
 }

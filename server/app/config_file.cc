@@ -1,18 +1,34 @@
 #include "app/config_file.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
+#include <sstream>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "base/regular_file.h"
+#include "base/bounded_file.h"
 #include "base/status.h"
 
 namespace thunderhead::app {
 namespace {
+
+constexpr std::size_t kMaxFile_bytes = 1 << 20;
+
+// Returns the settings in the file. A key may contain dots. CLI11 would take the parts before them
+// for sections, and ignore a key with very many of them.
+absl::StatusOr<std::vector<CLI::ConfigItem>> ReadSettings(const std::string& path) {
+  const absl::StatusOr<std::string> text = base::ReadBoundedFile(path, kMaxFile_bytes);
+  if (!text.ok()) return base::Annotate(text.status(), "--config");
+  std::istringstream lines(*text);
+  CLI::ConfigINI parser;
+  parser.parentSeparator('\0');
+  try {
+    return parser.from_config(lines);
+  } catch (const CLI::Error& unreadable) {
+    return absl::InvalidArgumentError(absl::StrCat(path, ": ", unreadable.what()));
+  }
+}
 
 absl::Status Set(CLI::Option& option, const CLI::ConfigItem& setting) {
   if (option.count() > 0) return absl::OkStatus();
@@ -32,18 +48,7 @@ absl::Status Set(CLI::Option& option, const CLI::ConfigItem& setting) {
 }  // namespace
 
 absl::Status ReadConfigFile(CLI::App& command, const std::string& path) {
-  THUNDERHEAD_RETURN_IF_ERROR(base::CheckRegularFile(path));
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(path, ": there is no such file; check --config"));
-  }
-  std::vector<CLI::ConfigItem> settings;
-  try {
-    settings = CLI::ConfigINI().from_file(path);
-  } catch (const CLI::Error& unreadable) {
-    return absl::InvalidArgumentError(absl::StrCat(path, ": ", unreadable.what()));
-  }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<CLI::ConfigItem> settings, ReadSettings(path));
   std::set<const CLI::Option*> set;
   for (const CLI::ConfigItem& setting : settings) {
     if (!setting.parents.empty()) {

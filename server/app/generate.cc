@@ -89,9 +89,9 @@ absl::Status SetGrid(const GenerateFlags& flags, volume::RegularGrid* grid) {
     }
     for (int axis = 0; axis < 3; ++axis) {
       const double count = (*numbers)[static_cast<std::size_t>(axis)];
-      if (!(count >= 1.0 && count <= 4096.0)) {
-        return absl::InvalidArgumentError(
-            absl::StrCat("--cells is '", flags.cells, "'; each number must be from 1 to 4096"));
+      if (!(count >= 1.0 && count <= 4096.0 && count == std::floor(count))) {
+        return absl::InvalidArgumentError(absl::StrCat(
+            "--cells is '", flags.cells, "'; each number must be an integer from 1 to 4096"));
       }
       grid->cells[axis] = static_cast<int>(count);
     }

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
+#include "base/read_own_file.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "picture/exr_file.h"
@@ -18,7 +19,7 @@ absl::StatusOr<picture::LinearPicture> KeptReference(const ReferenceRequest& req
       absl::StrCat(request.scene_text, "\npeak cut: ", request.options.peak_cut_deg,
                    "\nsamples a pixel: ", request.samples_per_pixel, "\n");
   const std::string key_path = path + ".scene";
-  if (std::filesystem::exists(path) && base::ReadWholeFile(key_path).value_or("") == key) {
+  if (std::filesystem::exists(path) && base::ReadOwnFile(key_path).value_or("") == key) {
     return picture::ReadExr(path);
   }
   reference::RefineLimits limits;

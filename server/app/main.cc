@@ -14,10 +14,10 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "app/commands.h"
-#include "app/finite_flags.h"
 #include "app/hidden_flags.h"
 #include "app/library_log.h"
 #include "app/log_format.h"
+#include "app/value_checks.h"
 #include "base/error_details.h"
 #include "base/loose_thread.h"
 #include "base/process_limits.h"
@@ -77,7 +77,7 @@ int Main(int argc, char** argv) {
   const std::array commands = {AddServe(app),   AddRender(app), AddSequence(app),  AddWatch(app),
                                AddInspect(app), AddFlux(app),   AddMeasure(app),   AddGenerate(app),
                                AddFit(app),     AddExport(app), AddImportVdb(app), AddLoad(app)};
-  RefuseInfiniteNumbers(app);
+  RefuseWrongValues(app);
   app.footer(runs::ExitCodesHelp());
   for (const Command& command : commands) command.app->footer(runs::ExitCodesHelp());
   if (const absl::Status status = CheckSubcommand(app, argc, argv); !status.ok()) {

@@ -14,6 +14,7 @@
 #include "app/interruption.h"
 #include "app/kept_reference.h"
 #include "app/local_scene.h"
+#include "base/read_own_file.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "gl/context.h"
@@ -62,7 +63,7 @@ absl::StatusOr<std::vector<measure::TradeRow>> RowsSoFar(const std::string& path
   std::vector<measure::TradeRow> rows;
   std::string text = head;
   if (std::filesystem::exists(path)) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const std::string kept, base::ReadWholeFile(path));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::string kept, base::ReadOwnFile(path));
     auto earlier = measure::ReadCsv(kept, head);
     if (!earlier.ok()) {
       return absl::InvalidArgumentError(

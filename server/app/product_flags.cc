@@ -5,13 +5,16 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "base/bounded_file.h"
 #include "base/status.h"
-#include "base/whole_file.h"
 #include "pipeline/sha256.h"
 #include "product/logo.h"
 
 namespace thunderhead::app {
 namespace {
+
+// A logo has at most 4096 x 4096 pixels of 4 bytes.
+constexpr std::size_t kMaxLogo_bytes = 64 << 20;
 
 absl::StatusOr<runs::ProductKind> KindOf(const std::string& flag, const std::string& path) {
   static constexpr std::pair<const char*, runs::ProductKind> kEndings[] = {
@@ -61,7 +64,7 @@ absl::StatusOr<runs::ProductFormat> ProductFormatOf(const std::string& flag,
   }
   std::string png;
   if (!flags.logo.empty()) {
-    auto read = base::ReadWholeFile(flags.logo);
+    auto read = base::ReadBoundedFile(flags.logo, kMaxLogo_bytes);
     if (!read.ok()) {
       return absl::InvalidArgumentError(
           absl::StrCat("--logo cannot be read: ", read.status().message()));

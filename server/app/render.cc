@@ -161,7 +161,7 @@ absl::Status Render(const RenderFlags& flags) {
   THUNDERHEAD_RETURN_IF_ERROR(runs::CheckScene(format, request.scene()));
   if (request.scene().rendering().has_reference()) return ByReference(flags, format);
   if (flags.reference.AnyLimit() || !flags.reference.light.air ||
-      flags.reference.light.max_scatterings != 0 ||
+      flags.reference.max_scatterings.has_value() ||
       flags.reference.light.detail_voxels_per_cell != 0) {
     return absl::InvalidArgumentError(
         "--spp, --seconds, --target-error, --max-scatterings, --detail and --no-air are for "
@@ -225,7 +225,7 @@ Command AddRender(CLI::App& app) {
                    "Reference: treat light scattered by less than this angle in degrees as "
                    "unscattered; 0 is exact but noisy")
       ->capture_default_str();
-  render->add_option("--max-scatterings", flags->reference.light.max_scatterings,
+  render->add_option("--max-scatterings", flags->reference.max_scatterings,
                      "Reference: omit light that is scattered more often than this; by default "
                      "nothing is omitted");
   render

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/match.h"
@@ -24,29 +25,33 @@
 namespace thunderhead::app {
 namespace {
 
+absl::Status CheckAtLeast1(const char* flag, const std::optional<int>& value) {
+  if (value.value_or(1) >= 1) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(flag, " is ", *value, "; it must be 1 or more"));
+}
+
+absl::Status CheckAbove0(const char* flag, const std::optional<double>& value) {
+  if (value.value_or(1.0) > 0.0) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(flag, " is ", *value, "; it must be above 0"));
+}
+
 absl::Status CheckFlags(const ReferenceFlags& limits) {
-  if (limits.samples_per_pixel < 0) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--spp is ", limits.samples_per_pixel, "; it must be 1 or more"));
-  }
-  if (!(limits.seconds >= 0.0)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--seconds is ", limits.seconds, "; it must be above 0"));
-  }
-  if (!(limits.target_error >= 0.0)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--target-error is ", limits.target_error, "; it must be above 0"));
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckAtLeast1("--spp", limits.samples_per_pixel));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckAbove0("--seconds", limits.seconds));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckAbove0("--target-error", limits.target_error));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckAtLeast1("--max-scatterings", limits.max_scatterings));
   const double peak_cut_deg = limits.light.peak_cut_deg;
   if (!(peak_cut_deg >= 0.0 && peak_cut_deg <= 30.0)) {
     return absl::InvalidArgumentError(
         absl::StrCat("--peak-cut is ", peak_cut_deg, "; it must be from 0 to 30 degrees"));
   }
-  if (limits.light.max_scatterings < 0) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "--max-scatterings is ", limits.light.max_scatterings, "; it must be 1 or more"));
-  }
   return absl::OkStatus();
+}
+
+// Returns the limits at which the reference stops. In RefineLimits, 0 is no limit.
+reference::RefineLimits RefineLimitsOf(const ReferenceFlags& flags) {
+  return {flags.samples_per_pixel.value_or(flags.AnyLimit() ? 0 : kDefaultSamplesPerPixel),
+          flags.seconds.value_or(0.0), flags.target_error.value_or(0.0)};
 }
 
 // Returns the progress towards the limit that will be reached first, 0 to 1. The error falls with
@@ -89,14 +94,15 @@ absl::Status RenderReference(const std::string& storm, const SceneFlags& scene,
   flags.technique = scene::Reference::kName;
   flags.preset.clear();
   THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(storm, flags));
-  reference::RefineLimits refine{limits.samples_per_pixel, limits.seconds, limits.target_error};
-  if (!limits.AnyLimit()) refine.samples_per_pixel = kDefaultSamplesPerPixel;
+  const reference::RefineLimits refine = RefineLimitsOf(limits);
+  reference::TraceOptions light = limits.light;
+  light.max_scatterings = limits.max_scatterings.value_or(light.max_scatterings);
   const Interruption interruption;
   absl::StatusOr<reference::TracedScene> traced;
   {
     runs::ProgressBar bar("tracing");
     traced = reference::TraceScene(
-        local.scene, *local.fields, limits.light, refine,
+        local.scene, *local.fields, light, refine,
         [&](const reference::ImageProgress& progress) { bar.Set(ShareDone(refine, progress)); },
         interruption.Token());
   }

@@ -2,6 +2,7 @@
 // this process on all cores.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "absl/status/status.h"
@@ -13,12 +14,15 @@ namespace thunderhead::app {
 // The light that the reference traces, and the limits at which it stops. If no limit is set, it
 // traces kDefaultSamplesPerPixel.
 struct ReferenceFlags {
-  int samples_per_pixel = 0;
-  double seconds = 0.0;
-  double target_error = 0.0;  // relative standard error of the whole picture at which to stop
+  std::optional<int> samples_per_pixel;
+  std::optional<double> seconds;
+  std::optional<double> target_error;  // relative standard error of the whole picture
+  std::optional<int> max_scatterings;  // overrides that of `light`
   reference::TraceOptions light;
 
-  bool AnyLimit() const { return samples_per_pixel != 0 || seconds != 0.0 || target_error != 0.0; }
+  bool AnyLimit() const {
+    return samples_per_pixel.has_value() || seconds.has_value() || target_error.has_value();
+  }
 };
 
 inline constexpr int kDefaultSamplesPerPixel = 64;

@@ -1,10 +1,6 @@
 #include "app/scene_file.h"
 
-#include <google/protobuf/util/json_util.h>
-
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -13,14 +9,20 @@
 #include "absl/strings/str_join.h"
 #include "accuracy/presets.h"
 #include "app/picture_size.h"
+#include "base/bounded_file.h"
 #include "base/status.h"
 #include "frame/png_text.h"
 #include "service/messages/picture_texts.h"
+#include "service/messages/scene_json.h"
 #include "service/messages/scene_messages.h"
 #include "service/messages/technique_messages.h"
 
 namespace thunderhead::app {
 namespace {
+
+// Bytes of a file that are read. The scene of a picture is in front of its pixels, so large
+// pictures need not be read to their end.
+constexpr std::size_t kFileStart_bytes = 4 << 20;
 
 // Returns the scene that is stored in a picture made by the service. The storm is left out, so that
 // the scene can be used with another storm.
@@ -34,25 +36,22 @@ absl::StatusOr<std::string> SceneJsonIn(const std::string& what, const std::stri
 }
 
 absl::StatusOr<v1::Scene> ReadFile(const std::string& flag, const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string json(std::istreambuf_iterator<char>(file), {});
+  const absl::StatusOr<std::string> start = base::ReadFileStart(path, kFileStart_bytes);
+  if (!start.ok()) return base::Annotate(start.status(), flag);
   const std::string what = absl::StrCat(flag, " ", path);
-  if (!file.good() && json.empty()) {
-    return absl::InvalidArgumentError(absl::StrCat(what, " cannot be read"));
-  }
+  std::string json = *start;
   const bool picture = frame::IsPng(json);
   if (picture) {
     THUNDERHEAD_ASSIGN_OR_RETURN(json, SceneJsonIn(what, json));
   }
-  v1::Scene scene;
-  const auto status = google::protobuf::util::JsonStringToMessage(json, &scene);
-  if (picture) scene.clear_storm_id();
-  if (status.ok()) return scene;
-  // The parser's message quotes the file with its line breaks, which are removed here.
-  std::string why(status.message());
-  absl::RemoveExtraAsciiWhitespace(&why);
-  return absl::InvalidArgumentError(absl::StrCat(
-      what, " is not a scene: ", why, "; see proto/thunderhead/v1/scene.proto for its fields"));
+  absl::StatusOr<v1::Scene> scene = service::SceneOfJson(json);
+  if (!scene.ok()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(what, " is not a scene: ", scene.status().message(),
+                     "; see proto/thunderhead/v1/scene.proto for its fields"));
+  }
+  if (picture) scene->clear_storm_id();
+  return scene;
 }
 
 // Replaces the values in `scene` by those that `over` sets. Lists are replaced as a whole.

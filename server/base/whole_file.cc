@@ -28,9 +28,11 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
 
   int Number() const { return number_; }
+  // Hands the descriptor to the caller, who must close it.
+  int Release() { return std::exchange(number_, -1); }
   // Returns zero or an error. Network file systems report delayed write errors only when the file
   // is closed.
-  int Close() { return close(std::exchange(number_, -1)); }
+  int Close() { return close(Release()); }
 
  private:
   int number_;
@@ -61,26 +63,34 @@ absl::Status Drop(const std::string& path) {
   return status;
 }
 
+bool IsFileWithOneName(const struct stat& found) {
+  return S_ISREG(found.st_mode) && found.st_nlink == 1;
+}
+
+// Returns whether something other than a file with one name is at `path`, for example a link or a
+// FIFO. Another user of the folder may have planted it. A folder does not count.
+bool IsPlanted(const std::string& path) {
+  struct stat found {};
+  return lstat(path.c_str(), &found) == 0 && !S_ISDIR(found.st_mode) && !IsFileWithOneName(found);
+}
+
 // Opens an empty file at PartialPath(path), and returns its descriptor, or -1 with errno set. A
-// link that was planted there would lead to another file, so it is removed.
+// planted link would lead to another file, and a planted FIFO would wait for a reader or pass the
+// bytes to it. Both are therefore removed.
 int OpenPartial(const std::string& path) {
   const std::string partial = PartialPath(path);
-  constexpr int kWrite = O_WRONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC;
-  const int file = open(partial.c_str(), kWrite, 0666);
+  // Without O_NONBLOCK, opening a FIFO could wait forever.
+  constexpr int kWrite = O_WRONLY | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
+  Descriptor file(open(partial.c_str(), kWrite, 0666));
+  const int why = errno;
   struct stat found {};
-  const bool is_link = file < 0 && errno == ELOOP;
-  const bool is_shared =
-      file >= 0 && fstat(file, &found) == 0 && S_ISREG(found.st_mode) && found.st_nlink != 1;
-  if (!is_link && !is_shared) {
-    if (file >= 0 && S_ISREG(found.st_mode) && ftruncate(file, 0) != 0) {
-      const int why = errno;
-      close(file);
-      errno = why;
-      return -1;
-    }
-    return file;
+  if (file.Number() >= 0 && fstat(file.Number(), &found) == 0 && IsFileWithOneName(found)) {
+    return ftruncate(file.Number(), 0) == 0 ? file.Release() : -1;
   }
-  if (file >= 0) close(file);
+  if (file.Number() < 0 && !IsPlanted(partial)) {
+    errno = why;
+    return -1;
+  }
   unlink(partial.c_str());
   return open(partial.c_str(), kWrite | O_EXCL, 0666);
 }
@@ -144,8 +154,8 @@ absl::Status WriteWholeFile(const std::string& path, std::string_view bytes) {
 absl::Status PublishFile(const std::string& path) {
   const std::string partial = PartialPath(path);
   {
-    // fsync flushes what any descriptor of the file has written.
-    Descriptor file(open(partial.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
+    // fsync flushes what any descriptor of the file has written. It refuses a FIFO.
+    Descriptor file(open(partial.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     if (file.Number() < 0 || fsync(file.Number()) != 0) return Drop(path);
   }
   if (std::rename(partial.c_str(), path.c_str()) != 0) return Drop(path);

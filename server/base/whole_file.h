@@ -17,8 +17,8 @@ absl::StatusOr<std::string> ReadWholeFile(const std::string& path);
 // path is in the same folder, so that the complete file can be renamed.
 std::string PartialPath(std::string_view path);
 
-// Makes an empty file at PartialPath(path) and returns that path. A planted link is replaced, and
-// not followed. Errors are those of WriteProblem.
+// Makes an empty file at PartialPath(path) and returns that path. Replaces whatever is not a file
+// with one name, such as a planted link or FIFO. Errors are those of WriteProblem.
 absl::StatusOr<std::string> StartPartial(const std::string& path);
 
 // Writes the whole file. Returns FAILED_PRECONDITION if its folder is missing or not writable.

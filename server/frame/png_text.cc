@@ -3,6 +3,7 @@
 #include <png.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <csetjmp>
 #include <cstdint>
 #include <cstring>
@@ -17,6 +18,18 @@ namespace {
 constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
 // Bytes of the signature and of the first chunk, IHDR. Text chunks are inserted after them.
 constexpr std::size_t kHeaderBytes = 8 + 25;
+
+// Bytes of a chunk's length and type, which are before its data, and of the checksum after it.
+constexpr std::size_t kChunkHeadBytes = 8;
+constexpr std::size_t kChecksumBytes = 4;
+
+std::size_t NumberAtStart(std::string_view bytes) {
+  std::uint32_t number = 0;
+  for (const char byte : bytes.substr(0, 4)) {
+    number = number << 8U | static_cast<unsigned char>(byte);
+  }
+  return number;
+}
 
 void AppendNumber(std::uint32_t number, std::string& bytes) {
   for (int shift = 24; shift >= 0; shift -= 8) {
@@ -74,7 +87,22 @@ std::string WithTexts(const std::string& png, const PngTexts& texts) {
 
 bool IsPng(const std::string& bytes) { return bytes.starts_with(kSignature); }
 
+absl::Status CheckPngChunks(std::string_view png) {
+  std::string_view rest = png.substr(std::min(png.size(), kSignature.size()));
+  while (rest.size() >= kChunkHeadBytes) {
+    const std::size_t whole_bytes = kChunkHeadBytes + NumberAtStart(rest) + kChecksumBytes;
+    const bool has_pixels = rest.substr(4, 4) == "IDAT";
+    if (whole_bytes > rest.size()) {
+      if (has_pixels) return absl::OkStatus();
+      return absl::InvalidArgumentError("not a PNG: it is cut short");
+    }
+    rest.remove_prefix(whole_bytes);
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<PngTexts> TextsOf(const std::string& png_file) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckPngChunks(png_file));
   Source source{png_file, ""};
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, Fail, Warn);
   png_infop info = png == nullptr ? nullptr : png_create_info_struct(png);

@@ -49,8 +49,9 @@ Problem EndedServer() {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<Jobs>> Jobs::Open(const JobsOptions& options) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(ResultFolder results,
-                               ResultFolder::Open(options.folder, options.patience, *options.time));
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      ResultFolder results,
+      ResultFolder::Open(options.folder, options.patience, *options.time, options.write_file));
   std::unique_ptr<Jobs> jobs(new Jobs(options, std::move(results)));
   THUNDERHEAD_RETURN_IF_ERROR(jobs->Restore());
   jobs->thread_ = std::thread([raw = jobs.get()] { raw->Run(); });

@@ -25,6 +25,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/time_source.h"
+#include "base/whole_file.h"
 #include "jobs/job_board.h"
 #include "jobs/job_limits.h"
 #include "jobs/job_record.h"
@@ -43,6 +44,7 @@ struct JobsOptions {
   // The time source for pauses, retries and timeouts of calls to the folder. It must outlive the
   // Jobs object.
   const base::TimeSource* time = &base::SteadyTime();
+  WriteFile write_file = &base::WriteWholeFile;  // writes the files of the results
 };
 
 // A listener that is notified when a job has changed or was removed, or when the server stops.

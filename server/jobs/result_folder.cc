@@ -9,7 +9,6 @@
 #include "absl/strings/str_format.h"
 #include "base/slow_calls.h"
 #include "base/status.h"
-#include "base/whole_file.h"
 #include "jobs/job_record.h"
 
 namespace thunderhead::jobs {
@@ -37,7 +36,8 @@ bool IsOwnFolder(const fs::path& path) {
 
 absl::StatusOr<ResultFolder> ResultFolder::Open(const std::string& path,
                                                 std::chrono::milliseconds patience,
-                                                const base::TimeSource& time) {
+                                                const base::TimeSource& time,
+                                                WriteFile write_file) {
   const base::SlowCall slow(path);
   std::error_code error;
   const bool is_there = fs::is_directory(path, error);
@@ -45,7 +45,7 @@ absl::StatusOr<ResultFolder> ResultFolder::Open(const std::string& path,
     fs::create_directories(path, error);
     if (!error) fs::permissions(path, fs::perms::owner_all, error);
   }
-  if (!error) return ResultFolder(path, patience, time);
+  if (!error) return ResultFolder(path, patience, time, std::move(write_file));
   return absl::InvalidArgumentError(absl::StrCat(
       "'", path,
       "' for results of render jobs is not a folder and cannot be created: ", error.message()));
@@ -57,7 +57,7 @@ absl::Status ResultFolder::Write(const std::string& job_id, std::size_t place,
   return calls_->Ask(
       path_,
       [folder = path_, job = absl::StrCat(path_, "/", job_id),
-       about_path = AboutPathOf(job_id, place), path,
+       about_path = AboutPathOf(job_id, place), path, write_file = write_file_,
        picture = std::move(picture)]() -> absl::Status {
         const base::SlowCall slow(folder);
         std::error_code error;
@@ -72,8 +72,8 @@ absl::Status ResultFolder::Write(const std::string& job_id, std::size_t place,
           return absl::FailedPreconditionError(
               absl::StrCat(job, " is a link; results are written only to a folder: remove it"));
         }
-        THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(about_path, picture->about));
-        return base::WriteWholeFile(path, picture->bytes);
+        THUNDERHEAD_RETURN_IF_ERROR(write_file(about_path, picture->about));
+        return write_file(path, picture->bytes);
       });
 }
 

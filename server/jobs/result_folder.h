@@ -6,9 +6,11 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -16,17 +18,23 @@
 #include "absl/status/statusor.h"
 #include "base/patient_calls.h"
 #include "base/time_source.h"
+#include "base/whole_file.h"
 #include "jobs/picture_source.h"
 
 namespace thunderhead::jobs {
 
+// Writes a whole file, as base::WriteWholeFile does. It may be called on any thread, also after the
+// ResultFolder no longer exists.
+using WriteFile = std::function<absl::Status(const std::string& path, std::string_view bytes)>;
+
 class ResultFolder {
  public:
   // Creates the folder at `path`, accessible only to this user. Returns INVALID_ARGUMENT if that
-  // fails.
+  // fails. Files are written by `write_file`.
   static absl::StatusOr<ResultFolder> Open(const std::string& path,
                                            std::chrono::milliseconds patience,
-                                           const base::TimeSource& time);
+                                           const base::TimeSource& time,
+                                           WriteFile write_file = &base::WriteWholeFile);
 
   // Writes the picture with index `place` of a job, and its description. Returns the errors of
   // base::WriteWholeFile, and DEADLINE_EXCEEDED while the storage hangs. In the latter case, the
@@ -51,11 +59,15 @@ class ResultFolder {
   void Clean(const std::set<std::string>& known) const;
 
  private:
-  ResultFolder(std::string path, std::chrono::milliseconds patience, const base::TimeSource& time)
-      : path_(std::move(path)), calls_(std::make_unique<base::PatientCalls>(patience, time)) {}
+  ResultFolder(std::string path, std::chrono::milliseconds patience, const base::TimeSource& time,
+               WriteFile write_file)
+      : path_(std::move(path)),
+        write_file_(std::move(write_file)),
+        calls_(std::make_unique<base::PatientCalls>(patience, time)) {}
   void RemoveAll(const std::vector<std::string>& paths);
 
   std::string path_;
+  WriteFile write_file_;
   std::unique_ptr<base::PatientCalls> calls_;
   std::vector<std::string> removed_;  // paths that are still to be removed, because the storage
                                       // hung

@@ -19,6 +19,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "base/read_own_file.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 
@@ -213,7 +214,7 @@ absl::Status WriteExr(const std::string& path, const LinearPicture& picture,
 }
 
 absl::StatusOr<LinearPicture> ReadExr(const std::string& path) {
-  auto bytes = base::ReadWholeFile(path);
+  auto bytes = base::ReadOwnFile(path);
   if (!bytes.ok()) {
     return absl::InvalidArgumentError(
         absl::StrCat("cannot read '", path, "': ", bytes.status().message()));

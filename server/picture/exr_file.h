@@ -40,7 +40,7 @@ absl::StatusOr<ExrPicture> DecodeExr(const std::string& exr, const std::string& 
 absl::Status WriteExr(const std::string& path, const LinearPicture& picture,
                       const ExrAttributes& attributes = {});
 
-// Reads a file that WriteExr wrote.
+// Reads a file that WriteExr wrote, and refuses a link or FIFO in its place.
 absl::StatusOr<LinearPicture> ReadExr(const std::string& path);
 
 }  // namespace thunderhead::picture

@@ -149,13 +149,6 @@ std::string TextOf(const std::vector<ManifestEntry>& entries) {
   return text;
 }
 
-// Replaces a locked manifest. A FIFO that another user planted in place of its partial file would
-// wait for a reader, so it is removed.
-absl::Status Replace(const std::string& path, const std::vector<ManifestEntry>& entries) {
-  unlink(base::PartialPath(path).c_str());
-  return base::WriteWholeFile(path, TextOf(entries));
-}
-
 // Returns the entries of another manifest; none if it no longer exists or may not be read.
 absl::StatusOr<std::vector<ManifestEntry>> Read(const std::string& path) {
   const base::FileDescriptor file = OpenOwn(path, O_RDONLY);
@@ -339,7 +332,7 @@ absl::Status Manifest::RemoveFromOthers(const std::string& name) {
     if (removed.ok() && std::erase_if(*entries, [&name](const ManifestEntry& entry) {
                           return entry.file == name;
                         }) > 0) {
-      removed = Replace(other.manifest, *entries);
+      removed = base::WriteWholeFile(other.manifest, TextOf(*entries));
     }
     close(file);
     THUNDERHEAD_RETURN_IF_ERROR(removed);
@@ -413,7 +406,7 @@ absl::Status Manifest::Append(const ManifestEntry& entry) const {
 }
 
 absl::Status Manifest::Rewrite() {
-  THUNDERHEAD_RETURN_IF_ERROR(Replace(path_, entries_));
+  THUNDERHEAD_RETURN_IF_ERROR(base::WriteWholeFile(path_, TextOf(entries_)));
   const int file = OpenLocked(path_);
   if (file < 0) return NotUsable(path_);
   close(std::exchange(file_, file));

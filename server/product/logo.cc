@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "frame/png_text.h"
 #include "product/cairo_surface.h"
 
 namespace thunderhead::product {
@@ -46,6 +47,7 @@ absl::StatusOr<Logo> Logo::Decode(std::string_view png, const std::string& what)
   if (std::max(width, height) > kMaxSize_px) {
     return bad(absl::StrCat("is ", width, " x ", height, " pixels"));
   }
+  if (!frame::CheckPngChunks(png).ok()) return bad("is a damaged PNG (it is cut short)");
   std::string_view rest = png;
   CairoSurface surface(cairo_image_surface_create_from_png_stream(Read, &rest));
   const cairo_status_t status = cairo_surface_status(surface.get());

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/read_own_file.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/whole_file.h"
@@ -47,7 +48,7 @@ std::string DescriptionOf(const pipeline::ManifestEntry& entry, const View& view
   std::string scene;
   (void)google::protobuf::util::MessageToJsonString(view.scene, &scene);
   json["scene"] = JsonOf(scene);
-  const auto first = base::ReadWholeFile(pictures.front()->path);
+  const auto first = base::ReadOwnFile(pictures.front()->path);
   if (first.ok() && frame::IsPng(*first)) {
     const auto texts = frame::TextsOf(*first);
     if (texts.ok() && texts->contains(service::kViewText)) {
@@ -105,8 +106,7 @@ absl::Status MakeMovie(const std::string& path, const View& view,
       path, pipeline::FramesOfPictures(valid), kFramesPerSecond, text,
       [&](std::size_t i) -> absl::StatusOr<frame::RgbImage> {
         if (stop.stop_requested()) return absl::CancelledError("interrupted");
-        THUNDERHEAD_ASSIGN_OR_RETURN(const std::string bytes,
-                                     base::ReadWholeFile(pictures[i]->path));
+        THUNDERHEAD_ASSIGN_OR_RETURN(const std::string bytes, base::ReadOwnFile(pictures[i]->path));
         return run.Options().format.kind == ProductKind::kPng ? frame::DecodePng(bytes)
                                                               : frame::DecodeJpeg(bytes);
       }));

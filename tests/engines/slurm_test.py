@@ -110,13 +110,20 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
         return None
 
     def hold(self, task: int) -> pathlib.Path:
-        """Makes a task of the array block at its second product. The product is a pipe, and the task blocks until the
-        pipe is removed or opened.
+        """Makes a task of the array block when it begins to write its second product. Returns a file; the task goes on
+        when it is removed (tests/service/hanging_storage.cc).
         """
         minutes = 10 * (task + 4 + 1)
-        pipe = self.products / f"run42_{minutes // 60:02d}{minutes % 60:02d}.png.partial"
-        os.mkfifo(pipe)
-        return pipe
+        mark = self.products / f"run42_{minutes // 60:02d}{minutes % 60:02d}.png.partial.hangs"
+        mark.touch()
+        return mark
+
+    def use_hanging_storage(self) -> None:
+        """Lets the jobs run the program with the library that makes storage hang."""
+        program = self.folder / "thunderhead"
+        program.write_text(f"#!/bin/sh\nLD_PRELOAD='{os.environ['HANGING_STORAGE']}' exec '{PROGRAM}' \"$@\"\n")
+        program.chmod(0o755)
+        self.environment["THUNDERHEAD"] = str(program)
 
     def is_interrupted(self, process: int) -> bool:
         """Returns whether the program has received a signal as a request to stop (server/app/interruption.cc)."""
@@ -133,19 +140,20 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 
     def test_an_array_with_a_killed_and_a_requeued_task_makes_every_product_once(self) -> None:
         self.products.mkdir()
+        self.use_hanging_storage()
         to_kill, to_requeue = self.hold(2), self.hold(1)
         job = self.submit("--array=0-3")
         movie = self.submit(f"--dependency=afterok:{job}", more=("--movie", f"{self.products}/{{storm}}.webm"))
         killed = self.wait_for("a picture of task 2", lambda: self.program_of(job, 2))
-        to_kill.unlink()
         os.kill(killed, signal.SIGKILL)
+        to_kill.unlink()
         requeued = self.wait_for("a picture of task 1", lambda: self.program_of(job, 1))
         self.slurm("scontrol", "requeue", f"{job}_1")
         self.wait_for("the signal to task 1", lambda: not self.runs(requeued) or self.is_interrupted(requeued))
-        # The pipe is opened at both ends, so that the program's calls return; the last returns an error.
-        with open(to_requeue, "r+b", buffering=0):
-            to_requeue.unlink()
-            self.wait_for("the end of task 1", lambda: not self.runs(requeued))
+        to_requeue.unlink()
+        self.wait_for("the end of task 1", lambda: not self.runs(requeued))
+        for mark in self.products.glob("*.hung"):
+            mark.unlink()
         before = {entry["file"]: entry["sha256"] for entry in self.entries()}
         self.assertLess(len(before), self.times, "all was drawn before anything could be killed")
         self.wait_for("the array's end", lambda: self.state(job) == {"COMPLETED"})

@@ -1,6 +1,5 @@
 // Fuzzes scenes in PNGs (iTXt). The checksums of chunks are corrected first, because otherwise no
 // mutation would get past them.
-#include <google/protobuf/util/json_util.h>
 #include <zlib.h>
 
 #include <cstdint>
@@ -8,6 +7,7 @@
 
 #include "frame/png_text.h"
 #include "service/messages/picture_texts.h"
+#include "service/messages/scene_json.h"
 #include "tests/fuzz/scene_path.h"
 
 namespace {
@@ -44,9 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (!texts.ok()) return 0;
   const auto scene_text = texts->find(thunderhead::service::kSceneText);
   if (scene_text == texts->end()) return 0;
-  thunderhead::v1::Scene scene;
-  if (google::protobuf::util::JsonStringToMessage(scene_text->second, &scene).ok()) {
-    thunderhead::fuzz::TakeScene(scene);
-  }
+  const auto scene = thunderhead::service::SceneOfJson(scene_text->second);
+  if (scene.ok()) thunderhead::fuzz::TakeScene(*scene);
   return 0;
 }

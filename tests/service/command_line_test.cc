@@ -16,6 +16,7 @@
 #include <string>
 
 #include "frame/image_codec.h"
+#include "frame/png_text.h"
 #include "gmock/gmock.h"
 #include "google/protobuf/struct.pb.h"
 #include "google/protobuf/util/json_util.h"
@@ -141,12 +142,20 @@ TEST_F(CommandLineTest, WrongSettingsAreRefusedWithTheirFile) {
   refuse("[limits]\nmax-sessions = 3", "has a section [limits]");
   refuse("max-sessions = many", "max-sessions: ");
   refuse("max-sessions = 0", "max-sessions: ");
+  refuse("max-sessions = 010", "max-sessions: --max-sessions: '010' is not an integer in decimal");
+  refuse("insecure = 2", "insecure: --insecure: '2' is neither true nor false");
+  refuse("a.max-sessions = 3", "there is no setting 'a.max-sessions'");
+  std::string dotted = "max-sessions";
+  for (int i = 0; i < 300; ++i) dotted.insert(0, "a.");
+  refuse(dotted + " = 3", "there is no setting '" + dotted + "'");
+  refuse("[" + dotted + "]\nmax-sessions = 3", "has a section [" + dotted + "]");
   refuse("insecure = perhaps", "insecure: ");
   refuse("max-requests = nan", "max-requests: --max-requests: 'nan' is not a finite number");
   refuse("max-sessions = 3\nmax-viewers = 7\nmax-sessions = 4",
          "max-sessions is set a second time");
   refuse("max-images = 3\nmax-viewers = 7\nmax-stills = 4", "max-stills is set a second time");
-  ExpectError("serve --config " + folder_.File("none"), 64, "there is no such file");
+  ExpectError("serve --config " + folder_.File("none"), 64, "none cannot be read");
+  ExpectError("serve --config /dev/zero", 64, "/dev/zero is neither a regular file nor a pipe");
   ExpectError("serve", 64, "there are no storms to serve");
   // The name of a flag that the help omits is in the message, too.
   ExpectError("serve --data " + kSample + " --max-requests -1", 64, "--max-requests: Value -1");
@@ -178,6 +187,82 @@ TEST_F(CommandLineTest, NumbersAreFinite) {
   }
 }
 
+TEST_F(CommandLineTest, IntegersAreDecimalAndNotTooLarge) {
+  const std::string cloud = "generate -o " + folder_.File("cloud.nc");
+  for (const char* const number : {"0x10", "010", "1.5", "many"}) {
+    ExpectError(cloud + " --seed " + number, 64, "' is not an integer in decimal digits");
+    ExpectError("flux " + kSample + " --photons " + number, 64,
+                "' is not an integer in decimal digits");
+  }
+  ExpectError(cloud + " --seed 18446744073709551616", 64, "is too large for an integer");
+  ExpectError(cloud + " --seed 99999999999999999999", 64, "is too large for an integer");
+  ExpectError("flux " + kSample + " --photons 9223372036854775808", 64,
+              "is too large for an integer");
+  ExpectError(cloud + " --cells 4x4x4.5", 64, "must be an integer from 1 to 4096");
+  ExpectError(cloud + " --seed -1", 64, "it must be 0 or more");
+  ExpectError(render_ + " --time 4294967296", 64, "--time");
+  EXPECT_EQ(Run(cloud + " --cells 4x4x4 --seed 18446744073709551615").code, 0);
+}
+
+// In these flags, 0 is not a way to ask for the default.
+TEST_F(CommandLineTest, TheLimitsOfTheReferenceAreAboveZero) {
+  const std::string reference = render_ + " --size 16x9 --renderer reference ";
+  for (const char* const number : {"0", "-1"}) {
+    const std::string is = std::string(" is ") + number + "; it must be ";
+    for (const std::string flag : {"--spp", "--max-scatterings"}) {
+      ExpectError(reference + flag + " " + number, 64, flag + is + "1 or more");
+    }
+    for (const std::string flag : {"--seconds", "--target-error"}) {
+      ExpectError(reference + flag + " " + number, 64, flag + is + "above 0");
+    }
+  }
+  ExpectError(render_ + " --spp 0", 64, "are for --renderer reference");
+}
+
+TEST_F(CommandLineTest, FlagsWithoutAValueAreTrueOrFalse) {
+  ExpectError("inspect " + kSample + " --json=2", 64, "--json: '2' is neither true nor false");
+  EXPECT_THAT(Run("inspect " + kSample + " --json=true").out, StartsWith("{"));
+}
+
+TEST_F(CommandLineTest, ASceneIsStrictJson) {
+  const auto refuse = [this](const std::string& json, const std::string& why) {
+    ExpectError(render_ + " --scene " + Scene(json), 64, " is not a scene: " + why);
+  };
+  refuse(R"({"sky": {"brightness": 1},)"
+         "\n"
+         R"("sky": {"brightness": 2}})",
+         "line 2, column 5: 'sky' is given a second time");
+  refuse(R"({"sky": {},})", "line 1, column 12: this is not JSON: unexpected '}'");
+  refuse("{'sky': {}}", "line 1, column 2: this is not JSON: ");
+  const std::string many(100'000, '[');
+  refuse("{\"fields\": " + many + std::string(many.size(), ']') + "}",
+         "line 1, column 111: there are more than 100 levels of nesting");
+  refuse("{}" + std::string(600'000, ' '), "the JSON has more than 512 KiB");
+  // The same holds for the scene in a picture.
+  const std::string with_scene = folder_.File("other.png");
+  std::ofstream(with_scene, std::ios::binary) << frame::WithTexts(
+      *frame::EncodePng(1, 1, {{1, 2, 3}}), {{"thunderhead.scene", R"({"sky": {},})"}});
+  ExpectError(render_ + " --scene " + with_scene, 64, " is not a scene: line 1, column 12: ");
+}
+
+TEST_F(CommandLineTest, OnlyRegularFilesOfALimitedSizeAreRead) {
+  const std::string huge = folder_.File("huge");
+  std::ofstream(huge) << "x";
+  std::filesystem::resize_file(huge, 3ULL << 30);
+  const std::string load = "load 127.0.0.1:1 ";
+  const std::string commands[] = {
+      render_ + " --scene ",  render_ + " --annotate --logo ", "serve --config ",
+      load + "--token-file ", load + "--tls-roots ",
+  };
+  for (const std::string& command : commands) {
+    for (const char* const path : {"/", "/dev/zero", "/dev/null"}) {
+      ExpectError(command + path, 64, std::string(path) + " is neither a regular file nor a pipe");
+    }
+    ExpectError(command + huge, 64, " has more than ");
+    ExpectError(command + folder_.File("none"), 64, "none cannot be read");
+  }
+}
+
 TEST_F(CommandLineTest, WrongUsageIsABadRequest) {
   ExpectError("", 64, "subcommand");
   ExpectError("frobnicate", 64, "'frobnicate'");
@@ -197,9 +282,8 @@ TEST_F(CommandLineTest, WrongUsageIsABadRequest) {
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   for (const std::string& not_a_file : {fifo, std::string("/dev/null")}) {
     const std::string says = not_a_file + " is not a file";
-    for (const std::string flag :
-         {"--auth tokens ", "--auth jwt ", "--config ", "--roster-timeouts ",
-          "--tls-key x --tls-cert ", "--tls-cert x --tls-key "}) {
+    for (const std::string flag : {"--auth tokens ", "--auth jwt ", "--roster-timeouts ",
+                                   "--tls-key x --tls-cert ", "--tls-cert x --tls-key "}) {
       ExpectError("serve --data " + kSample + " --state none " + flag + not_a_file, 78, says);
     }
   }

@@ -1,9 +1,5 @@
 // Tests of `thunderhead sequence --server` and `watch --server`: each product is drawn once,
 // whichever process is killed.
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -17,6 +13,7 @@
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "pipeline/sha256.h"
+#include "tests/service/hanging_storage.h"
 #include "tests/service/product_folder.h"
 #include "tests/service/running_program.h"
 #include "tests/service/synthetic_run.h"
@@ -86,6 +83,13 @@ class ServerSequence : public ::testing::Test {
                                             folder_.File("err.log"));
   }
 
+  // Starts a client that hangs when it opens the file `path`.
+  std::unique_ptr<RunningProgram> StartHeldAt(const std::string& path) const {
+    HangAt(path);
+    const HangingStorage hanging;
+    return Start("sequence", "run");
+  }
+
   std::string Errors() const { return Contents(folder_.File("err.log")); }
 
   static std::vector<std::string> Products(int times = kSequenceTimes) {
@@ -141,6 +145,7 @@ TEST_F(ServerSequence, AClientThatIsKilledGoesOnWhereItWas) {
 }
 
 TEST_F(ServerSequence, AJobThatAKilledClientLeftIsForgottenThoughNothingIsMissing) {
+  if (!kHasHangingStorage) GTEST_SKIP() << "a sanitizer must be the program's first library";
   const auto server = Serve();
   ASSERT_EQ(Start("sequence", "run")->Wait().code, 0) << Errors();
   const std::string aside = folder_.File("aside");
@@ -150,13 +155,12 @@ TEST_F(ServerSequence, AJobThatAKilledClientLeftIsForgottenThoughNothingIsMissin
   }
   // Holds the client at its first product, so that results remain at the server.
   const std::string held = out_ + "/" + Products()[0] + ".partial";
-  ASSERT_EQ(mkfifo(held.c_str(), 0600), 0);
-  const auto client = Start("sequence", "run");
+  const auto client = StartHeldAt(held);
   ASSERT_TRUE(WaitFor([&] { return Kept() >= 1 || !client->Runs(); }));
   ASSERT_TRUE(client->Runs()) << Errors();
   client->Signal(SIGKILL);
   client->Wait();
-  fs::remove(held);
+  HangNoLonger(held);
   for (const std::string& product : Products()) {
     if (fs::exists(out_ + "/" + product)) continue;
     fs::rename(aside + "/" + product, out_ + "/" + product);
@@ -189,19 +193,20 @@ TEST_F(ServerSequence, SaysWhatItEndsFor) {
   EXPECT_EQ(Start("sequence", "nowhere")->Wait().code, 75) << "not there yet";
   EXPECT_THAT(Errors(), HasSubstr("no storm has the id 'nowhere'"));
   EXPECT_EQ(Start("sequence", "run", {"--times", "99"})->Wait().code, 64);
+}
+
+TEST_F(ServerSequence, SaysHowToContinueAfterASignal) {
+  if (!kHasHangingStorage) GTEST_SKIP() << "a sanitizer must be the program's first library";
+  const auto server = Serve();
   // Holds the client at a product, so that it cannot end before the signal arrives.
   const std::string held = out_ + "/" + Products()[0] + ".partial";
   fs::create_directories(out_);
-  ASSERT_EQ(mkfifo(held.c_str(), 0600), 0);
-  const auto client = Start("sequence", "run");
+  const auto client = StartHeldAt(held);
   ASSERT_TRUE(WaitFor([&] { return Kept() >= 1 || !client->Runs(); }));
   client->Signal(SIGTERM);
   EXPECT_TRUE(WaitFor([&] { return client->IsInterrupted() || !client->Runs(); }));
-  // The pipe is opened at both ends, so that the client's calls return; the last returns an error.
-  const int both = open(held.c_str(), O_RDWR | O_CLOEXEC);
+  HangNoLonger(held);
   EXPECT_EQ(client->Wait().code, 75) << Errors();
-  close(both);
-  fs::remove(held);
   EXPECT_THAT(Errors(), HasSubstr("run the same command again to continue"));
 }
 

@@ -1,5 +1,7 @@
 #include "frame/png_text.h"
 
+#include <sys/resource.h>
+
 #include "frame/image_codec.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -8,6 +10,12 @@ namespace thunderhead::frame {
 namespace {
 
 using ::testing::HasSubstr;
+
+long PeakMemory_kib() {
+  rusage used{};
+  getrusage(RUSAGE_SELF, &used);
+  return used.ru_maxrss;
+}
 
 std::string Picture() { return *EncodePng(2, 1, {{1, 2, 3, 4, 5, 6}}); }
 
@@ -40,6 +48,24 @@ TEST(PngText, BytesThatAreNoPngAreRefused) {
     broken[at] ^= 0x40;
     (void)TextsOf(broken);  // must not crash, whatever the broken file contains
   }
+}
+
+// libpng would allocate memory of the length that a chunk says, up to 2 GiB.
+TEST(PngText, ChunksThatSayToBeLongerThanTheFileTakeNoMemory) {
+  const std::string png = WithTexts(Picture(), {{"Title", "storm"}});
+  std::string longer = png;
+  longer.replace(8 + 25, 4, std::string("\x7f\xff\xff\xff", 4));
+  const long before_kib = PeakMemory_kib();
+  EXPECT_THAT(std::string(TextsOf(longer).status().message()), HasSubstr("it is cut short"));
+  EXPECT_LT(PeakMemory_kib() - before_kib, 1 << 20);
+  EXPECT_FALSE(CheckPngChunks(longer).ok());
+  EXPECT_TRUE(CheckPngChunks(png).ok());
+}
+
+TEST(PngText, TextsAreReadFromAPictureThatEndsWithinItsPixels) {
+  const std::string png = WithTexts(Picture(), {{"Title", "storm"}});
+  const std::string start = png.substr(0, png.find("IDAT") + 6);
+  EXPECT_EQ(TextsOf(start).value().at("Title"), "storm");
 }
 
 }  // namespace

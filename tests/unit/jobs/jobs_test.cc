@@ -1,9 +1,6 @@
 #include "jobs/jobs.h"
 
-#include <fcntl.h>
-#include <poll.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <atomic>
@@ -18,9 +15,9 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "base/file_descriptor.h"
 #include "base/whole_file.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
@@ -220,6 +217,27 @@ TEST(JobsTest, WhatIsFetchedWhileAnotherFetchIsSavedLetsDrawingGoOn) {
   EXPECT_TRUE(WaitFor([&] { return (*jobs)->Load().waiting < 2; }));
 }
 
+// A storage on which writing files can hang. An abandoned thread may outlive its test, so the
+// thread shares it.
+class HangingFiles {
+ public:
+  // Returns a function that waits while `hangs` is true and then writes the file.
+  WriteFile Writer() const {
+    return [hangs = hangs_](const std::string& path, std::string_view bytes) {
+      hangs->wait(true);
+      return base::WriteWholeFile(path, bytes);
+    };
+  }
+  void Hang() { *hangs_ = true; }
+  void Respond() {
+    *hangs_ = false;
+    hangs_->notify_all();
+  }
+
+ private:
+  const std::shared_ptr<std::atomic<bool>> hangs_ = std::make_shared<std::atomic<bool>>(false);
+};
+
 class UnwrittenPictures : public ::testing::Test {
  protected:
   void Open() {
@@ -227,6 +245,7 @@ class UnwrittenPictures : public ::testing::Test {
     options.folder = results_;
     options.patience = patience_;
     options.time = &Time();
+    options.write_file = files_.Writer();
     auto jobs = Jobs::Open(options);
     ASSERT_TRUE(jobs.ok()) << jobs.status();
     jobs_ = *std::move(jobs);
@@ -253,7 +272,10 @@ class UnwrittenPictures : public ::testing::Test {
     limit.rlim_cur = std::min(bytes, limit.rlim_max);
     setrlimit(RLIMIT_FSIZE, &limit);
   }
-  void TearDown() override { Unblock(); }
+  void TearDown() override {
+    Unblock();
+    files_.Respond();
+  }
 
   std::string Create(int pictures) {
     NewJob job;
@@ -269,20 +291,12 @@ class UnwrittenPictures : public ::testing::Test {
     return news.ok() ? news->job.paused : std::nullopt;
   }
 
-  // Makes the first result of a job hang while it is written. Sets the job's id, and the pipe whose
-  // reader releases the write.
-  void HangFirstResult(std::string& id, std::string& pipe) {
+  // Makes the first result of a job hang while it is written. Sets the job's id.
+  void HangFirstResult(std::string& id) {
     patience_ = std::chrono::seconds(10);
     Open();
-    may_take_ = false;
+    files_.Hang();
     id = Create(1);
-    ASSERT_TRUE(WaitFor([this] { return begun_ > 0; }));
-    // Opening a pipe that has no reader hangs, once.
-    pipe = results_ + "/" + id + "/000000.about.partial";
-    std::filesystem::create_directory(results_ + "/" + id);
-    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-    may_take_ = true;
-    may_take_.notify_all();
     // The picture's memory is released after the server has given up writing the picture.
     ASSERT_TRUE(Await([this] { return ended_ > 0; }));
     EXPECT_GE(jobs_->Load().stalled_s, 10.0);
@@ -312,6 +326,7 @@ class UnwrittenPictures : public ::testing::Test {
   std::atomic<int> begun_{0};
   std::atomic<int> ended_{0};
   std::chrono::milliseconds patience_ = std::chrono::hours(1);
+  HangingFiles files_;
   std::unique_ptr<Jobs> jobs_;
 };
 
@@ -407,8 +422,7 @@ TEST_F(UnwrittenPictures, ALinkInPlaceOfAJobsFolderIsNotFollowed) {
 
 TEST_F(UnwrittenPictures, OfAFolderThatHangsHoldUpNeitherCallersNorTheEnd) {
   std::string id;
-  std::string pipe;
-  ASSERT_NO_FATAL_FAILURE(HangFirstResult(id, pipe));
+  ASSERT_NO_FATAL_FAILURE(HangFirstResult(id));
   EXPECT_FALSE(Create(1).empty()) << "the job's record is another matter";
   std::promise<bool> forgotten;
   jobs_->Cancel(id, {.name = "night"}, true,
@@ -417,7 +431,7 @@ TEST_F(UnwrittenPictures, OfAFolderThatHangsHoldUpNeitherCallersNorTheEnd) {
   EXPECT_TRUE(std::filesystem::exists(results_ + "/" + id));
   // The folder responds again. Files that could not be removed before are removed together with the
   // next file.
-  const base::FileDescriptor reader(open(pipe.c_str(), O_RDWR | O_NONBLOCK));
+  files_.Respond();
   EXPECT_TRUE(Await([this] { return jobs_->Load().result_bytes == 5; }));
   const std::string last = Create(1);
   jobs_->Cancel(last, {.name = "night"}, true, [](const absl::StatusOr<JobView>&) {});
@@ -426,15 +440,14 @@ TEST_F(UnwrittenPictures, OfAFolderThatHangsHoldUpNeitherCallersNorTheEnd) {
 
 TEST_F(UnwrittenPictures, OfAFolderThatHangsAreLeftBehindAtTheEnd) {
   std::string id;
-  std::string pipe;
-  ASSERT_NO_FATAL_FAILURE(HangFirstResult(id, pipe));
+  ASSERT_NO_FATAL_FAILURE(HangFirstResult(id));
   jobs_.reset();  // time stands still meanwhile
-  // The abandoned thread writes to the pipe and closes it. Without this reader its write would
-  // fail.
-  const base::FileDescriptor reader(open(pipe.c_str(), O_RDONLY | O_NONBLOCK));
-  pollfd written = {.fd = reader.Get(), .events = 0, .revents = 0};
-  constexpr std::chrono::milliseconds kLimit = testing::kHangLimit;
-  EXPECT_EQ(poll(&written, 1, static_cast<int>(kLimit.count())), 1);
+  const std::string picture = results_ + "/" + id + "/000000.png";
+  EXPECT_FALSE(std::filesystem::exists(picture));
+  // The abandoned thread still has what it needs to write both files.
+  files_.Respond();
+  EXPECT_TRUE(WaitFor([&] { return std::filesystem::exists(picture); }));
+  EXPECT_EQ(base::ReadWholeFile(picture).value_or(""), "bytes");
 }
 
 }  // namespace

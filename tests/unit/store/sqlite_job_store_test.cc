@@ -166,15 +166,17 @@ TEST_F(SqliteJobStoreTest, AFileFromBeforeThereWereJobsKeepsItsSessions) {
 }
 
 TEST_F(SqliteJobStoreTest, ADamagedRecordIsReportedAsDamage) {
+  constexpr char kViewInPlaceOfMarks[] =
+      "DROP TABLE marks; CREATE VIEW marks AS SELECT id AS session_id, x'' AS marks, "
+      "'' AS owner_keys, '' AS domains FROM sessions";
   for (const char* const sql : {
+           kViewInPlaceOfMarks,
            "DELETE FROM jobs",
            "UPDATE jobs SET id = '../../x'; UPDATE job_pictures SET job_id = '../../x'",
            "UPDATE jobs SET id = ''; UPDATE job_pictures SET job_id = ''",
            "DROP TABLE marks",
            "DROP TABLE jobs",
            "ALTER TABLE sessions DROP COLUMN owner",
-           "DROP TABLE marks; CREATE VIEW marks AS SELECT id AS session_id, x'' AS marks, "
-           "'' AS owner_keys, '' AS domains FROM sessions",
            "CREATE TRIGGER t AFTER UPDATE ON jobs BEGIN SELECT RAISE(ABORT, 'no'); END",
            "PRAGMA user_version = -5",
            "PRAGMA user_version = 1",

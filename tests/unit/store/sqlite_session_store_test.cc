@@ -171,7 +171,7 @@ TEST_F(SqliteSessionStoreTest, MarksThatCannotBeReadAreLeftOut) {
 }
 
 TEST_F(SqliteSessionStoreTest, OnlyThisUserReadsItsFiles) {
-  std::ofstream{path_};
+  std::ofstream(path_).flush();
   std::filesystem::permissions(path_, std::filesystem::perms(0644));
   const auto store = Open();
   ASSERT_TRUE(store->Save({SessionRecordOf("a")}).ok());

@@ -229,7 +229,7 @@ TEST_F(StateFileTest, ALinkThatIsPutInPlaceOfTheFileIsNotFollowed) {
   fs::create_symlink(target, path_);
   EXPECT_THAT(MessageOf(sessions_->Save({MarkedSession("a")})), HasSubstr("was replaced"));
   EXPECT_FALSE(fs::exists(target));
-  std::ofstream{target};
+  std::ofstream(target).flush();
   EXPECT_FALSE(store::Database::Open(path_).ok());
 }
 

@@ -1,0 +1,69 @@
+#include "base/bounded_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "absl/cleanup/cleanup.h"
+#include "absl/strings/str_cat.h"
+
+namespace thunderhead::base {
+namespace {
+
+constexpr std::size_t kBlock_bytes = 64 << 10;
+
+absl::Status Unreadable(const std::string& path, int code) {
+  return absl::InvalidArgumentError(
+      absl::StrCat(path, " cannot be read (", std::strerror(code), "); check the path"));
+}
+
+std::string SizeText(std::size_t bytes) {
+  if (bytes % (1 << 20) == 0) return absl::StrCat(bytes >> 20, " MiB");
+  if (bytes % (1 << 10) == 0) return absl::StrCat(bytes >> 10, " KiB");
+  return absl::StrCat(bytes, " bytes");
+}
+
+}  // namespace
+
+absl::Status TooLarge(const std::string& what, std::size_t max_bytes) {
+  return absl::InvalidArgumentError(absl::StrCat(what, " has more than ", SizeText(max_bytes),
+                                                 ", the limit; check that it is the right file"));
+}
+
+absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t max_bytes) {
+  // Without O_NONBLOCK, opening a FIFO would wait for a program that writes to it.
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return Unreadable(path, errno);
+  const absl::Cleanup close = [file] { ::close(file); };
+  struct stat found {};
+  if (::fstat(file, &found) != 0) return Unreadable(path, errno);
+  // The reads of a pipe wait for its writers.
+  if (S_ISFIFO(found.st_mode) && ::fcntl(file, F_SETFL, 0) != 0) return Unreadable(path, errno);
+  if (!S_ISREG(found.st_mode) && !S_ISFIFO(found.st_mode)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(path, " is neither a regular file nor a pipe; check the path"));
+  }
+  std::string bytes;
+  while (bytes.size() < max_bytes) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + std::min(kBlock_bytes, max_bytes - before));
+    const ssize_t count = ::read(file, bytes.data() + before, bytes.size() - before);
+    const int code = errno;
+    bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    if (count == 0) break;
+    if (count < 0 && code != EINTR) return Unreadable(path, code);
+  }
+  return bytes;
+}
+
+absl::StatusOr<std::string> ReadBoundedFile(const std::string& path, std::size_t max_bytes) {
+  absl::StatusOr<std::string> bytes = ReadFileStart(path, max_bytes + 1);
+  if (bytes.ok() && bytes->size() > max_bytes) return TooLarge(path, max_bytes);
+  return bytes;
+}
+
+}  // namespace thunderhead::base

@@ -1,0 +1,24 @@
+// Reads files that a user names. A folder, a device or a huge file that is named by mistake gives
+// an error. A pipe is read, so that the output of another program can stand for a file.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "absl/status/statusor.h"
+
+namespace thunderhead::base {
+
+// Returns the contents of the file or pipe at `path`, which may have at most `max_bytes`. A pipe is
+// read until its writers have closed it. A FIFO that nobody writes to is empty. Returns
+// INVALID_ARGUMENT, which names the path and the limit, if the file cannot be read, is neither a
+// regular file nor a pipe, or is larger.
+absl::StatusOr<std::string> ReadBoundedFile(const std::string& path, std::size_t max_bytes);
+
+// Returns the first `max_bytes` of a larger file. Otherwise like ReadBoundedFile.
+absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t max_bytes);
+
+// Returns INVALID_ARGUMENT, which says that `what` has more than `max_bytes`.
+absl::Status TooLarge(const std::string& what, std::size_t max_bytes);
+
+}  // namespace thunderhead::base
