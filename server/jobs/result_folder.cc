@@ -57,7 +57,7 @@ absl::Status ResultFolder::Write(const std::string& job_id, std::size_t place,
   return calls_->Ask(
       path_,
       [folder = path_, job = absl::StrCat(path_, "/", job_id),
-       about_path = AboutPathOf(job_id, place), path,
+       about_path = AboutPathOf(job_id, place), path, write_file = write_file_,
        picture = std::move(picture)]() -> absl::Status {
         const base::SlowCall slow(folder);
         std::error_code error;

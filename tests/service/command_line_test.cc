@@ -286,9 +286,8 @@ TEST_F(CommandLineTest, WrongUsageIsABadRequest) {
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   for (const std::string& not_a_file : {fifo, std::string("/dev/null")}) {
     const std::string says = not_a_file + " is not a file";
-    for (const std::string flag :
-         {"--auth tokens ", "--auth jwt ", "--config ", "--roster-timeouts ",
-          "--tls-key x --tls-cert ", "--tls-cert x --tls-key "}) {
+    for (const std::string flag : {"--auth tokens ", "--auth jwt ", "--roster-timeouts ",
+                                   "--tls-key x --tls-cert ", "--tls-cert x --tls-key "}) {
       ExpectError("serve --data " + kSample + " --state none " + flag + not_a_file, 78, says);
     }
   }
