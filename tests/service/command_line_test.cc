@@ -236,6 +236,8 @@ TEST_F(CommandLineTest, ASceneIsStrictJson) {
          R"("sky": {"brightness": 2}})",
          "line 2, column 5: 'sky' is given a second time");
   refuse(R"({"sky": {},})", "line 1, column 12: this is not JSON: unexpected '}'");
+  refuse(R"({"sky": {"brightness": )" + std::string(1000, '1') + "}}",
+         "line 1, column 1023: a number is too large; see proto");
   refuse("{'sky': {}}", "line 1, column 2: this is not JSON: ");
   const std::string many(100'000, '[');
   refuse("{\"fields\": " + many + std::string(many.size(), ']') + "}",

@@ -104,6 +104,8 @@ class SceneJsonCheck final : public nlohmann::json_sax<json> {
   bool parse_error(std::size_t position, const std::string& /*token*/,
                    const json::exception& error) override {
     reached_ = text_.data() + std::min(position, text_.size());
+    const bool is_too_large = dynamic_cast<const json::out_of_range*>(&error) != nullptr;
+    if (is_too_large) return Refuse("a number is too large");
     return Refuse(absl::StrCat("this is not JSON: ", ReasonIn(error.what())));
   }
 

@@ -182,6 +182,10 @@ TEST(Logo, WhatIsNoPngIsRefusedByName) {
   expect("", "not a PNG");
   expect("GIF89a", "not a PNG");
   expect(png.substr(0, png.size() / 2), "damaged");
+  // The first chunk after IHDR says that it has 2 GiB.
+  std::string longer = png;
+  longer.insert(8 + 25, std::string("\x7f\xff\xff\xfftEXt", 8));
+  expect(longer, "it is cut short");
   std::string huge = png;
   huge[16] = '\x7f';
   expect(huge, "is 2130706496 x 64 pixels");
