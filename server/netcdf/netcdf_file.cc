@@ -459,7 +459,7 @@ absl::StatusOr<std::size_t> NetcdfFile::RecordLength(const std::string& variable
 }
 
 absl::Status NetcdfFile::ReadRecord(const std::string& variable, std::size_t record,
-                                    std::vector<float>& values) const {
+                                    std::vector<float>& values, HugeValue huge) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<std::size_t> count, Shape(variable));
   if (count.empty() || record >= count[0]) {
     return absl::DataLossError(absl::StrCat(path_, ": ", variable, " has no record ", record,
@@ -468,21 +468,21 @@ absl::Status NetcdfFile::ReadRecord(const std::string& variable, std::size_t rec
   std::vector<std::size_t> start(count.size(), 0);
   start[0] = record;
   count[0] = 1;
-  return ReadFloats(variable, start, count, values);
+  return ReadFloats(variable, start, count, values, huge);
 }
 
 absl::StatusOr<std::vector<float>> NetcdfFile::ReadPart(
     const std::string& variable, const std::vector<std::size_t>& start,
     const std::vector<std::size_t>& count) const {
   std::vector<float> values;
-  THUNDERHEAD_RETURN_IF_ERROR(ReadFloats(variable, start, count, values));
+  THUNDERHEAD_RETURN_IF_ERROR(ReadFloats(variable, start, count, values, HugeValue::kRefused));
   return values;
 }
 
 absl::Status NetcdfFile::ReadFloats(const std::string& variable,
                                     const std::vector<std::size_t>& start,
                                     const std::vector<std::size_t>& count,
-                                    std::vector<float>& values) const {
+                                    std::vector<float>& values, HugeValue huge) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t total, CountThatFits(variable, count, 4));
   values.resize(total);
   Packing packing;
@@ -509,7 +509,7 @@ absl::Status NetcdfFile::ReadFloats(const std::string& variable,
   const std::optional<double> impossible = packing.PlainFloat()
                                                ? CleanPlainFloats(packing, values)
                                                : Unpack(packed, packing, absl::MakeSpan(values));
-  if (!impossible.has_value()) return absl::OkStatus();
+  if (!impossible.has_value() || huge == HugeValue::kMissing) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(
       path_, ": ", variable, " holds the value ", *impossible,
       ", which no quantity has; if it marks cells without data, write it into the attribute "

@@ -15,6 +15,9 @@
 
 namespace thunderhead::netcdf {
 
+// How reading treats a value that is too large for any quantity, such as an infinite one.
+enum class HugeValue { kRefused, kMissing };
+
 class NetcdfFile {
  public:
   // Opens `path` for reading, or its bytes if they were registered (base::ReadFromMemory). Errors:
@@ -84,9 +87,10 @@ class NetcdfFile {
   // values (_FillValue, missing_value), values outside its valid range (valid_min, valid_max,
   // valid_range), NaN, and the codes that packing.h describes. Returns INVALID_ARGUMENT for other
   // values of magnitude 1e30 or more, infinities included, and if scale_factor or add_offset is not
-  // one finite number. Subnormal values become zero. Reuses the memory of `values`.
+  // one finite number. With HugeValue::kMissing such large values become NaN, too. Subnormal values
+  // become zero. Reuses the memory of `values`.
   absl::Status ReadRecord(const std::string& variable, std::size_t record,
-                          std::vector<float>& values) const;
+                          std::vector<float>& values, HugeValue huge = HugeValue::kRefused) const;
 
   // Reads a whole numeric variable in double precision, for coordinates. Missing values become NaN
   // as in ReadRecord, and so do all values of magnitude 1e30 or more.
@@ -105,7 +109,8 @@ class NetcdfFile {
                                             std::uintmax_t bytes);
 
   absl::Status ReadFloats(const std::string& variable, const std::vector<std::size_t>& start,
-                          const std::vector<std::size_t>& count, std::vector<float>& values) const;
+                          const std::vector<std::size_t>& count, std::vector<float>& values,
+                          HugeValue huge) const;
   // A variable's id in netCDF-C, and that of its group.
   struct Variable {
     int group = -1;

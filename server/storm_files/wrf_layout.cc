@@ -184,7 +184,8 @@ absl::StatusOr<std::size_t> ValuesOfTime(const netcdf::NetcdfFile& file,
 }
 
 absl::Status ReadTime(const netcdf::NetcdfFile& file, const std::string& variable, std::size_t rank,
-                      std::size_t record, Changes changes, std::vector<float>& values) {
+                      std::size_t record, Changes changes, std::vector<float>& values,
+                      netcdf::HugeValue huge) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::size_t> shape, file.Shape(variable));
   if (shape.size() == rank) {
     THUNDERHEAD_ASSIGN_OR_RETURN(values,
@@ -192,7 +193,7 @@ absl::Status ReadTime(const netcdf::NetcdfFile& file, const std::string& variabl
     return absl::OkStatus();
   }
   const bool once = changes == Changes::kNever && !shape.empty() && shape.front() == 1;
-  return file.ReadRecord(variable, once ? 0 : record, values);
+  return file.ReadRecord(variable, once ? 0 : record, values, huge);
 }
 
 std::string AsText(const std::vector<std::size_t>& shape) {

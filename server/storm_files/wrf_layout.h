@@ -71,9 +71,10 @@ absl::StatusOr<std::size_t> ValuesOfTime(const netcdf::NetcdfFile& file,
                                          const std::string& variable, std::size_t rank);
 
 // Reads one time of a variable. A variable without time has the same values at all times, and so
-// has a variable that never changes and has only one time.
+// has a variable that never changes and has only one time. `huge` is for variables with times.
 absl::Status ReadTime(const netcdf::NetcdfFile& file, const std::string& variable, std::size_t rank,
-                      std::size_t record, Changes changes, std::vector<float>& values);
+                      std::size_t record, Changes changes, std::vector<float>& values,
+                      netcdf::HugeValue huge = netcdf::HugeValue::kRefused);
 
 // Returns `shape` as text for errors.
 std::string AsText(const std::vector<std::size_t>& shape);

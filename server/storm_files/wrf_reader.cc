@@ -60,7 +60,8 @@ class WrfSource final : public LayerSource {
   std::size_t Columns() const { return domain_.Columns(); }
   std::string HeightsFrom() const;
   absl::Status ReadVariable(const std::string& variable, std::size_t values_expected,
-                            Changes changes, std::vector<float>& values);
+                            Changes changes, std::vector<float>& values,
+                            netcdf::HugeValue huge = netcdf::HugeValue::kRefused);
   absl::Status ReadTerm(const WrfTerm& term, Changes changes, std::vector<float>& values);
   absl::Status ReadColumns(const std::string& variable, std::vector<float>& values);
   absl::StatusOr<std::vector<float>> HeightsFromMiddles_m();
@@ -82,7 +83,8 @@ std::string WrfSource::HeightsFrom() const {
 }
 
 absl::Status WrfSource::ReadVariable(const std::string& variable, std::size_t values_expected,
-                                     Changes changes, std::vector<float>& values) {
+                                     Changes changes, std::vector<float>& values,
+                                     netcdf::HugeValue huge) {
   // The length is checked before memory is allocated for it.
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t length,
                                ValuesOfTime(file_, variable, kRankOfLayers));
@@ -92,7 +94,7 @@ absl::Status WrfSource::ReadVariable(const std::string& variable, std::size_t va
                                             "; the file was replaced: restart to read it anew"));
   }
   THUNDERHEAD_RETURN_IF_ERROR(
-      ReadTime(file_, variable, kRankOfLayers, domain_.record, changes, values));
+      ReadTime(file_, variable, kRankOfLayers, domain_.record, changes, values, huge));
   if (std::ranges::all_of(values, [](float value) { return std::isnan(value); })) {
     return absl::DataLossError(absl::StrCat(file_.Path(), ": ", variable, " of record ",
                                             domain_.record, " holds nothing but fill values; ",
@@ -224,8 +226,10 @@ absl::StatusOr<LayerAmounts> WrfSource::Amounts(std::size_t field) {
   }
   THUNDERHEAD_RETURN_IF_ERROR(SplitPhases(from.hydrometeor, read.amounts));
   if (!from.sizes.name.empty()) {
-    THUNDERHEAD_RETURN_IF_ERROR(
-        ReadVariable(from.sizes.name, Cells(), Changes::kAtEachTime, read.sizes));
+    // Models divide by zero where there are no particles. Such sizes are replaced like other sizes
+    // that no particle can have.
+    THUNDERHEAD_RETURN_IF_ERROR(ReadVariable(from.sizes.name, Cells(), Changes::kAtEachTime,
+                                             read.sizes, netcdf::HugeValue::kMissing));
   }
   return read;
 }
