@@ -181,9 +181,7 @@ TEST_F(CommandLineTest, NumbersAreFinite) {
     ExpectError("serve --data " + kSample + " --max-requests " + number, 64, number);
     ExpectError(render_ + " --size 16x9 --max-error " + number, 64, number);
     ExpectError("measure frames " + kSample + " --seconds " + number, 64, number);
-    ExpectError(
-        "generate --ellipsoid 0,0,0,1,1," + std::string(number) + " -o " + folder_.File("cloud.nc"),
-        64, "--ellipsoid is '0,0,0,1,1,");
+    ExpectError("generate -o " + folder_.File("cloud.nc") + " --spacing " + number, 64, number);
   }
 }
 
