@@ -49,7 +49,7 @@ CatalogueState Catalogue::State() const {
 
 std::optional<CatalogueState> Catalogue::StateAfter(std::uint64_t version) const {
   const std::lock_guard lock(mutex_);
-  if (state_.version == version) return {};
+  if (state_.version <= version) return {};
   return state_;
 }
 

@@ -1,6 +1,9 @@
 // Tests of the state behind the panels, with a session of a fake service in this process.
 #include "desktop/ui.h"
 
+#include <cstdint>
+#include <limits>
+
 #include "client-cpp/tests/fake_service.h"
 #include "desktop/kiosk.h"
 #include "gmock/gmock.h"
@@ -33,6 +36,8 @@ class UiTest : public ::testing::Test {
     ASSERT_TRUE(Await([&] { return ui.state.Steers() && ui.state.scene.time_index() == 3; }));
     ui.storms.storm.set_id("moore");
     for (int i = 0; i < 6; ++i) ui.storms.storm.add_times();
+    // Answers of the catalogue that arrive later do not replace this storm.
+    ui.storms.version = std::numeric_limits<std::uint64_t>::max();
   }
   bool Await(const std::function<bool()>& wanted) {
     return thunderhead::testing::WaitFor([&] {
