@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <cstring>
 
-#include "absl/cleanup/cleanup.h"
 #include "absl/strings/str_cat.h"
+#include "base/file_descriptor.h"
 
 namespace thunderhead::base {
 namespace {
@@ -36,13 +36,13 @@ absl::Status TooLarge(const std::string& what, std::size_t max_bytes) {
 
 absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t max_bytes) {
   // Without O_NONBLOCK, opening a FIFO would wait for a program that writes to it.
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) return Unreadable(path, errno);
-  const absl::Cleanup close = [file] { ::close(file); };
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (!file.IsOpen()) return Unreadable(path, errno);
   struct stat found {};
-  if (::fstat(file, &found) != 0) return Unreadable(path, errno);
+  if (::fstat(file.Get(), &found) != 0) return Unreadable(path, errno);
   // The reads of a pipe wait for its writers.
-  if (S_ISFIFO(found.st_mode) && ::fcntl(file, F_SETFL, 0) != 0) return Unreadable(path, errno);
+  if (S_ISFIFO(found.st_mode) && ::fcntl(file.Get(), F_SETFL, 0) != 0)
+    return Unreadable(path, errno);
   if (!S_ISREG(found.st_mode) && !S_ISFIFO(found.st_mode)) {
     return absl::InvalidArgumentError(
         absl::StrCat(path, " is neither a regular file nor a pipe; check the path"));
@@ -51,7 +51,7 @@ absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t m
   while (bytes.size() < max_bytes) {
     const std::size_t before = bytes.size();
     bytes.resize(before + std::min(kBlock_bytes, max_bytes - before));
-    const ssize_t count = ::read(file, bytes.data() + before, bytes.size() - before);
+    const ssize_t count = ::read(file.Get(), bytes.data() + before, bytes.size() - before);
     const int code = errno;
     bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
     if (count == 0) break;

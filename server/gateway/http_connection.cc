@@ -390,7 +390,7 @@ net::awaitable<bool> HttpConnection::AnswerUnparsed(const Request& request, cons
       error == http::error::end_of_stream || error == http::error::partial_message) {
     co_return false;
   }
-  // What follows may be a part of this request or another request, so nothing of it is read.
+  // The bytes that follow may belong to this request or to another one, so none of them is read.
   answers_.SetUnreadInput(true);
   const bool too_large =
       error == http::error::header_limit || error == http::error::buffer_overflow;

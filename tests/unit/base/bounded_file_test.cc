@@ -50,7 +50,7 @@ TEST(BoundedFile, PipesAreReadToTheirEnd) {
   const testing::TemporaryFolder folder;
   const std::string fifo = folder.File("fifo");
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
-  EXPECT_EQ(ReadBoundedFile(fifo, 2048).value(), "") << "nobody writes to it";
+  EXPECT_EQ(ReadBoundedFile(fifo, 2048).value(), "") << "it has no writer";
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   const FileDescriptor out(ends[0]);
