@@ -34,6 +34,19 @@ absl::Status TooLarge(const std::string& what, std::size_t max_bytes) {
                                                  ", the limit; check that it is the right file"));
 }
 
+int ReadUpTo(const FileDescriptor& file, std::size_t max_bytes, std::string& bytes) {
+  while (bytes.size() < max_bytes) {
+    const std::size_t before = bytes.size();
+    bytes.resize(before + std::min(kBlock_bytes, max_bytes - before));
+    const ssize_t count = ::read(file.Get(), bytes.data() + before, bytes.size() - before);
+    const int code = errno;
+    bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    if (count == 0) break;
+    if (count < 0 && code != EINTR) return code;
+  }
+  return 0;
+}
+
 absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t max_bytes) {
   // Without O_NONBLOCK, opening a FIFO would wait for a program that writes to it.
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
@@ -48,15 +61,7 @@ absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t m
         absl::StrCat(path, " is neither a regular file nor a pipe; check the path"));
   }
   std::string bytes;
-  while (bytes.size() < max_bytes) {
-    const std::size_t before = bytes.size();
-    bytes.resize(before + std::min(kBlock_bytes, max_bytes - before));
-    const ssize_t count = ::read(file.Get(), bytes.data() + before, bytes.size() - before);
-    const int code = errno;
-    bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
-    if (count == 0) break;
-    if (count < 0 && code != EINTR) return Unreadable(path, code);
-  }
+  if (const int code = ReadUpTo(file, max_bytes, bytes); code != 0) return Unreadable(path, code);
   return bytes;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "base/file_descriptor.h"
 
 namespace thunderhead::base {
 
@@ -17,6 +18,10 @@ absl::StatusOr<std::string> ReadBoundedFile(const std::string& path, std::size_t
 
 // Returns the first `max_bytes` of a larger file. Otherwise like ReadBoundedFile.
 absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t max_bytes);
+
+// Appends the rest of the open file to `bytes`, until it ends or `bytes` has `max_bytes`. Returns 0
+// or the error code of the system.
+int ReadUpTo(const FileDescriptor& file, std::size_t max_bytes, std::string& bytes);
 
 // Returns INVALID_ARGUMENT, which says that `what` has more than `max_bytes`.
 absl::Status TooLarge(const std::string& what, std::size_t max_bytes);

@@ -1,22 +1,17 @@
 #include "base/read_own_file.h"
 
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
-#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "base/bounded_file.h"
 #include "base/file_descriptor.h"
 #include "base/own_file.h"
 #include "base/status.h"
 
 namespace thunderhead::base {
 namespace {
-
-constexpr std::size_t kPieceBytes = 1 << 16;
 
 // Returns the path with its folder's links resolved, or the path itself if there is no such folder.
 std::string InRealFolder(const std::string& path) {
@@ -32,15 +27,10 @@ std::string InRealFolder(const std::string& path) {
 absl::StatusOr<std::string> ReadOwnFile(const std::string& path) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const FileDescriptor file, OpenOwnFile(InRealFolder(path)));
   std::string bytes;
-  std::vector<char> piece(kPieceBytes);
-  while (true) {
-    const ssize_t count = read(file.Get(), piece.data(), piece.size());
-    if (count == 0) return bytes;
-    if (count > 0) bytes.append(piece.data(), static_cast<std::size_t>(count));
-    if (count < 0 && errno != EINTR) {
-      return absl::UnavailableError(absl::StrCat("cannot read ", path, ": ", std::strerror(errno)));
-    }
+  if (const int code = ReadUpTo(file, bytes.max_size(), bytes); code != 0) {
+    return absl::UnavailableError(absl::StrCat("cannot read ", path, ": ", std::strerror(code)));
   }
+  return bytes;
 }
 
 }  // namespace thunderhead::base
