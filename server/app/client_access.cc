@@ -3,7 +3,7 @@
 #include <cstdlib>
 
 #include "absl/strings/ascii.h"
-#include "base/bounded_file.h"
+#include "base/named_file.h"
 #include "base/status.h"
 
 namespace thunderhead::app {

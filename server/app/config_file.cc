@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "base/bounded_file.h"
-#include "base/regular_file.h"
+#include "base/named_file.h"
 #include "base/status.h"
 
 namespace thunderhead::app {

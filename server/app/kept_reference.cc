@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
-#include "base/read_own_file.h"
+#include "base/own_file.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "picture/exr_file.h"

@@ -14,7 +14,7 @@
 #include "app/interruption.h"
 #include "app/kept_reference.h"
 #include "app/local_scene.h"
-#include "base/read_own_file.h"
+#include "base/own_file.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "gl/context.h"

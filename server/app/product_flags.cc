@@ -5,7 +5,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "base/bounded_file.h"
+#include "base/named_file.h"
 #include "base/status.h"
 #include "pipeline/sha256.h"
 #include "product/logo.h"

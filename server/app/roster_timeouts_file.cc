@@ -8,7 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/file_stamp.h"
-#include "base/regular_file.h"
+#include "base/named_file.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 

@@ -9,7 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "accuracy/presets.h"
 #include "app/picture_size.h"
-#include "base/bounded_file.h"
+#include "base/named_file.h"
 #include "base/status.h"
 #include "frame/png_text.h"
 #include "service/messages/picture_texts.h"

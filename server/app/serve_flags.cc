@@ -12,7 +12,7 @@
 #include "app/audit_log.h"
 #include "app/hidden_flags.h"
 #include "base/machine_memory.h"
-#include "base/regular_file.h"
+#include "base/named_file.h"
 #include "base/status.h"
 
 namespace thunderhead::app {

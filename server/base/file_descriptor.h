@@ -1,8 +1,10 @@
-// An open file descriptor that its destructor closes.
+// An open file descriptor that its destructor closes, and reading from it.
 #pragma once
 
 #include <unistd.h>
 
+#include <cstddef>
+#include <string>
 #include <utility>
 
 namespace thunderhead::base {
@@ -29,5 +31,9 @@ class FileDescriptor {
  private:
   int number_ = -1;
 };
+
+// Appends the rest of the open file to `bytes`, until it ends or `bytes` has `max_bytes`. Returns 0
+// or the error code of the system.
+int ReadUpTo(const FileDescriptor& file, std::size_t max_bytes, std::string& bytes);
 
 }  // namespace thunderhead::base

@@ -1,5 +1,5 @@
-// Opens files that this server has written, in a folder in which another program may have replaced
-// them by something else.
+// Opens and reads files that this program has written, in a folder in which another program may
+// have replaced them by something else.
 #pragma once
 
 #include <string>
@@ -14,5 +14,9 @@ namespace thunderhead::base {
 // NOT_FOUND if there is no file, DATA_LOSS if there is a link or anything else that is not a
 // regular file, and UNAVAILABLE for other errors.
 absl::StatusOr<FileDescriptor> OpenOwnFile(const std::string& path);
+
+// Returns the whole contents of the file at `path`. In contrast to OpenOwnFile, the folder may be a
+// link, because users choose it. Errors are those of OpenOwnFile.
+absl::StatusOr<std::string> ReadOwnFile(const std::string& path);
 
 }  // namespace thunderhead::base

@@ -55,8 +55,10 @@ void SlowCalls::Watch(const std::stop_token& stop) {
     const auto now = time_.Now();
     for (Begun& call : calls_) {
       if (now - call.at < call.say_after) continue;
-      say_(absl::StrFormat("%s: has not answered for %.1f s; its storage is slow or hangs",
-                           call.path, Seconds(now - call.at)));
+      say_(
+          absl::StrFormat("%s: has not answered for %.1f s; its storage is slow or hangs, or "
+                          "there is much to read",
+                          call.path, Seconds(now - call.at)));
       call.say_after *= 2;
     }
     stopped_.wait_until(lock, stop, time_.LookAgainAt(now + patience_ / 4),

@@ -2,8 +2,11 @@
 
 #include <hdf5.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <set>
+#include <string_view>
 
 #include "absl/strings/str_cat.h"
 #include "base/utf8.h"
@@ -11,9 +14,11 @@
 namespace thunderhead::netcdf {
 namespace {
 
-// The maximum number of objects in a file. It limits the time that a check takes. No model writes
-// as many objects.
-constexpr int kMostObjects = 100'000;
+// The maximum number of groups and datasets in a file, and of groups within groups. NetCDF-C takes
+// seconds for 10,000 datasets, and its time grows with the square of the depth. Model output has
+// far less of both.
+constexpr int kMostObjects = 10'000;
+constexpr std::ptrdiff_t kDeepest = 16;
 
 constexpr unsigned char kSignature[] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
 
@@ -41,14 +46,20 @@ struct Walk {
   std::string complaint;
 };
 
-herr_t Refuse(Walk& walk, const char* name, const char* what) {
+herr_t Refuse(Walk& walk, const char* name, const std::string& what) {
   walk.complaint = absl::StrCat(base::Printable(name), " ", what);
   return 1;  // ends the traversal
 }
 
 herr_t LookAtLink(hid_t root, const char* name, const H5L_info_t* info, void* data) {
   Walk& walk = *static_cast<Walk*>(data);
-  if (++walk.objects > kMostObjects) return Refuse(walk, name, "is one object too many");
+  if (++walk.objects > kMostObjects) {
+    return Refuse(walk, name, absl::StrCat("is one object more than ", kMostObjects));
+  }
+  const std::string_view path = name;
+  if (std::count(path.begin(), path.end(), '/') >= kDeepest) {
+    return Refuse(walk, name, absl::StrCat("is in more than ", kDeepest, " groups"));
+  }
   if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT) {
     return Refuse(walk, name, "is a link to another file");
   }
@@ -100,10 +111,10 @@ absl::Status Look(const std::string& path, hid_t opened) {
         absl::StrCat(path, ": its HDF5 structure is damaged; copy the file again"));
   }
   if (status == 0) return absl::OkStatus();
-  return absl::DataLossError(
-      absl::StrCat(path, ": ", walk.complaint,
-                   "; write all values into one file without such links, for example with "
-                   "nccopy, and give that"));
+  return absl::DataLossError(absl::StrCat(
+      path, ": ", walk.complaint,
+      "; write the storm's variables into the root group of one file, without links, for "
+      "example with nccopy, and give that"));
 }
 
 // Returns callbacks with which HDF5 uses the bytes of a file in place, without copying or freeing

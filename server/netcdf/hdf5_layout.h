@@ -22,6 +22,7 @@ bool IsHdf5Signature(std::span<const std::byte> bytes);
 //
 // - A dataset keeps its values in other files (external storage, virtual datasets).
 // - A link leads to another file, or to a group to which another link leads.
+// - There are more than 10,000 objects, or groups that are more than 16 groups deep.
 // - The structure cannot be read.
 //
 // Both functions return OK for a file that is not HDF5. The caller must hold NetcdfLock.

@@ -19,7 +19,7 @@
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
-#include "base/read_own_file.h"
+#include "base/own_file.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 

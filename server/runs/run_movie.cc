@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "base/read_own_file.h"
+#include "base/own_file.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
 #include "base/whole_file.h"

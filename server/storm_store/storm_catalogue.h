@@ -13,47 +13,14 @@
 #include "absl/status/statusor.h"
 #include "storm_files/storm_file.h"
 #include "storm_files/storm_format.h"
+#include "storm_store/assembled_storm.h"
 #include "storm_store/described_files.h"
 #include "storm_store/folder_walk.h"
+#include "storm_store/runs_of_files.h"
 #include "storm_store/storm_store.h"
 
 namespace thunderhead::storm_store {
 
-// The file and record of one time of a storm.
-struct TimeSource {
-  std::size_t file = 0;    // index into CataloguedStorm::files
-  std::size_t record = 0;  // index in that file
-};
-
-struct CataloguedStorm {
-  StormInfo info;
-  // The id that the storm's name asks for. If storms have the same, a number makes their ids
-  // different.
-  std::string stem;
-  std::size_t path = 0;  // index of the searched path
-  std::vector<storm_files::StormFile> files;
-  std::vector<TimeSource> sources;  // one for each of info.times
-  std::vector<std::string> notes;   // messages for the log about what is odd in the files
-};
-
-// Returns the file that a time of the storm is in.
-inline const storm_files::StormFile& FileOf(const CataloguedStorm& storm, std::size_t time) {
-  return storm.files[storm.sources[time].file];
-}
-
-// Returns the valid time of a time of the storm.
-inline absl::Time ValidTimeOf(const CataloguedStorm& storm, std::size_t time) {
-  return FileOf(storm, time).times[storm.sources[time].record];
-}
-
-// Sets StormTime::elapsed_s and StormTime::lead_s of all times, from the files.
-void CountTimes(CataloguedStorm& storm);
-
-// A storm's name and files, before it has an id.
-struct NamedFiles {
-  std::string name;
-  std::vector<storm_files::StormFile> files;
-};
 using FoundByPath = std::map<std::string, std::vector<NamedFiles>>;
 
 // Options and callbacks of a search.
@@ -116,15 +83,5 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
 // Logs the assumptions about the storms, for example which of two files with the same time is used.
 // If `logged` is not null, the notes in it are skipped, and those that are logged are added to it.
 void LogNotes(const std::vector<CataloguedStorm>& storms, std::set<std::string>* logged = nullptr);
-
-// Groups the files by model run. A file with several storms counts as several files. Files of one
-// run have the same domain, grid, member and start of the run.
-std::vector<std::vector<storm_files::StormFile>> FilesOfRuns(
-    std::vector<storm_files::StormFile> files);
-
-// Makes one storm of the files of one run, with its times in order. If several files have the same
-// time, the file that was written last is used. If one file has a time twice, the later record is
-// used. Notes report both, and fields that only some files have. `files` must not be empty.
-CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::StormFile> files);
 
 }  // namespace thunderhead::storm_store

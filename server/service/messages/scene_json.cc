@@ -11,7 +11,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "base/bounded_file.h"
+#include "base/named_file.h"
 #include "base/status.h"
 #include "nlohmann/json.hpp"
 

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "absl/strings/str_cat.h"
 #include "netcdf/hdf5_layout.h"
 #include "netcdf/netcdf_lock.h"
 #include "storm_store/storm_store.h"
@@ -129,6 +130,32 @@ TEST_F(ForeignLayoutsTest, CirclesBySoftLinksAreRefused) {
   ASSERT_GE(H5Lcreate_soft("/g", group, "g", H5P_DEFAULT, H5P_DEFAULT), 0);
   H5Gclose(group);
   ExpectRefused("second link to a group");
+}
+
+// NetCDF-C would take a minute for such files, because it searches each group from the root.
+TEST_F(ForeignLayoutsTest, GroupsInManyGroupsAreRefused) {
+  hid_t parent = H5Gopen2(file_, "/", H5P_DEFAULT);
+  const auto nest = [&] {
+    const hid_t child = H5Gcreate2(parent, "g", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Gclose(parent);
+    parent = child;
+  };
+  for (int depth = 1; depth <= 16; ++depth) nest();
+  H5Fflush(file_, H5F_SCOPE_LOCAL);
+  EXPECT_TRUE(LookAtBytes().ok());
+  nest();
+  H5Gclose(parent);
+  ExpectRefused("is in more than 16 groups");
+}
+
+TEST_F(ForeignLayoutsTest, TooManyVariablesAreRefused) {
+  const hid_t scalar = H5Screate(H5S_SCALAR);
+  for (int variable = 0; variable < 10'000; ++variable) {
+    H5Dclose(H5Dcreate2(file_, absl::StrCat("v", variable).c_str(), H5T_NATIVE_FLOAT, scalar,
+                        H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+  }
+  H5Sclose(scalar);
+  ExpectRefused("is one object more than 10000");
 }
 
 TEST_F(ForeignLayoutsTest, NumbersOfAnotherTypeAreRefused) {

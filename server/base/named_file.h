@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <string>
 
+#include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "base/file_descriptor.h"
 
 namespace thunderhead::base {
 
@@ -19,11 +19,12 @@ absl::StatusOr<std::string> ReadBoundedFile(const std::string& path, std::size_t
 // Returns the first `max_bytes` of a larger file. Otherwise like ReadBoundedFile.
 absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t max_bytes);
 
-// Appends the rest of the open file to `bytes`, until it ends or `bytes` has `max_bytes`. Returns 0
-// or the error code of the system.
-int ReadUpTo(const FileDescriptor& file, std::size_t max_bytes, std::string& bytes);
-
 // Returns INVALID_ARGUMENT, which says that `what` has more than `max_bytes`.
 absl::Status TooLarge(const std::string& what, std::size_t max_bytes);
+
+// Returns FAILED_PRECONDITION if there is something other than a regular file at the path, such as
+// a pipe, whose opening could hang. A link to a regular file is accepted. Returns OK if nothing can
+// be found there, because reading it says why.
+absl::Status CheckRegularFile(const std::string& path);
 
 }  // namespace thunderhead::base

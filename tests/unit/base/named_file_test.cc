@@ -1,4 +1,4 @@
-#include "base/bounded_file.h"
+#include "base/named_file.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -25,7 +25,7 @@ std::string ErrorOf(const std::string& path) {
   return std::string(status.message());
 }
 
-TEST(BoundedFile, OnlyRegularFilesUpToTheLimitAreRead) {
+TEST(NamedFile, OnlyRegularFilesUpToTheLimitAreRead) {
   const testing::TemporaryFolder folder;
   const std::string path = folder.File("file");
   const auto write = [&path](std::size_t bytes) { std::ofstream(path) << std::string(bytes, 'x'); };
@@ -46,7 +46,7 @@ TEST(BoundedFile, OnlyRegularFilesUpToTheLimitAreRead) {
   EXPECT_THAT(ErrorOf("/dev/zero"), HasSubstr("/dev/zero is neither a regular file"));
 }
 
-TEST(BoundedFile, PipesAreReadToTheirEnd) {
+TEST(NamedFile, PipesAreReadToTheirEnd) {
   const testing::TemporaryFolder folder;
   const std::string fifo = folder.File("fifo");
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);

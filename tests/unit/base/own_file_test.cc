@@ -1,4 +1,4 @@
-#include "base/read_own_file.h"
+#include "base/own_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(ReadOwnFile, ReadsTheWholeFileAlsoInALinkedFolder) {
+TEST(OwnFile, ReadsTheWholeFileAlsoInALinkedFolder) {
   const testing::TemporaryFolder folder;
   const std::string bytes = std::string(100'000, 'a') + std::string(1, '\0') + "end";
   std::ofstream(folder.File("picture.png"), std::ios::binary) << bytes;
@@ -26,7 +26,7 @@ TEST(ReadOwnFile, ReadsTheWholeFileAlsoInALinkedFolder) {
   EXPECT_EQ(ReadOwnFile(folder.File("empty")).value_or("none"), "");
 }
 
-TEST(ReadOwnFile, RefusesWhatIsPlantedAndWaitsForNoWriter) {
+TEST(OwnFile, RefusesWhatIsPlantedAndWaitsForNoWriter) {
   const testing::TemporaryFolder folder;
   const std::string path = folder.File("picture.png");
   const std::string secret = folder.File("secret");

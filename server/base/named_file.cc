@@ -1,10 +1,8 @@
-#include "base/bounded_file.h"
+#include "base/named_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -13,8 +11,6 @@
 
 namespace thunderhead::base {
 namespace {
-
-constexpr std::size_t kBlock_bytes = 64 << 10;
 
 absl::Status Unreadable(const std::string& path, int code) {
   return absl::InvalidArgumentError(
@@ -32,19 +28,6 @@ std::string SizeText(std::size_t bytes) {
 absl::Status TooLarge(const std::string& what, std::size_t max_bytes) {
   return absl::InvalidArgumentError(absl::StrCat(what, " has more than ", SizeText(max_bytes),
                                                  ", the limit; check that it is the right file"));
-}
-
-int ReadUpTo(const FileDescriptor& file, std::size_t max_bytes, std::string& bytes) {
-  while (bytes.size() < max_bytes) {
-    const std::size_t before = bytes.size();
-    bytes.resize(before + std::min(kBlock_bytes, max_bytes - before));
-    const ssize_t count = ::read(file.Get(), bytes.data() + before, bytes.size() - before);
-    const int code = errno;
-    bytes.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
-    if (count == 0) break;
-    if (count < 0 && code != EINTR) return code;
-  }
-  return 0;
 }
 
 absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t max_bytes) {
@@ -69,6 +52,12 @@ absl::StatusOr<std::string> ReadBoundedFile(const std::string& path, std::size_t
   absl::StatusOr<std::string> bytes = ReadFileStart(path, max_bytes + 1);
   if (bytes.ok() && bytes->size() > max_bytes) return TooLarge(path, max_bytes);
   return bytes;
+}
+
+absl::Status CheckRegularFile(const std::string& path) {
+  struct stat found {};
+  if (stat(path.c_str(), &found) != 0 || S_ISREG(found.st_mode)) return absl::OkStatus();
+  return absl::FailedPreconditionError(absl::StrCat(path, " is not a file"));
 }
 
 }  // namespace thunderhead::base
