@@ -227,8 +227,9 @@ class ResumptionTest : public SessionTest {
              state.presence.steering_viewer_id() == steering;
     }));
   }
-  // Checks that the client takes control once, and not again after a presence message that the
-  // server sent before the request.
+  // Checks that the client requests control only once after it has joined again. A second presence
+  // message must not cause another request, because the server may have sent that message before it
+  // received the first request.
   void TakesControlAgainFrom(std::uint64_t steering) {
     Tell(steering, {FakeService::kClient});
     Tell(steering, {FakeService::kClient, kColleague});

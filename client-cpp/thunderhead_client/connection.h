@@ -58,8 +58,9 @@ class Canceller::Running {
 
 class Connection {
  public:
-  // Makes a connection object, which connects to the server at its first call. The error names a
-  // file that is unreadable or not PEM, or an invalid address.
+  // Makes a connection object, which connects to the server at its first call. Returns an error if
+  // the address is invalid, if the certificate file is unreadable or not PEM, or if a token would
+  // be sent unencrypted to another machine without allow_plaintext_token.
   static absl::StatusOr<std::shared_ptr<Connection>> Open(ServerAccess access);
 
   v1::ThunderheadService::Stub& stub() const { return *stub_; }

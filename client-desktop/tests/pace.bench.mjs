@@ -1,4 +1,4 @@
-// Prints the cost of a 1280 x 720 picture in the window while the camera turns. The window uses software GL, too. The
+// Prints the cost of a 1280 x 720 picture in the window while the camera turns. The window uses software GL. The fake
 // server draws nothing (tests/service/fake_server.cc), so that pictures arrive as fast as the window takes them.
 // Processor time is measured instead of frame rate, because the machine may be busy with other work.
 //   node pace.bench.mjs

@@ -19,9 +19,10 @@ struct JwtClaims {
 
 class JwtKey {
  public:
-  // Parses a key. A PEM public key is for RS256. Any other text, without the newline at its end, is
-  // a secret for HS256. Returns INVALID_ARGUMENT for a private key, and for a secret of less than
-  // 32 bytes.
+  // Parses a key. A PEM public key is for RS256. Other text, without the newlines at its end, is a
+  // secret for HS256. Returns INVALID_ARGUMENT for a PEM key other than a public RSA key of at
+  // least 2048 bits. Also returns it for text that cannot be a secret (jwt_secret.h), such as text
+  // of less than 32 bytes or a key in another form.
   static absl::StatusOr<JwtKey> Parse(const std::string& text);
 
   // Returns UNAUTHENTICATED if the token is forged, expired, not yet valid, or lacks a claim.

@@ -25,8 +25,9 @@ struct ErrorProgress {
   // Nothing while too few paths are traced for a useful confidence interval.
   std::optional<MeasuredError> error;
   double traced_s = 0.0;
-  // True if the error is precise enough as long as the light stays the same, or if nothing can be
-  // measured.
+  // True if tracing need not continue: the error is precise enough, the longest time of tracing has
+  // passed, or nothing can be measured. It may become false again when path tracing has corrected
+  // the light and the picture was therefore drawn again.
   bool ended = false;
 
   bool HasTraced(double wanted_s) const { return ended || traced_s >= wanted_s; }

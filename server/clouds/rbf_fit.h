@@ -1,8 +1,8 @@
-// Man's approximator: represents any field on a grid as a sum of metaballs. It uses a network of
-// radial basis functions in three phases (eq. 11-24). The paper leaves the third phase, the output
-// weights, to future work. Here the weights are found by the paper's gradient rule (kGradient) or
-// by least squares with conjugate gradients (kDirect). The result is the same for any number of
-// threads.
+// Approximates any field on a grid by a sum of metaballs, with the method of P. Man, "Generating
+// and Real-Time Rendering of Clouds" (docs/clouds.md). The method trains a network of radial basis
+// functions in three phases (eq. 11-24). The paper leaves the third phase, the output weights, to
+// future work. Here the weights are found by the paper's gradient rule (kGradient) or by least
+// squares with conjugate gradients (kDirect). The result is the same for any number of threads.
 #pragma once
 
 #include <functional>

@@ -24,9 +24,10 @@ namespace {
 
 // Number of paths traced at once. Their states take at most 25 MB.
 constexpr std::size_t kPathsOfChunk = 65536;
-// The guessed cost of kGroupsOfBlock work groups, used until a cost was measured. GPUs run many
-// groups at the same time. The last paths need only a few groups. Their cost per group would
-// overestimate that of a full pass.
+// The assumed cost of a block of kGroupsOfBlock work groups, used until the cost of a block has
+// been measured. The cost is not measured for single groups, because a GPU runs many groups at the
+// same time. A pass over the last few paths needs only a few groups, and its cost per group is
+// higher than that of a full pass.
 constexpr gl::PieceCost kBlockOfPaths{"paths", 1e7};
 constexpr int kGroupsOfBlock = 64;
 // Number of paths that the host begins or ends in one task.

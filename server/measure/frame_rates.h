@@ -1,6 +1,6 @@
-// Frame rates of one storm in all named settings: each technique in the papers' modes, and the
-// presets. A frame is measured from the changed scene to its JPEG. The measurement uses the current
-// GL context.
+// Measures the frame rates of one storm in all named settings: each technique in the four modes of
+// the papers' table (accuracy::kModes), the presets, and the default. The time of a frame is that
+// from the change of the scene to the JPEG. The measurement uses the current GL context.
 #pragma once
 
 #include <functional>

@@ -82,8 +82,9 @@ std::optional<double> Wsm6Radius_m(Hydrometeor hydrometeor, const Exponential& g
   }
 }
 
-// Returns the radius of cloud droplets with a gamma distribution and a number of 1e8 per m3. In the
-// scheme, this number determines the shape parameter 12.
+// Returns the effective radius of cloud droplets that have a gamma distribution and a number
+// concentration of 1e8 per m3. In the scheme, the shape parameter follows from this concentration
+// and is 12.
 double ThompsonDroplets_m(double content_kg_per_m3) {
   constexpr double kDroplets_per_m3 = 1e8;
   constexpr double kShape = 12.0;

@@ -94,8 +94,9 @@ BoxProjection::Interval BoxProjection::Across(double middle_m, double half_m, do
   const double far_m = half_width_m + tan_half_width * (forward_m + half_m_.z);
   const double low_m = middle_m - half_m;
   const double high_m = middle_m + half_m;
-  // The projection magnifies near points more. A side that points away from the view axis is
-  // therefore farthest from the axis at the near distance.
+  // The projection magnifies near points more than far points. If the box's low side has a negative
+  // coordinate, its lowest projected point is therefore at the near distance, and otherwise at the
+  // far distance. For the highest projected point of the high side it is the other way round.
   const double low = low_m / (low_m < 0.0 ? near_m : far_m);
   const double high = high_m / (high_m < 0.0 ? far_m : near_m);
   return {(0.5 * low + 0.5) * size_px - margin_px_, (0.5 * high + 0.5) * size_px + margin_px_};

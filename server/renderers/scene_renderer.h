@@ -105,8 +105,8 @@ class SceneRenderer {
   bool OnlyLightsDiffer(scene::Scene scene, const Fields& fields) const;
   // Records the inputs of the kept results, except the inputs of the view.
   void Keep(const scene::Scene& scene, const Fields& fields, const DrawQuality& quality);
-  // Draws the storm's view after its light was computed. Returns the cover of the eye buffer, or
-  // null.
+  // Draws the storm's view after its light was computed. Returns the part of the eye buffer that
+  // may show the storm (cover.h), or null if this can be all of it.
   absl::StatusOr<const Cover*> DrawContent(const scene::Scene& scene, RenderSettings& settings,
                                            StageTimes* times);
   // Draws the storm's shadow. If `packed` is false, it also draws the distance of the ground where

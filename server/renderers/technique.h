@@ -89,7 +89,7 @@ class Technique {
   virtual const gl::Texture2D& Eye() const = 0;
   // Returns the mean distance of Eye's content from the eye, weighted by each part's contribution
   // to the ray, times the opacity. The texture has one channel and Eye's size. If the result is
-  // null, the distance of the middle of Box is used.
+  // null, the content counts as lying in the middle of each ray's path through Box.
   virtual const gl::Texture2D* Distances_m() const { return nullptr; }
 
   virtual Content Describe(const scene::Scene& scene,

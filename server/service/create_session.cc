@@ -25,8 +25,9 @@ absl::Status Open(Engine& engine, const std::string& owner, const session::Rules
 }
 
 // Handles the result of saving the session. If the disk is full, the session is opened
-// nevertheless, so that for example a lesson can begin. If the storage hangs, the session is
-// refused, because its state could not be reported to the client.
+// nevertheless, so that for example a lesson can begin. The response then says that the session is
+// not saved (`durable`). If the storage hangs, the session is refused, because the response could
+// not say whether it is saved.
 absl::Status Saved(Engine& engine, const absl::Status& saved, v1::CreateSessionResponse& response) {
   if (base::DetailsOf(saved).reason == base::kStorageHangs) {
     // The session can be closed because its keys were not sent to any client.

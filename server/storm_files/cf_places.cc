@@ -325,9 +325,10 @@ absl::Status PlaceNowhere(const netcdf::NetcdfFile& file, const CfAxis& x, const
   return absl::OkStatus();
 }
 
-// Returns the columns by the origin in the file's global attributes. Returns nothing if there is no
-// usable one. `on_map` are the columns by a grid mapping, which is better if it has the same
-// origin.
+// Places the columns by the origin of x and y in the file's global attributes (origin_lat,
+// origin_lon). Returns nothing if the file has no origin that can be used. Also returns nothing if
+// `on_map`, the columns placed by a grid mapping, has its middle at the same place, because the
+// grid mapping is then more accurate.
 std::optional<ColumnPlaces> PlacesByOrigin(const netcdf::NetcdfFile& file, const CfAxis& x,
                                            const CfAxis& y,
                                            const std::optional<ColumnPlaces>& on_map,

@@ -411,10 +411,9 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
 }
 
 // Returns the height grid of the storm's first time that is not deleted, whichever time is read
-// first. A time's image
-// therefore does not depend on which times were viewed before. If an earlier time is added to the
-// storm later, the grid stays the same. Returns nothing if `place` is the first time, or if the
-// first time cannot be read.
+// first. A time's image therefore does not depend on which times were viewed before. If an earlier
+// time is added to the storm later, the grid stays the same. If the grid is not known yet, returns
+// nothing if `place` is the first time or the first time cannot be read.
 absl::StatusOr<std::optional<storm_files::VerticalGrid>> CachedStormStore::VerticalGridOf(
     Lock& lock, const Place& place) {
   const std::optional<ChosenGrid>& known = storms_[place.key.storm].grid;

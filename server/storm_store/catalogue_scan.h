@@ -100,8 +100,10 @@ class CatalogueScan {
     bool operator==(const Stamp&) const = default;
   };
 
-  // How a file is described. It first shares a reader with others, then it has one for a short
-  // time, then for a long time.
+  // How the next attempt describes a file. The first attempt describes it in a batch with other
+  // files (kBatch). If a batch takes too long (Options::trial), each of its files is described
+  // alone with the same timeout (kAlone). A file that alone takes too long is described with the
+  // longest timeout, storm_files::kLongestDescription (kPatient).
   enum class Trial { kBatch, kAlone, kPatient };
 
   struct Known {

@@ -171,8 +171,9 @@ struct StormStoreOptions {
   // If present, the store follows changes in the folders, and a folder without storms is not an
   // error. If absent, the store keeps the storms that Open finds.
   std::optional<LiveCatalogueOptions> live;
-  // The time source for deadlines, pauses and settling files. It must outlive the store, and any
-  // thread of the store that hangs.
+  // The time source for timeouts and pauses, and for how long a file must stay unchanged before it
+  // counts as complete (LiveCatalogueOptions::settle). It must outlive the store, and also any
+  // thread of the store that is still blocked by a hanging storage when the store ends.
   const base::TimeSource* time = &base::SteadyTime();
 };
 

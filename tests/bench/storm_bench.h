@@ -70,8 +70,9 @@ void RegisterWideDomain();
 // processors and on the device.
 void RegisterPaths();
 
-// Registers the savings from drawing only what a scene requires, and the growth of time.
+// Registers the savings from drawing only what a scene requires.
 void RegisterSavings();
+// Registers frames whose times show how the time grows with slices, pixels, fields and cells.
 void RegisterGrowth();
 
 }  // namespace thunderhead::bench

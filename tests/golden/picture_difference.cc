@@ -13,8 +13,9 @@ constexpr double kMaxMeanStep = 0.5;
 constexpr int kLargeStep = 8;
 constexpr double kMaxShareOfLargeSteps = 0.002;
 
-// Blocks are small compared with a storm, and large compared with the shift that a single edge may
-// cause. A large step counts as kMaxStepInShift.
+// A block is smaller than a storm, so a storm that is brighter or darker shifts the mean of whole
+// blocks. A block has so many pixels that a slice's edge in a few of them hardly shifts its mean.
+// For the same reason a larger step counts as kMaxStepInShift.
 constexpr int kBlock_px = 20;
 constexpr int kMaxStepInShift = 2;
 constexpr double kMaxShift = 0.25;

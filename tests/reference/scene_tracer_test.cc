@@ -115,8 +115,9 @@ TEST_F(SceneTracerTest, PausesChangeNothing) {
   scene.output = {96, 64, 88};
   ASSERT_TRUE(tracer_.Begin(scene, storm, {96, 64}).ok());
   RefineLimits limits = Until(2);
-  // The tracer looks at the clock before each of the 6144 pixels. Each call may look at more of
-  // them than the one before, because it begins at the first pixel again.
+  // The tracer reads this clock before each of the 6144 pixels. Each call of Refine begins at the
+  // first pixel again, so it needs more readings than the call before to reach new pixels. The time
+  // before the pause therefore grows with each call.
   const CountedLooks time;
   limits.time = &time;
   int pauses = 0;

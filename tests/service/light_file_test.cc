@@ -19,9 +19,9 @@ namespace {
 
 constexpr char kLitSample[] = THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc";
 
-// A renderer and its flags. Each transport sees the background through at most the whole optical
-// depth (below). Opacity is therefore never above 1 - exp(-depth), and it is 1 where the storm is
-// deep.
+// A technique and its flags. A transport attenuates the background by the storm's optical depth or
+// by a part of it (TransportOpacity below). Opacity is therefore never above 1 - exp(-depth), and
+// it is nearly 1 where the storm is deep.
 struct Renderer {
   std::string name;
   std::vector<std::string> flags;

@@ -145,8 +145,8 @@ TEST(ProbeTest, PointsOfThePictureAndAllKindsOfCamerasCount) {
   FakeService service;
   v1::ProbeRayRequest request;
   *request.mutable_scene() = SceneFromAbove();
-  // The picture of 64 x 36 pixels covers 4000 m, so its upper right corner is 2000 m east and 1125
-  // m north.
+  // The picture of 64 x 36 pixels is 4000 m wide, so its upper right corner is 2000 m east and 1125
+  // m north of its middle.
   request.mutable_point()->set_x(1.0F);
   request.mutable_point()->set_y(1.0F);
   v1::ProbeRayResponse probe = Probed(service, request);

@@ -1,5 +1,6 @@
-// Visits every field of a scene message, with the scenes that its values make. For tests that must
-// hold for each field, including fields that are added later.
+// Visits every field of a scene message. For each field, the visitor gets a list of scenes that
+// differ only in the value of this field. The functions are for tests that must hold for each
+// field, including fields that are added later.
 #pragma once
 
 #include <functional>

@@ -22,9 +22,10 @@ class CaseError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The arguments of a step, or what is given before the first step. It knows which of them were
-// read, so that an argument that a runner does not know makes the test fail. Methods throw a
-// CaseError if an argument is absent or has another type.
+// The arguments of one step of a case, or the values of `given`, the state before the first step.
+// The class records which arguments were read. ExpectAllRead can therefore fail for an argument
+// that the client's runner does not know. The methods throw a CaseError if an argument is absent or
+// has another type.
 class Arguments {
  public:
   explicit Arguments(google::protobuf::Struct values) : values_(std::move(values)) {}

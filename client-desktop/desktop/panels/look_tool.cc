@@ -1,5 +1,6 @@
 // The tool "Look": quality, the effects that the picture does not simulate, colours, exposure, sky
-// and ground, the required accuracy or speed, and the modes of papers.
+// and ground, and the required accuracy or speed. It also offers the presets that draw a picture as
+// a paper does.
 #include <imgui.h>
 
 #include <algorithm>

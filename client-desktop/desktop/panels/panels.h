@@ -32,9 +32,11 @@ void DrawToolRail(Ui& ui, const Layout& layout);
 // Draws the open tool.
 void DrawTool(Ui& ui, const Layout& layout);
 void DrawTimeLine(Ui& ui, const Layout& layout);
-// DrawSessionBar() draws the person in control, and the button that ends looking around.
-// DrawNotices() draws the accuracy and the notices.
+// Draws the person in control, and requests for control. If the user has left the session's view
+// for a view of their own ("You look around"), it also draws the button that returns to the
+// session's view. If the session no longer exists, it draws only the button that opens a new one.
 void DrawSessionBar(Ui& ui, const Layout& layout);
+// Draws the accuracy of the picture, failures and the newest notice.
 void DrawNotices(Ui& ui, const Layout& layout);
 // Draws the open panel at the right.
 void DrawPanel(Ui& ui, const Layout& layout);

@@ -28,16 +28,17 @@ class DiffuseLight {
  public:
   explicit DiffuseLight(DiffusionCells cells);
 
-  // The following functions return values by cell that do not depend on the sun. ExitRoot returns
-  // the square root of the optical depth by `light_per_m` from each cell to the nearest surface of
-  // the medium (exit).
+  // The following functions return one value per cell. The values do not depend on the sun.
+  // ExitRoot returns the square root of the optical depth from each cell to the nearest surface of
+  // the medium (its exit), computed from `light_per_m`.
   const std::vector<float>& ExitRoot() const { return exit_root_; }
-  // SkySeen describes the light that enters a cell by its nearest exits, above a black ground. It
-  // returns the share of that light which is skylight, either direct or from other walls
-  // (wall_light.h). SkyInward returns the net flux of skylight into the cloud. The sky's radiance
-  // is approximated as linear in the sine of the elevation. Component x is the weight of the sky's
-  // irradiance from above over pi, y is the weight of its mean radiance. A uniform sky has the
-  // weight x + y.
+  // SkySeen returns the skylight that arrives at the exits around each cell, where nearer exits
+  // have more weight. Other walls (wall_light.h) hide a part of the sky, but also send skylight.
+  // The ground counts as black. SkyInward returns the net flux of skylight into the cloud.
+  //
+  // The sky's radiance is approximated as linear in the sine of the elevation. Component x is the
+  // weight of the sky's irradiance from above divided by pi, and y is the weight of its mean
+  // radiance. A uniform sky has the weight x + y.
   const std::vector<glm::vec2>& SkySeen() const { return sky_seen_; }
   const std::vector<glm::vec2>& SkyInward() const { return sky_inward_; }
 

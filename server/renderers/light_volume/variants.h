@@ -21,8 +21,10 @@ struct CarryVariant {
 struct ArriveVariant {
   MediumVariant medium;
   CarryVariant carry;
-  // With 1, the shader stores the ratio of optical depths next to each cell. With 2, it uses the
-  // stored ratio instead of sampling the medium there. With 0, it samples the medium.
+  // How the shader finds the optical depth of the path close to a cell. With 0 and 1, it samples
+  // the medium along the path. With 1, it also stores the ratio of this optical depth to that in
+  // the light's medium (light_medium.comp). With 2, it uses the stored ratio and does not sample
+  // the medium.
   gl::DefineValue near;
 
   gl::Defines Defines() const {

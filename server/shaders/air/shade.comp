@@ -1,11 +1,12 @@
-// Computes the light that the storm's shadow removes from the air's light. Each texel column is a ray of a coarse
-// picture. Each layer holds the missing share of airlight_before from the eye up to one of several distances. The last
-// layer holds the missing share of the whole sky's airlight. The first layer is at the distance `near_m` and is zero.
+// Computes which share of the air's light the storm's shadow removes. The result is a 3D texture. Its x and y select a
+// ray of a coarse picture, and each of its layers stands for a distance from the eye. A layer holds the removed share
+// of airlight_before, the light of the air from the eye up to that distance. The first layer is at the distance
+// `near_m` and is zero. The last layer holds the removed share of the whole sky's airlight.
 //
-// The contribution of a step to airlight_before is proportional to the extinction of its air. The missing share of this
-// contribution equals the missing share of the sunlight and skylight that the step scatters. The result therefore never
-// exceeds airlight_before. Rays continue below the ground, so that shares change smoothly across the picture.
-// Coordinates are metres from the eye.
+// Each step along a ray contributes to airlight_before in proportion to the extinction of its air. The removed share of
+// this contribution is the removed share of the sunlight and skylight that the step scatters. The removed light
+// therefore never exceeds airlight_before. Where the storm adds more light than it blocks, the share is negative. Rays
+// continue below the ground, so that shares change smoothly across the picture. Coordinates are metres from the eye.
 #include "common/bindings.glsl"
 #include "common/sky_hidden.glsl"
 #include "common/storm_shadow.glsl"

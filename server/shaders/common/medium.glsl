@@ -1,9 +1,9 @@
 // The extinction of a medium's groups at a point. Each group is a channel: groups 0-3 are the channels of plane 0,
 // groups 4-7 those of plane 1. Unused channels of a plane must have the weight zero.
 //
-// GROUPS is the number of groups. DETAILS is the number of noises that change shares of the groups
-// (physics/detail.glsl). The first noise displaces the medium, and every noise multiplies it. With DETAILS 0 the code
-// for noises is not compiled.
+// GROUPS is the number of groups. DETAILS is the number of noise textures that add turbulent detail
+// (physics/detail.glsl). The first noise also displaces the medium. Each noise multiplies a given share of each channel
+// (`detail_shares`). With DETAILS 0 the code for noises is not compiled.
 //
 // Uniforms needed in a loop are read before the loop. Inside a loop, some invocations may already have ended. Mesa's
 // software renderer then reads a uniform once for every invocation (gallivm 22.3).

@@ -1,8 +1,8 @@
 // Propagates sunlight through consecutive slices of the light buffer. Each layer holds the light that enters a slice: r
 // is the share of sunlight, g the similarity-scaled optical depth from the sun. Neighbouring texels exchange light once
 // in each dispatch. With CONSISTENT, they exchange the light that was scattered since the last dispatch. With the
-// paper's transport, they exchange the light scattered in the only slice of the dispatch. Variants: GROUPS, CONSISTENT,
-// TRANSLUCENT (texels exchange light).
+// paper's transport, they exchange the light scattered in the only slice of the dispatch. Variants: GROUPS, DETAILS,
+// CONSISTENT, TRANSLUCENT (texels exchange light).
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"

@@ -1,5 +1,5 @@
 // Computes the similarity-scaled optical depth along each whole sun ray, summed over slices that are perpendicular to
-// the ray. Variant: GROUPS.
+// the ray. Variants: GROUPS, DETAILS.
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"

@@ -1,9 +1,11 @@
 // Adds the sun's disc behind a medium to the linear frame. It also adds the aureole: light that the medium scatters
 // within the forward peaks, which are cut off the phase functions (physics/aureole.h). View rays so close to the sun
-// take the same path as the sun's light, so only the optical depths along them matter. Light scattered once within the
-// peak has its exact phase function. For light scattered more often, each group's aureole is read at the same optical
-// depth of the peak. The mean of the groups is weighted by their shares of the peak. Variants: those of
-// renderers::MediumVariant, CHOSEN.
+// take the same path as the sun's light, so only the optical depths along them matter.
+//
+// Light scattered once within the peaks has the exact phase function of its group. Light scattered more often is the
+// weighted mean of the groups' tables (`aureole`). Each table is read at the optical depth of all groups' peaks
+// together, as if its group caused all of this depth. The weight of a group is its share of this depth. Variants: those
+// of renderers::MediumVariant, CHOSEN.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #define GROUND 1

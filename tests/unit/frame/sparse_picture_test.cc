@@ -51,8 +51,8 @@ struct Canvas {
     return Dithered(*whole);
   }
 
-  // Returns the largest deviation of the picture from the canvas in steps of 255, at least
-  // `margin_px` from its edges.
+  // Returns the largest deviation of the picture from the canvas, in 8-bit levels (0 to 255).
+  // Pixels less than `margin_px` from the edges are left out.
   double WorstOf(const std::vector<std::uint8_t>& rgb, int margin_px) const {
     const std::vector<std::uint16_t> exact = At(PixelsOf(size_px));
     double worst = 0.0;

@@ -153,8 +153,8 @@ class GribStormTest : public ::testing::Test {
   testing::TemporaryFolder folder_;
 };
 
-// The files of a grid that follows a storm are of one run and one grid, but each has its own true
-// distances and map projection.
+// If a model moves its grid along with a storm, all files belong to one run and one grid. Each file
+// has its own map projection and its own spacing of columns in metres.
 TEST_F(GribStormTest, AGridThatMovesIsOneStorm) {
   Layout layout;
   const auto first = Describe(layout);

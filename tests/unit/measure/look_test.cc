@@ -32,14 +32,16 @@ TEST_F(LookRegionsTest, TheTowerIsWhereTheSunShinesOnIt) {
   const int facing = Count(180.0, Region::kTower);
   EXPECT_GT(facing, 300);
   EXPECT_EQ(Count(180.0, Region::kBase), 0);
-  // The tower's lit region is a strip as wide as a billow.
+  // The sun shines from the side. The lit region is a strip at the tower's edge, where the path
+  // towards the sun inside the cloud is short enough not to count (measure/look.h).
   EXPECT_GT(Count(90.0, Region::kTower), 0);
   EXPECT_LT(Count(90.0, Region::kTower), facing / 2);
 }
 
 TEST_F(LookRegionsTest, TheBaseIsInShadow) {
-  // The tower's top is an exception and counts as lit, because the sun's rays pass through less
-  // than a billow of cloud behind it.
+  // The sun is behind the tower. The tower's top is an exception and counts as lit. The path from
+  // there towards the sun soon leaves the cloud, and its first part does not count
+  // (measure/look.h).
   EXPECT_LT(Count(0.0, Region::kTower), Count(180.0, Region::kTower) / 2);
   EXPECT_GT(Count(0.0, Region::kBase), 50);
 }

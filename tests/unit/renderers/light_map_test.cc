@@ -31,8 +31,9 @@ TEST(LightMap, ASkyAloneLightsByHowMuchOfItIsSeen) {
   for (const glm::vec3& n : kNormals) EXPECT_NEAR(MapAt(map, n).r, 0.5F + 0.5F * n.z, 1e-3F);
 }
 
-// For a small lamp in direction l a surface shows the cosine. The harmonics approximate it within 7
-// % of the brightest value.
+// A small lamp lights a surface in proportion to the cosine of the angle between the lamp and the
+// surface's normal. The harmonics approximate this with an error of at most about 10 % of the
+// brightest value.
 TEST(LightMap, ALampFollowsTheCosine) {
   const glm::vec3 lamp = glm::normalize(glm::vec3(0.3F, -0.5F, 0.7F));
   const auto map = LightMapOf(

@@ -1,5 +1,6 @@
-// Encodes pictures to a movie in the browser: VP9 in WebM, or H.264 in MP4, with VP9 as the
-// fallback. This code is loaded with the first movie.
+// Encodes pictures to a movie in the browser. A WebM file contains VP9, or VP8 if the browser
+// cannot encode VP9. An MP4 file contains H.264, or VP9 if the browser cannot encode H.264. This
+// code is loaded with the first movie.
 import {
   BufferTarget,
   CanvasSource,
