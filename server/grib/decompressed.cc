@@ -205,8 +205,8 @@ class Decompressor {
     return Fill();
   }
 
-  // Checks what has been decompressed so far, so that other files and files that are too large are
-  // refused before more of them is decompressed.
+  // Checks the bytes that have been decompressed so far. A file that is too large, or is no GRIB
+  // file, is thus refused before more of it is decompressed.
   absl::Status Check() const {
     if (contents_.Size_bytes() > most_bytes_) {
       return absl::FailedPreconditionError(

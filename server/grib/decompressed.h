@@ -23,9 +23,9 @@ bool BeginsCompressed(std::string_view start);
 
 // Returns `file` itself if it is not compressed, otherwise its decompressed bytes in memory.
 // Errors: DATA_LOSS if the file ends early or is damaged; INVALID_ARGUMENT if its contents do not
-// begin with a GRIB message; FAILED_PRECONDITION if they exceed
-// MaxDecompressed_bytes or `most_bytes`. The contents
-// are counted while they grow. They need about as much memory as they have bytes.
+// begin with a GRIB message; FAILED_PRECONDITION if they exceed MaxDecompressed_bytes or
+// `most_bytes`; RESOURCE_EXHAUSTED if the decompressor gets no memory. The size is checked while
+// the contents grow. They need about as much memory as they have bytes.
 absl::StatusOr<std::shared_ptr<const base::ByteSource>> Decompressed(
     std::shared_ptr<const base::ByteSource> file,
     std::uint64_t most_bytes = kMaxDecompressed_bytes);

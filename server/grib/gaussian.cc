@@ -89,8 +89,8 @@ absl::StatusOr<std::vector<double>> RowLatitudes_deg(const Octets& section, doub
   return latitudes;
 }
 
-// Places rows of equally many points. Gaussian latitudes are so nearly even that no row is farther
-// than 2 % of a row from its place.
+// Places rows of equally many points. The rows are placed at even distances. No Gaussian latitude
+// is farther from the place of its row than 2 % of the distance between rows.
 void PlaceRegularRows(const std::vector<double>& latitudes_deg, double unit_deg,
                       const Octets& section, Grid& grid) {
   const double range_deg = std::abs(latitudes_deg.back() - latitudes_deg.front());

@@ -19,10 +19,10 @@ inline constexpr int kMostParallels = 4000;
 // `first`, 0 at the north pole. Only the indices from 0 to 2 * parallels - 1 exist.
 std::vector<double> GaussianLatitudes_deg(int parallels, int first, int count);
 
-// Reads section 3 of a Gaussian grid. The rows of a regular grid are treated as evenly spaced, and
-// grid.assumptions states the largest error of a row's place. A reduced grid has cells
-// (Grid::cell_rows). Returns INVALID_ARGUMENT for a grid that this code does not support, and
-// DATA_LOSS if the grid's numbers contradict each other.
+// Reads section 3 of a Gaussian grid. The rows of a regular grid are treated as evenly spaced. If
+// that moves a row by more than 0.1 % of the distance between rows, grid.assumptions states the
+// largest error. A reduced grid has cells (Grid::cell_rows). Returns INVALID_ARGUMENT for a grid
+// that this code does not support, and DATA_LOSS if the grid's numbers contradict each other.
 absl::StatusOr<Grid> ReadGaussian(const Octets& section);
 
 }  // namespace thunderhead::grib

@@ -193,7 +193,8 @@ absl::StatusOr<Grid> ReadLambert(const Octets& section) {
   return grid;
 }
 
-// The templates of code table 3.1 that are not read, and NCEP's own.
+// Returns a description, for an error, of a template that is not supported. The numbers are those
+// of code table 3.1, and NCEP's own.
 std::string NameOfTemplate(std::uint64_t number) {
   switch (number) {
     case 2:

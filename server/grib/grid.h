@@ -30,9 +30,9 @@ struct Grid {
   std::string projection;
   glm::dvec2 south_west{0.0};  // coordinates of the centre of the south-west cell
   glm::dvec2 step{0.0};        // distances of neighbours in these coordinates
-  // Names an unstructured grid: "grid 44 (uuidOfHGrid a27b8de6-...)". It is empty for others. The
-  // cells are columns of one row, in the file's order. Their places are those of `cell_rows`, or in
-  // other fields.
+  // Names an unstructured grid: "grid 44 (uuidOfHGrid a27b8de6-...)". It is empty for a structured
+  // grid. The cells are columns of one row, in the file's order. Their places are in `cell_rows`
+  // or, if that is empty, in other fields of the file.
   std::string cells;
   std::vector<CellRow> cell_rows;        // of a reduced Gaussian grid, in the file's order
   bool wind_along_grid = false;          // true if winds are along x and y, false if east and north
@@ -52,8 +52,8 @@ struct Grid {
   }
 };
 
-// Reads section 3. Errors have no path: INVALID_ARGUMENT for a kind of grid that is not read, by
-// its name; DATA_LOSS for contradictory numbers.
+// Reads section 3. Returns INVALID_ARGUMENT for a kind of grid that is not supported, with its
+// name, and DATA_LOSS for contradictory numbers. The errors do not name the file.
 absl::StatusOr<Grid> ReadGrid(std::span<const std::byte> section3);
 
 // Returns the values of all points, columns fastest from west to east, then rows from south to

@@ -143,7 +143,8 @@ absl::StatusOr<double> StepOf(const Octets& section, std::size_t octet, double u
       is_given ? unit_deg * static_cast<double>(section.Unsigned(octet, 4)) : from_range_deg;
   if (count == 1 && !is_given) return 0.0;
   if (!(step_deg > 0.0)) return BadGrid(absl::StrCat("has no distance of its ", name));
-  // Coordinates are rounded to the unit, and longitudes may go around the Earth.
+  // Coordinates in the file are rounded, so a difference of half a step over the whole range is
+  // allowed.
   if (count > 1 && std::abs(step_deg - from_range_deg) * (count - 1) > step_deg / 2.0) {
     return BadGrid(absl::StrFormat("has %s %.6g degrees apart, but its corners say %.6g", name,
                                    step_deg, from_range_deg));

@@ -1,6 +1,6 @@
 // Reads the parts of section 3 that several grids share: the shape of the Earth, the number of
-// points, the scanning mode, angles and steps. Errors have no path: INVALID_ARGUMENT for what is
-// not read, by its name; DATA_LOSS for contradictory numbers.
+// points, the scanning mode, angles and steps. Errors are INVALID_ARGUMENT for what is not
+// supported, with its name, and DATA_LOSS for contradictory numbers. They do not name the file.
 #pragma once
 
 #include <cstddef>
@@ -51,8 +51,10 @@ absl::StatusOr<double> AngleUnit_deg(const Octets& section);
 // column. `unit` is that of AngleUnit_deg.
 double LongitudeRange_deg(const Octets& section, double unit_deg, const Grid& grid);
 
-// Returns the step between two coordinates of a grid of latitudes and longitudes in degrees. It is
-// given, or follows from the last coordinate. It is 0 if it is not given for the only coordinate.
+// Returns the step in degrees between neighbouring latitudes or longitudes of a grid, which are
+// called `name` in errors. If there are several (`count`), it follows from `range_deg`, the
+// distance of the first and the last. A step in `octet` must then agree. If there is only one,
+// returns the step in `octet`, or 0 if the file does not give it.
 absl::StatusOr<double> StepOf(const Octets& section, std::size_t octet, double unit_deg,
                               double range_deg, int count, const char* name);
 

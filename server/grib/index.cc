@@ -23,7 +23,8 @@ constexpr std::string_view kStart = "GRIB";
 constexpr std::string_view kEnd = "7777";
 // A bulletin's header before the first message is shorter than this.
 constexpr std::size_t kLongestPreamble = 256;
-// Sections 1, 3, 4 and 5 are kept whole. The longest are those with lists of coordinates.
+// Maximum length of sections 1, 3, 4 and 5, which are read whole. The longest are those with lists
+// of coordinates.
 constexpr std::uint64_t kLongestHeader = 1 << 20;
 
 // Reads a file in order, with few calls.

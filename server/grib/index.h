@@ -85,7 +85,7 @@ struct Field {
   absl::Time Valid() const { return origin.reference + forecast; }
 };
 
-// Returns "0/1/22".
+// Returns the three numbers as text, such as "0/1/22".
 std::string NumbersOf(const Parameter& parameter);
 
 struct Index {
@@ -98,7 +98,8 @@ inline constexpr std::size_t kMaxFields = 200'000;
 
 // Reads the headers of all messages of a plain (not compressed) file. Errors name the file and the
 // message's offset: INVALID_ARGUMENT if the file has no GRIB message, a message of another edition
-// than 2, or more than kMaxFields fields; DATA_LOSS if a message is cut short or damaged.
+// than 2, a kind of section that is not supported, or more than kMaxFields fields; DATA_LOSS if a
+// message is cut short or damaged.
 absl::StatusOr<Index> ReadIndex(const base::ByteSource& file);
 
 // Returns whether these first bytes of a file are those of a GRIB file: "GRIB" at once, or behind a

@@ -34,8 +34,8 @@ std::string TailOf(const std::string& path) {
   return is_read ? tail : "";
 }
 
-// A line is "number:offset:date:name:level:time:". The number of a field that shares its message
-// with others is "number.n".
+// Reads the offset from a line "number:offset:date:name:level:time:". The number of a field that
+// shares its message with others is "number.n". Returns false for any other line.
 bool ReadOffset(absl::string_view line, std::uint64_t& offset) {
   const std::vector<std::string> parts = absl::StrSplit(line, absl::MaxSplits(':', 2));
   double number = 0.0;

@@ -40,8 +40,9 @@ class Octets {
     return true;
   }
 
-  // Returns the decimal number of a scale factor (one octet) and a value of `count` octets behind
-  // it. Returns NaN if the value is missing. A missing scale factor counts as 0.
+  // Returns value * 10^-scale, where octet `first` has the scale factor, and the `count` octets
+  // after it have the value. Returns NaN if the value is missing. A missing scale factor counts as
+  // 0.
   double Scaled(std::size_t first, std::size_t count) const {
     if (IsMissing(first + 1, count)) return std::nan("");
     const std::int64_t scale = IsMissing(first, 1) ? 0 : Signed(first, 1);

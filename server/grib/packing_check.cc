@@ -17,7 +17,7 @@ absl::Status BadData(std::string_view what) {
       absl::StrCat("its packed data ", std::string(what), "; the file is damaged: copy it again"));
 }
 
-// Reads numbers of any number of bits, the first bit first.
+// Reads numbers of up to 32 bits, the most significant bit first.
 class Bits {
  public:
   explicit Bits(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -82,7 +82,8 @@ absl::Status CheckSimple(const Octets& section5, std::uint64_t values, std::uint
       absl::StrCat("have ", data_bytes, " bytes for ", values, " values of ", bits, " bits"));
 }
 
-// The lengths and widths of groups are checked as in section 7.2 and 7.3 of the manual on codes.
+// Checks the lengths and widths of groups, which templates 7.2 and 7.3 of the manual on codes
+// define.
 absl::Status CheckGroups(const Octets& section5, std::uint64_t values,
                          std::span<const std::byte> data, bool differences) {
   const std::uint64_t reference_bits = section5.Unsigned(20, 1);

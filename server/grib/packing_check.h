@@ -31,10 +31,12 @@ struct PackedField {
   std::span<const std::byte> data;     // section 7
 };
 
-// Returns the packing of section 5, or INVALID_ARGUMENT if it is not read. The message has no path.
+// Returns the packing of section 5, or INVALID_ARGUMENT if it is not supported. The error does not
+// name the file.
 absl::StatusOr<Packing> PackingOf(std::span<const std::byte> packing);
 
-// Returns DATA_LOSS if the numbers of the sections contradict one another. The message has no path.
+// Returns DATA_LOSS if the numbers of the sections contradict one another, or the error of
+// PackingOf. The error does not name the file.
 absl::Status CheckPacked(const PackedField& field);
 
 }  // namespace thunderhead::grib

@@ -46,7 +46,7 @@ class FailedAssertion : public std::runtime_error {
 
 void IgnoreLog(const codes_context* /*context*/, int /*level*/, const char* /*message*/) {}
 
-// Sets what concerns all threads, at the first call.
+// Sets the options of ecCodes that concern all threads, at the first call.
 void SetUpLibrary() {
   static const bool is_set_up = [] {
     codes_context_set_logging_proc(codes_context_get_default(), IgnoreLog);
@@ -72,9 +72,10 @@ struct Shape {
   std::uint64_t rows = 0;
 };
 
-// Makes a message with the packed data of `field`. All other sections are constant. ecCodes then
-// needs few of its definition files, always the same ones, and a hostile file cannot choose them.
-// The packing does not depend on the grid, so the message has a grid of latitudes and longitudes.
+// Makes a message with the packed data of `field`. All other sections are constant, except for the
+// numbers of points, columns and rows. Therefore ecCodes needs few of its definition files, always
+// the same ones, and a hostile file cannot choose them. The packing does not depend on the grid, so
+// the message has a grid of latitudes and longitudes.
 Bytes PlainMessage(const PackedField& field, const Shape& shape) {
   constexpr std::size_t kHeaders = 16 + 21 + 72 + 34 + 6 + 4;
   Bytes message;
@@ -186,8 +187,8 @@ absl::StatusOr<Bytes> ReadSection(const base::ByteSource& file, const Extent& ex
   return section;
 }
 
-// Returns the columns and rows of the grid, which are at the same octets in all templates that are
-// read.
+// Returns the columns and rows of the grid, which are at the same octets in all supported templates
+// with columns and rows. Returns one row for other grids.
 Shape ShapeOf(const Field& field) {
   constexpr std::size_t kColumns = 31;
   constexpr std::size_t kRows = 35;

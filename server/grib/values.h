@@ -15,8 +15,8 @@ absl::Status PrepareBeforeConfinement();
 
 // Returns the values of `field` of `file`, which was indexed by ReadIndex, in the order of the
 // file's scanning mode. Missing values are NaN. Safe to call from several threads. Errors name the
-// file: INVALID_ARGUMENT for a packing that is not read; DATA_LOSS for damaged data;
-// RESOURCE_EXHAUSTED if the values do not fit into memory.
+// file: INVALID_ARGUMENT for a packing that is not supported; DATA_LOSS for damaged data;
+// RESOURCE_EXHAUSTED if the values do not fit into memory or are more than 200 million.
 absl::StatusOr<std::vector<float>> DecodeValues(const base::ByteSource& file, const Field& field);
 
 }  // namespace thunderhead::grib

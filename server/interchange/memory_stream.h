@@ -1,4 +1,4 @@
-// Bytes in memory as a stream that can be read and searched, without a copy.
+// An input stream over bytes in memory, without a copy. Its position can be set.
 #pragma once
 
 #include <cstddef>

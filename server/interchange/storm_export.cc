@@ -159,7 +159,8 @@ double Number(const VdbGrid& grid, const std::string& name) {
 absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene, const Fields& fields,
                                  const storm_store::StormInfo& storm,
                                  const ExportOptions& options) {
-  // The fields are exported as the light volume shows them, because it leaves nothing out.
+  // The fields are exported as the light volume shows them, because that technique leaves no field
+  // out.
   scene::Scene shown = scene;
   shown.rendering.technique = scene::LightVolume{};
   VdbFile file;

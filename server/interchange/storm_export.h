@@ -29,10 +29,10 @@ struct ExportOptions {
 
 // Returns an OpenVDB file of `storm`'s fields at the time of `scene`. For each visible field it has
 // a grid of the extinction (1/m) that the light volume draws. The grids are named "cloud", "rain"
-// and so on, and have background 0. A grid's metadata are quantity, units, albedo and asymmetry
-// (the phase function's mean cosine), and effective_radius_m and its source if the field has one.
-// The file's metadata are its subject, time and place. The result keeps `fields` alive.
-// INVALID_ARGUMENT if an extinction is too large for a half float.
+// and so on, and have background 0. A grid's metadata are quantity, units, albedo, asymmetry (the
+// phase function's mean cosine), source_variable, and effective_radius_m and its source if the
+// field has one. The file's metadata are its subject, time and place. The result keeps `fields`
+// alive. Returns INVALID_ARGUMENT if an extinction is too large for a half float.
 absl::StatusOr<VdbFile> ExportOf(const scene::Scene& scene,
                                  const std::shared_ptr<const volume::HydrometeorFields>& fields,
                                  const storm_store::StormInfo& storm, const ExportOptions& options);

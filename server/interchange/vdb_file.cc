@@ -26,7 +26,8 @@ using openvdb::FloatGrid;
 using Leaf = FloatGrid::TreeType::LeafNodeType;
 static_assert(Leaf::DIM == kVdbBlockCells);
 
-// Share of the work, for the progress, that fills blocks. The rest compresses and writes them.
+// The share of the reported progress that filling the blocks takes. The rest is compressing and
+// writing them.
 constexpr double kShareOfFilling = 0.8;
 
 openvdb::Metadata::Ptr ToVdb(const std::variant<std::string, double, std::int64_t>& value) {

@@ -1,6 +1,6 @@
 // Writes scalar grids as an OpenVDB file. The grids are sparse, have half floats on disk and a
-// linear transform to world metres. Only vdb_file.cc and vdb_grid_reader.cc include OpenVDB,
-// because its headers take long to compile. This code does not depend on storms.
+// linear transform to world metres. Only vdb_file.cc, vdb_grid_reader.cc and vdb_sizes.cc include
+// OpenVDB, because its headers take long to compile. This code does not depend on storms.
 #pragma once
 
 #include <array>
@@ -46,8 +46,8 @@ struct VdbFile {
 };
 
 // Writes the file under a temporary name and then renames it, so that readers never see a partial
-// file. `progress` (may be empty) receives the completed share, 0 to 1. UNAVAILABLE if `path`
-// cannot be written; CANCELLED if `stop` is requested.
+// file. `progress` (may be empty) receives the completed share, 0 to 1. Returns UNAVAILABLE if
+// `path` cannot be written, and CANCELLED if `stop` is requested.
 absl::Status WriteVdb(const VdbFile& file, const std::string& path,
                       const std::function<void(double share)>& progress,
                       const std::stop_token& stop);

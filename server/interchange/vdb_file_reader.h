@@ -12,10 +12,10 @@
 namespace thunderhead::interchange {
 
 // Returns the memory in bytes that the reader of an OpenVDB file may use by default, if the file
-// has `file_bytes` bytes. It is 512 MiB and 100 times the file's size, at most this machine's
-// memory. A small hostile file may state any size. The tree of any other file takes up to 40 times
-// its bytes in the file. The dense array of a cloud that fills a tenth of its box takes about 30
-// times these bytes.
+// has `file_bytes` bytes. It is 512 MiB plus 100 times the file's size, but at most this machine's
+// memory. The limit depends on the file's size because a small hostile file may state any size. The
+// tree of any other file takes up to 40 times its bytes in the file. The dense array of a cloud
+// that fills a tenth of its box takes about 30 times these bytes.
 std::uint64_t DefaultVdbMemory_bytes(std::uint64_t file_bytes);
 
 struct VdbReaderOptions {
@@ -26,8 +26,9 @@ struct VdbReaderOptions {
 };
 
 // Reads the grid named `grid` of the file at `path` by a confined process. `checkpoint` may be
-// empty. Errors are those of ReadVdbGrid, and INVALID_ARGUMENT if the file does not begin like an
-// OpenVDB file. The errors of a reader that fails are those of sandbox::Readers.
+// empty. Errors are those of ReadVdbGrid, INVALID_ARGUMENT if the file does not begin like an
+// OpenVDB file, and INTERNAL if the reader program is missing. The errors of a reader that fails
+// are those of sandbox::Readers.
 absl::StatusOr<VdbVolume> ReadVdb(const std::string& path, const std::string& grid,
                                   const storm_files::ReadCheckpoint& checkpoint,
                                   const VdbReaderOptions& options = {});

@@ -31,7 +31,8 @@ using openvdb::io::GridDescriptor;
 constexpr int kMostGrids = 1000;
 // OpenVDB has other readers for older files. They trust positions and sizes that the file states.
 constexpr std::uint32_t kFirstFormat = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
-// Share of the work, for the progress, that reads the file. The rest fills the dense array.
+// The share of the reported progress that reading the file takes. The rest is filling the dense
+// array.
 constexpr double kShareOfReading = 0.8;
 
 struct Entry {
@@ -46,7 +47,7 @@ struct Entry {
 class MemoryArchive final : public openvdb::io::Archive {
  public:
   explicit MemoryArchive(std::istream& in) : in_(in) {
-    // The stream keeps the address of the pointer.
+    // The stream keeps the address of this pointer, so the pointer is a member.
     openvdb::io::setStreamMetadataPtr(in_, metadata_, /*transfer=*/false);
     readHeader(in_);
     setFormatVersion(in_);
@@ -214,7 +215,8 @@ double VoxelsOf(const openvdb::CoordBBox& box) {
   return static_cast<double>(box.dim().x()) * box.dim().y() * box.dim().z();
 }
 
-// Fills the array of `voxels` voxels.
+// Writes the active values of `grid` by `filling` into an array of `voxels` voxels. Throws
+// std::runtime_error if blocks of equal voxels overlap.
 void Fill(const FloatGrid& grid, double voxels, const std::function<void(double)>& progress,
           Filling filling) {
   double filled = 0.0;
@@ -267,7 +269,7 @@ absl::StatusOr<VdbVolume> Read(std::span<const std::byte> bytes, const std::stri
     if (progress) progress(kShareOfReading * share);
   });
   std::istream in(&buffer);
-  // OpenVDB does not check whether a read succeeds.
+  // The stream throws an exception if a read fails, because OpenVDB does not check that.
   in.exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
   MemoryArchive archive(in);
   if (archive.fileVersion() < kFirstFormat) {

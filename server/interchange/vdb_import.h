@@ -26,10 +26,11 @@ struct ImportOptions {
                                   // it heights are those of the file
 };
 
-// Returns the extinction on a regular grid with z up, in metres. The index of a voxel is its
-// centre. Returns INVALID_ARGUMENT if the grid's axes are rotated or sheared, if it reaches below
-// height 0, or if its voxels are too small or large for a storm. Also returns INVALID_ARGUMENT if a
-// value is negative or not finite, or if all values are 0.
+// Returns the extinction on a regular grid with z up and distances in metres. The position that the
+// file gives to a voxel is the voxel's centre. Returns INVALID_ARGUMENT if the grid's axes are
+// rotated or sheared, if it reaches below height 0, or if it lies too far from the origin. Also
+// returns INVALID_ARGUMENT if its voxels are too small or large for a storm, if a value is negative
+// or not finite, or if all values are 0.
 absl::StatusOr<storm_files::CfCloud> CloudOf(const VdbVolume& volume, const ImportOptions& options);
 
 }  // namespace thunderhead::interchange

@@ -11,8 +11,8 @@
 namespace thunderhead::interchange {
 namespace {
 
-// Returns a stream to its place at the end of a check. After an exception the place is irrelevant,
-// because the file is refused.
+// A walk through a part of a stream. Return() moves the stream back to where the walk began. After
+// an exception the place is irrelevant, because the file is refused.
 class Walk {
  public:
   explicit Walk(std::istream& in) : in_(in), begin_(in.tellg()) {

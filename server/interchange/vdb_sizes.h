@@ -1,8 +1,8 @@
 // Checks of the sizes that an OpenVDB file states for its texts and metadata. OpenVDB allocates and
 // fills the stated memory before it reads the bytes, so a file of 20 kB could make it fill 4 GiB.
 // Each function checks what begins at the stream's place, and leaves the place unchanged. It throws
-// std::runtime_error if a stated size is larger than the rest of the file. It requires a stream
-// that throws at its end.
+// std::runtime_error if a stated size is larger than the rest of the file, or differs from the
+// fixed size of the value's type. It requires a stream that throws at its end.
 #pragma once
 
 #include <istream>

@@ -87,7 +87,7 @@ absl::Status IsEmpty(const std::string& path) {
       absl::StrCat(path, ": is empty (0 bytes); wait for the model to write it, or copy it again"));
 }
 
-// The most groups that are looked at.
+// Maximum number of groups that NetcdfFile::Groups returns.
 constexpr std::size_t kMostGroups = 1000;
 
 // Appends the full names of the groups within a group.

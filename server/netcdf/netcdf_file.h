@@ -1,6 +1,7 @@
 // An open netCDF file. The class reads text and numbers, and replaces all codes for missing values
 // by NaN. This class does not depend on any model or storm. NetCDF-C and HDF5 are not thread-safe,
-// so every call holds a lock of the whole process (NetcdfLock). No other code may call netCDF-C.
+// so every call holds a lock of the whole process (NetcdfLock). No code outside of this folder may
+// call netCDF-C.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +22,8 @@ enum class HugeValue { kRefused, kMissing };
 class NetcdfFile {
  public:
   // Opens `path` for reading, or its bytes if they were registered (base::ReadFromMemory). Errors:
-  // NOT_FOUND; INVALID_ARGUMENT (not a netCDF file); DATA_LOSS (truncated or damaged); UNAVAILABLE
-  // (another program is writing it).
+  // NOT_FOUND; PERMISSION_DENIED; INVALID_ARGUMENT (not a netCDF file); DATA_LOSS (truncated,
+  // damaged, or without `group`); UNAVAILABLE (another program is writing it).
   //
   // The variables are those of the root group, or of `group` (one that Groups() returns) and the
   // groups around it.
@@ -44,7 +45,8 @@ class NetcdfFile {
 
   bool HasVariable(const std::string& variable) const;
 
-  // Returns the full names of all groups in the file, "/les/fields" for example, without the root.
+  // Returns the full names of the groups in the file, "/les/fields" for example, without the root.
+  // Returns at most 1000 names.
   std::vector<std::string> Groups() const;
 
   // Returns the names of all variables, in the file's order. Those of an inner group come first.

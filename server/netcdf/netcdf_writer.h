@@ -15,7 +15,7 @@ namespace thunderhead::netcdf {
 
 class NetcdfWriter {
  public:
-  // NetCDF-C uses `name` only as a name.
+  // `name` is a name for netCDF-C. No file with this name is created.
   explicit NetcdfWriter(const std::string& name);
   ~NetcdfWriter() { (void)Take(); }
   NetcdfWriter(const NetcdfWriter&) = delete;
@@ -39,7 +39,8 @@ class NetcdfWriter {
   void Values(int variable, absl::Span<const float> values);
   void Values(int variable, absl::Span<const double> values);
 
-  // Closes the file and returns its bytes, which are complete unless there was an error.
+  // Closes the file and returns its bytes. Returns an empty string if there was an error, or if
+  // Take was called before.
   std::string Take();
 
   bool Good() const { return code_ == NC_NOERR; }

@@ -1,5 +1,5 @@
 // How a variable's stored values become numbers: signs, scale, offset, and codes for missing
-// values. The functions of this file call netCDF-C, so the caller must hold NetcdfLock.
+// values. PackingOf and NumbersOf call netCDF-C, so their callers must hold NetcdfLock.
 #pragma once
 
 #include <limits>
@@ -21,9 +21,9 @@ struct Packing {
   std::vector<double> missing;
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
-  // If above zero, it is added to values below zero, because they are meant without a sign. If
-  // below zero, it is added to values of the upper half of their range, because they are meant with
-  // one.
+  // If above zero, it is added to values below zero, because the values are meant to be unsigned.
+  // If below zero, it is added to values in the upper half of the type's range, because the values
+  // are meant to be signed.
   double wrap = 0.0;
 
   bool PlainFloat() const { return floats && scale == 1.0 && offset == 0.0; }

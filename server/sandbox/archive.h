@@ -42,7 +42,7 @@ class SharedPlaces {
 };
 
 // Makes the kernel provide all pages of `memory` at once. This is faster than providing each page
-// at its first use, which happens if the kernel does not support it.
+// at its first use. A kernel that does not support the request ignores it.
 enum class Use { kReading, kWriting };
 void Populate(std::span<const std::byte> memory, Use use);
 
@@ -70,8 +70,8 @@ class Sender {
   template <typename Values>
   void Array(const Values& values) {
     const std::size_t bytes = values.size() * sizeof(values[0]);
-    // The array is written before its size, because the receiver may read the array once it has the
-    // size.
+    // An array in shared memory is written before its size is sent, because the receiver may read
+    // the array once it has the size.
     const std::optional<std::size_t> place = places_.Next(bytes);
     if (place.has_value()) {
       const std::span<std::byte> to = shared_.subspan(*place, bytes);

@@ -37,9 +37,9 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
   absl::Status Probe();
 
   absl::StatusOr<storm_files::StormFile> Describe(const std::string& path);
-  // Describes several files, each separately, by one reader. If that reader fails, another one
-  // describes each file. ABORTED for files that need longer than `patience` (see
-  // StormFormats::DescribeEach).
+  // Describes several files, each separately, by one reader. If that reader fails, a separate
+  // reader describes each file. Returns ABORTED for each file that was not described within
+  // `patience` (see StormFormats::DescribeEach).
   std::vector<absl::StatusOr<storm_files::StormFile>> DescribeEach(
       const std::vector<std::string>& paths,
       std::chrono::milliseconds patience = storm_files::kLongestDescription);
@@ -65,10 +65,12 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
   void Own(const std::string& path, const std::vector<std::string>& paths,
            storm_files::StormFile& file);
 
-  // Sends the request to a reader, unless the same unchanged file has made a reader fail recently.
+  // Sends the request to a reader. If the same unchanged file has made a reader fail recently,
+  // returns that reader's error instead.
   absl::Status Run(Request request, Reply wanted, Readers::Patience patience,
                    const storm_files::ReadCheckpoint& checkpoint, const Readers::Take& take);
-  // ABORTED if `is_trial` and the file needs longer than `patience`.
+  // Returns ABORTED if `patience.is_trial` is true and the description takes longer than
+  // `patience.time`.
   absl::StatusOr<storm_files::StormFile> DescribeFor(const std::string& path,
                                                      const std::vector<std::string>& paths,
                                                      Readers::Patience patience);
@@ -80,12 +82,12 @@ class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {
   std::map<std::string, Offender> offenders_;
 };
 
-// Returns `formats` such that confined readers read every file. The readers use the formats of the
-// reader program, and not those that were added to `formats`.
+// Returns a copy of `formats` that makes confined readers describe and read every file. The readers
+// use the formats of the reader program, and not those that were added to `formats`.
 storm_files::StormFormats Confined(storm_files::StormFormats formats,
                                    const std::shared_ptr<ConfinedFiles>& files);
 
-// Returns the built-in formats such that confined readers read every file.
+// Returns the built-in formats, changed so that confined readers describe and read every file.
 storm_files::StormFormats ConfinedFormats(const ConfinedOptions& options = {});
 
 }  // namespace thunderhead::sandbox

@@ -129,7 +129,8 @@ absl::Status Confine(const Allowance& allowance) {
   mallopt(M_ARENA_MAX, 1);
   const rlim_t memory = AddressSpace() + allowance.memory_bytes;
   THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_AS, memory, memory));
-  // The signal of the soft limit is SIGXCPU, which identifies the cause.
+  // At the soft limit the process is ended by SIGXCPU, which identifies the cause. The hard limit
+  // would end it by SIGKILL.
   THUNDERHEAD_RETURN_IF_ERROR(
       Limit(RLIMIT_CPU, allowance.processor_s, rlim_t{allowance.processor_s} + 1));
   THUNDERHEAD_RETURN_IF_ERROR(Limit(RLIMIT_CORE, 0, 0));

@@ -1,8 +1,8 @@
 // Confines this process with all its threads, so that it can only process bytes that it already has
-// in memory. The process can no longer open files or sockets, start processes, gain privileges or
-// load code, and its memory and processor time are limited. This cannot be undone. The
-// implementation uses Linux's seccomp and resource limits, and needs neither root rights nor
-// namespaces.
+// in memory, and use pipes that are already open. The process can no longer open files or sockets,
+// start processes, gain privileges or load code, and its memory and processor time are limited.
+// This cannot be undone. The implementation uses Linux's seccomp and resource limits, and needs
+// neither root rights nor namespaces.
 #pragma once
 
 #include <cstdint>

@@ -57,7 +57,7 @@ class Taker {
  public:
   explicit Taker(std::span<const std::byte> bytes) : rest_(bytes) {}
 
-  // Returns `size` bytes, or none if fewer are left. Afterwards Ok() is false.
+  // Returns `size` bytes. If fewer are left, returns none, and Ok() is false from then on.
   std::span<const std::byte> Take(std::uint64_t size) {
     if (size > rest_.size()) ok_ = false;
     if (!ok_) return {};

@@ -1,6 +1,6 @@
 // Several files as the bytes of one: a table of their paths and sizes, and their contents one after
-// the other. The server copies the files of one time into memory so, without parsing them, and
-// passes it to a reader, which needs only one descriptor.
+// the other. The server copies files into memory in this form, without parsing them, and passes the
+// memory to a reader. The reader then needs only one descriptor.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ struct FileBundle {
 using OpenChecked = std::function<absl::StatusOr<base::FileDescriptor>(const std::string& path)>;
 
 // Copies the files at `paths` into memory. Returns RESOURCE_EXHAUSTED if they are larger than
-// `most_bytes` together, and UNAVAILABLE if one changes its size while it is copied. Errors name
-// the file.
+// `most_bytes` together, NOT_FOUND if one does not exist, and UNAVAILABLE if one cannot be copied
+// or becomes shorter meanwhile. Errors name the file.
 absl::StatusOr<FileBundle> Bundle(const std::vector<std::string>& paths, const OpenChecked& open,
                                   std::size_t most_bytes);
 
@@ -34,7 +34,8 @@ struct BundledFile {
   std::span<const std::byte> bytes;
 };
 
-// Returns the files in the bytes of a bundle. Returns INTERNAL if its table is not whole.
+// Returns the files in the bytes of a bundle. Returns INTERNAL if the table or a file is
+// incomplete.
 absl::StatusOr<std::vector<BundledFile>> FilesOfBundle(std::span<const std::byte> bytes);
 
 }  // namespace thunderhead::sandbox

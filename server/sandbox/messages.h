@@ -33,14 +33,14 @@ struct Request {
   Wanted wanted = Wanted::kProbe;
   std::string version;  // version of the program that asks
   std::string path;     // path for error messages; the file itself is passed as an open descriptor
-  // True if the descriptor holds several files (file_bundle.h), which are described one by one
-  // (kDescriptions) or are together one time.
+  // 1 if the descriptor holds several files (file_bundle.h), else 0. For kDescriptions, the files
+  // are described one by one. For other requests, they are together one time.
   std::uint8_t bundle = 0;
   std::vector<std::string> bundled;  // the paths of these files; not sent, as the bundle has them
   std::uint64_t record = 0;
   std::optional<storm_files::ColumnWindow> window;  // for kFields
   std::int32_t stride = 1;                          // for kFields
-  std::string part;  // for kOther: the name of the part of the file that is wanted
+  std::string part;  // for kOther: the name of the part of the file that is requested
   std::optional<storm_files::VerticalGrid> grid;
   std::uint64_t memory_bytes = 0;  // limit in bytes for reading, without the mapped file
   std::uint64_t shared_bytes = 0;  // size of the shared memory, which is an open descriptor; 0 if
@@ -48,8 +48,8 @@ struct Request {
   std::uint32_t processor_s = 0;
 };
 
-// The kinds of replies. A reader sends any number of kProgress and kLog, and then exactly one reply
-// of another kind.
+// The kinds of replies. To each request, a reader sends any number of kProgress and kLog, and then
+// exactly one reply of another kind.
 enum class Reply : std::uint8_t {
   kProgress,
   kLog,
@@ -85,7 +85,7 @@ void VisitOptional(Archive& archive, std::optional<Value>& value) {
   value = has == 1 ? std::optional(known) : std::nullopt;
 }
 
-// Sends at most `most` texts.
+// Sends or receives at most `most` texts.
 template <typename Archive>
 void VisitTexts(Archive& archive, std::vector<std::string>& texts, std::size_t most) {
   auto count = static_cast<std::uint32_t>(std::min(texts.size(), most));

@@ -161,7 +161,7 @@ absl::Status CheckPlausible(const storm_files::StormFile& file) {
   THUNDERHEAD_RETURN_IF_ERROR(
       Require((may_be_empty || !file.times.empty()) && file.times.size() <= storm_files::kMaxTimes,
               "the number of its times"));
-  // A part of a time says nothing more.
+  // The description of a file that is only a part of a time has no other members to check.
   if (is_part) return absl::OkStatus();
   THUNDERHEAD_RETURN_IF_ERROR(Require(AreCells(file.cells), "the number of its cells"));
   THUNDERHEAD_RETURN_IF_ERROR(

@@ -13,7 +13,7 @@ namespace thunderhead::sandbox {
 std::optional<ProcessState> StateOf(pid_t process) {
   std::ifstream file(absl::StrCat("/proc/", process, "/stat"));
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  // The name comes before, in parentheses, and may contain any character.
+  // The name of the process precedes its state, in parentheses, and may contain any character.
   const std::size_t name_end = text.rfind(')');
   if (name_end == std::string::npos) return std::nullopt;
   std::istringstream rest(text.substr(name_end + 1));

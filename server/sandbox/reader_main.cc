@@ -31,8 +31,9 @@ std::vector<std::string_view> StartsOf(const std::vector<BundledFile>& files) {
 }
 
 // Returns unused memory to the system before large fields are copied into the shared memory.
-// Otherwise this process would hold what reading needed, the fields and their copy at once. This
-// takes a part of a second, so it is done for large fields only.
+// Otherwise this process would hold three things at the same time: the memory that reading needed,
+// the fields, and their copy. Returning memory takes a fraction of a second, so it is done for
+// large fields only.
 void ReturnUnusedMemory(const volume::HydrometeorFields& fields) {
   constexpr std::size_t kLarge_bytes = std::size_t{1} << 30;
   if (fields.Bytes() >= kLarge_bytes) malloc_trim(0);
@@ -51,8 +52,8 @@ class StormReader final : public FileReader {
  private:
   // Describes the file, or all files as one time, once for all requests.
   absl::Status Describe(const Request& request);
-  // Returns the storm of the file that has the record, which becomes the record of that storm.
-  // Returns null if none has it.
+  // Returns the storm of the file that contains `record`, and changes `record` to its number within
+  // that storm. Returns null if no storm contains it.
   const storm_files::StormFile* StormWith(std::uint64_t& record) const;
   // Describes each file separately.
   absl::Status AnswerDescriptions(Replies& replies);
@@ -68,7 +69,7 @@ absl::Status StormReader::Describe(const Request& request) {
   } else if (!file_.has_value()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(file_, formats_.DescribeTogether(paths_));
   }
-  // A part that belongs to all times has no time itself.
+  // A file that is only a part of a time can be described, but not read.
   if (request.wanted == Wanted::kDescription) return absl::OkStatus();
   if (file_->reader == nullptr) {
     return absl::InvalidArgumentError(absl::StrCat(

@@ -51,7 +51,7 @@ class Replies::KeptLog final : public spdlog::sinks::base_sink<std::mutex> {
 
 namespace {
 
-// Maps the file or the bundle into memory. After this, no file needs to be opened.
+// Maps the file or the bundle into memory. After this, these files need not be opened again.
 absl::StatusOr<std::span<const std::byte>> MapFile() {
   struct stat information = {};
   if (fstat(kFileDescriptor, &information) != 0) {
@@ -115,7 +115,7 @@ absl::Status Answer(FileReader& reader, const Request& request, Replies& replies
   return absl::OkStatus();
 }
 
-// Answers a request, or returns an error that names the file if that needs too much memory.
+// Answers a request, or returns an error that names the file if the answer needs too much memory.
 absl::Status AnswerWithinMemory(FileReader& reader, const Request& request, Replies& replies) {
   absl::Status status = base::Guarded([&] { return Answer(reader, request, replies); });
   if (base::DetailsOf(status).reason != base::DetailsOf(base::OutOfMemory()).reason) return status;

@@ -26,8 +26,8 @@ inline constexpr int kSharedDescriptor = 4;
 // Sends replies to the server.
 class Replies {
  public:
-  // Large arrays are placed in `shared`. From now on, the process keeps its log, because it has no
-  // file for it.
+  // Large arrays are placed in `shared`. From now on, the process keeps the lines of its log until
+  // the next reply, because it has no log file.
   explicit Replies(std::span<std::byte> shared);
 
   // Sends the lines of the log, and then the reply.
@@ -43,7 +43,8 @@ class Replies {
     Visit(server, value);
   }
   void SendError(const absl::Status& error);
-  // Sends the share of the work that is done, 0 to 1. The server accepts at most some thousands.
+  // Sends the share of the work that is done, 0 to 1. For each request, the server accepts fewer
+  // than 10 000 messages of progress and log together.
   static void SendProgress(double share);
 
  private:
@@ -68,8 +69,8 @@ class FileReader {
 };
 
 // Receives a request, maps the file, confines the process and answers requests until the server
-// closes the pipe. Returns the exit status. The caller must end the process by _exit, because a
-// hostile file may have overwritten objects whose destructors would then run.
+// closes the pipe or a request fails. Returns the exit status. The caller must end the process by
+// _exit, because a hostile file may have overwritten objects whose destructors would then run.
 int RunReader(FileReader& reader);
 
 }  // namespace thunderhead::sandbox

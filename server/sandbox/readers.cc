@@ -235,7 +235,8 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
                                          const Take& take) {
   reader->Ask(request);
   ReaderLimits limits = limits_;
-  // A request may have less time than the flag allows, which the flag does not change.
+  // If the request has less time than the flag allows, the error does not name the flag, because a
+  // larger value of the flag would not help.
   if (patience.time < limits.time) limits.time_flag.clear();
   limits.time = patience.time;
   Receiver from_reader(reader->Replies(), patience.time, request.memory_bytes, time_,

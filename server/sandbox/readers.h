@@ -26,11 +26,11 @@
 namespace thunderhead::sandbox {
 
 struct ReaderLimits {
-  // The memory in bytes that a reader may use for reading and for the result. 0 means no limit,
-  // because the machine's memory is unknown.
+  // The memory in bytes that a reader may use for reading and for the result. 0 means no limit. It
+  // is the default on a machine whose memory size is unknown.
   std::uint64_t memory_bytes = base::MachineMemoryBytes();
-  // The longest time that the server waits for a request, and the limit of the reader's processor
-  // time.
+  // The longest time that the server waits for the answer to a request, and the limit of the
+  // reader's processor time.
   std::chrono::milliseconds time{600'000};
   // The longest time that a reader may send nothing, unless it is waiting for its storage.
   std::chrono::milliseconds silence{60'000};
@@ -81,8 +81,9 @@ class RestingReader {
 // this object. Safe from any thread.
 class Readers {
  public:
-  // A function that receives the rest of the result, after the kind of the reply. Run checks
-  // afterwards whether the Receiver has failed.
+  // A function that receives the rest of the result, after the kind of the reply. If a value is
+  // impossible, it returns an error whose message names the value. Run checks afterwards whether
+  // the Receiver has failed.
   using Take = std::function<absl::Status(Receiver& from_reader)>;
 
   // The longest time to wait for a result. If a trial takes longer, the result is ABORTED, and this
@@ -96,8 +97,9 @@ class Readers {
                    std::string program = "", FileChecks checks = {});
 
   // Sends `request` to a reader and waits for its result, but no longer than `patience`. `wanted`
-  // is the kind of reply that `take` receives. Errors of the file are returned unchanged.
-  // `checkpoint` may be empty.
+  // is the kind of reply that `take` receives. Returns the errors that the reader found in the
+  // file, those with an unexpected status code as DATA_LOSS. If the reader fails, returns an error
+  // for which IsReaderFailure or absl::IsUnavailable is true. `checkpoint` may be empty.
   absl::Status Run(Request request, Reply wanted, Patience patience,
                    const storm_files::ReadCheckpoint& checkpoint, const Take& take);
 
@@ -114,9 +116,9 @@ class Readers {
   RestingReader resting_;
 };
 
-// Returns whether an error means that the file made its reader fail. Other errors mean that the
-// file is invalid. A file that makes readers fail may be hostile, so it should not be read again
-// soon.
+// Returns whether an error means that the file made its reader fail. Returns false if the reader
+// found the file invalid, or if the system killed the reader. A file that makes readers fail may be
+// hostile, so it should not be read again soon.
 bool IsReaderFailure(const absl::Status& status);
 
 }  // namespace thunderhead::sandbox

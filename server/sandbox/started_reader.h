@@ -30,7 +30,7 @@ using CheckOpened = std::function<absl::Status(const std::string& path, const st
 // A function that checks the start of an opened file before a process is started to read it.
 using CheckStart = std::function<absl::Status(const std::string& path, int file)>;
 
-// Returns an error if a file begins like no storm file.
+// Returns an error if the first bytes of a file belong to no format of storm files.
 absl::Status CheckStormStart(const std::string& path, int file);
 
 // The checks of an opened file.
@@ -47,7 +47,7 @@ class Child {
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  // Returns 0 once the process has ended.
+  // Returns the id of the process, or 0 once End has found that it ended.
   pid_t Process() const { return process_; }
 
   // Waits up to `patience` for the process to end. Returns the signal that ended the process, or 0
@@ -76,7 +76,7 @@ class SharedArrays {
   int File() const { return file_.Get(); }
   std::span<const std::byte> Bytes() const { return {bytes_.get(), bytes_.get_deleter().size}; }
 
-  // Frees the memory of arrays that are no longer read.
+  // Frees the memory of all arrays. Their content is lost.
   void Empty();
 
  private:
@@ -118,7 +118,8 @@ class StartedReader {
   std::vector<base::FileStamp> stamps_;  // of the file, or of the bundled files
   SharedArrays arrays_;
   base::FileDescriptor requests_;
-  // The other end of `requests_`. It stays open here so that a reader's end causes no SIGPIPE.
+  // The other end of `requests_`. It stays open here so that a request to a reader that has exited
+  // causes no SIGPIPE.
   base::FileDescriptor requests_from_;
   base::FileDescriptor replies_;
   Child child_;

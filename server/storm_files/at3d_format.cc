@@ -24,7 +24,8 @@ std::vector<std::string> ColumnNames(std::string_view line) {
   return is_grid ? names : std::vector<std::string>();
 }
 
-// Returns the index of the first column with one of these names after the indices, or -1.
+// Returns the index of the first column with one of these names, counted from the column after the
+// three indices. Returns -1 if there is none.
 int ColumnOf(const std::vector<std::string>& names,
              std::initializer_list<std::string_view> wanted) {
   const auto found = std::find_if(
@@ -87,8 +88,8 @@ bool LooksLikeTable(const std::vector<StartLine>& lines, std::size_t levels) {
   return lines.size() == 3 || !ColumnNames(lines[3].text).empty();
 }
 
-// Two layouts, both with comments after '#', distances and heights of grid points in km, liquid
-// water content in g m-3, effective radius in um, and indices from 0:
+// Reads two layouts. Both have comments after '#', distances and heights of grid points in km,
+// liquid water content in g m-3, effective radius in um, and indices from 0. The layouts are:
 // - a table whose columns have names, as AT3D's util.py, load_from_csv, reads it. The file
 //   rico32x37x26.txt of AT3D is one. Extinction is in km-1.
 // - the plain text of the file les_stcu.txt in AT3D and pyshdom, whose distances and heights are on

@@ -24,7 +24,7 @@ enum class Calendar {
 // Returns nothing for any other text.
 std::optional<Calendar> CalendarOf(std::string_view name);
 
-// Returns the name by CF.
+// Returns the calendar's name in the CF conventions.
 std::string_view NameOf(Calendar calendar);
 
 struct CalendarDate {

@@ -26,8 +26,10 @@ namespace {
 using volume::EarthPlace;
 using volume::MapProjection;
 
-// A triangle's corner is as far from the three nearest centres as they are from one another. The
-// rest is a margin for irregular cells.
+// The distance up to which a place belongs to its nearest cell, divided by the distance between
+// that cell and its third nearest neighbour. A triangle's corner is as far from the nearest centres
+// as neighbouring centres are from one another, which gives 1. The rest is a margin for irregular
+// cells.
 constexpr double kReach = 1.2;
 
 absl::Status TooWide(const std::string& how_wide) {
@@ -67,7 +69,7 @@ std::optional<EarthPlace> MeanPlace(const CellPlaces& places) {
     mean += UnitVectorOf(places, cell);
   }
   mean /= static_cast<double>(places.latitude_deg.size());
-  constexpr double kShortest = 0.3;  // that of half the Earth is 0.5
+  constexpr double kShortest = 0.3;  // for cells that cover a hemisphere, the length is 0.5
   if (!(glm::length(mean) > kShortest)) return std::nullopt;
   return EarthPlace{glm::degrees(std::atan2(mean.z, std::hypot(mean.x, mean.y))),
                     glm::degrees(std::atan2(mean.y, mean.x))};
@@ -109,8 +111,8 @@ Box BoxOf(const std::vector<glm::dvec2>& plane_m) {
   return box;
 }
 
-// Checks that the cells do not lie on one line. The line that fits them best is compared with their
-// standard deviation across it.
+// Checks that the cells do not lie on one line. The standard deviation of the cells across the line
+// that fits them best is compared with the standard deviation along it.
 absl::Status CheckArea(const std::vector<glm::dvec2>& plane_m) {
   glm::dvec2 mean_m(0.0);
   for (const glm::dvec2& at_m : plane_m) mean_m += at_m / static_cast<double>(plane_m.size());
@@ -139,7 +141,7 @@ struct Neighbours {
   double mean_m = 0.0;
   double shortest_m = 0.0;
   double longest_m = 0.0;
-  std::vector<float> reach_m;  // for each cell, how far a place may be from it
+  std::vector<float> reach_m;  // for each cell, the largest distance of a place that belongs to it
 };
 
 Neighbours MeasureNeighbours(const PointTree& tree, const std::vector<glm::dvec2>& plane_m) {
@@ -246,8 +248,8 @@ class CellRaster {
       found = any[0];
     }
     last_ = found.point;
-    // An even column refers to a cell and its eastern neighbour, so the last cell is the neighbour
-    // of the last but one.
+    // An even column refers to a cell and its eastern neighbour. The last cell has no such
+    // neighbour, so it is referred to as the neighbour of the last but one.
     const auto end = static_cast<std::uint32_t>(even_.model_columns.x - 1);
     from.south_west = std::min(found.point, end - 1);
     from.east = found.point == end ? 1.0F : 0.0F;
@@ -256,7 +258,7 @@ class CellRaster {
 
   // Adds the parts of the column to the areas of the cells that are nearest to them. Each part has
   // a place in the column with its own x and y. Places in rows would often be in line with rows of
-  // cells, such as those of a reduced Gaussian grid, and then areas were wrong by 1 %.
+  // cells, such as those of a reduced Gaussian grid, and areas would then be wrong by 1 %.
   void Measure(const glm::dvec2& centre) {
     constexpr int kParts = 9;
     constexpr float kShare = 1.0F / kParts;
@@ -273,7 +275,7 @@ class CellRaster {
   const Box box_;
   EvenColumns& even_;
   glm::dvec2 first_m_{0.0};       // centre of the south-western column
-  double farthest_square_ = 0.0;  // a place is outside if it is farther from all cells
+  double farthest_square_ = 0.0;  // in m2; a place is outside if it is farther from all cells
   std::uint32_t last_ = 0;        // the cell of the last column
 };
 

@@ -22,15 +22,18 @@ struct CellPlaces {
   double radius_m = 6'371'229.0;      // of the model's Earth
 };
 
-// Returns even columns with north up, whose model's columns are the cells in one row. Their
-// distance is the median distance between a cell and its nearest neighbour, or larger if there
-// would be more than four times as many columns as cells. A column is outside if it is farther from
-// the nearest cell than 1.2 times the distance between that cell and its third nearest neighbour.
+// Returns even columns with north up. Their `model_columns` are the cells, in one row. The distance
+// between even columns is the median distance between a cell and its nearest neighbour. It is
+// larger if there would be more than four times as many columns as cells. A column is outside if it
+// is farther from the nearest cell than 1.2 times the distance between that cell and its third
+// nearest neighbour.
 //
-// Distances are true in the middle of the domain, and elsewhere as EvenColumns::largest_scale says.
+// Distances on the map are true in the middle of the domain. Elsewhere they are too long, at most
+// by the factor EvenColumns::largest_scale.
 //
-// INVALID_ARGUMENT if a place is missing or impossible, if the cells cover no area, or if the
-// domain is wider than a hemisphere.
+// Returns INVALID_ARGUMENT if a place is missing or impossible, if the cells cover no area, or if
+// the domain is wider than a hemisphere. Also returns it for fewer than 4 or more than kMostCells
+// cells.
 absl::StatusOr<EvenColumns> MakeEvenOfCells(const CellPlaces& places);
 
 // Returns even columns of cells on a plane without a place on Earth. `plane_m` has their centres.

@@ -29,7 +29,8 @@ bool IsIn(const std::array<std::string_view, count>& list, const std::string& wo
   return std::ranges::find(list, word) != list.end();
 }
 
-// Dimensions of cells, over which a mean is the amount of a cell.
+// Returns whether the name is that of a dimension in space. A mean over such a dimension is the
+// amount of a cell.
 bool IsInSpace(const std::string& name) {
   constexpr std::array<std::string_view, 16> kNames = {
       "area", "volume", "lat", "lon", "latitude", "longitude", "rlat",  "rlon",
@@ -37,7 +38,8 @@ bool IsInSpace(const std::string& name) {
   return IsIn(kNames, name) || name.starts_with("grid_") || name.starts_with("projection_");
 }
 
-// Methods whose results are no amounts. "standard" begins a misspelt standard_deviation.
+// Returns whether the results of the method are no amounts. "standard" begins a misspelt
+// standard_deviation.
 bool GivesNoAmount(const std::string& method) {
   constexpr std::array<std::string_view, 8> kMethods = {
       "variance", "standard_deviation", "standard",      "stddev", "range",

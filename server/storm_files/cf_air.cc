@@ -52,7 +52,7 @@ absl::StatusOr<bool> IsDeviation(const netcdf::NetcdfFile& file, const CfVariabl
   return any;
 }
 
-// Takes variables of the air, one by one.
+// Finds the variables of the air and adds them to the metadata.
 class AirFinder {
  public:
   AirFinder(const netcdf::NetcdfFile& file, CfMetadata& metadata)
@@ -103,7 +103,8 @@ class AirFinder {
   const std::vector<std::string>& Deviations() const { return deviations_; }
 
  private:
-  // TakeLevels decides on the coordinate of the layers unless its standard name says what it is.
+  // Returns whether the variable is the coordinate of the layers and has no standard name.
+  // TakeLevels decides on it.
   bool IsUnnamedLevels(const CfDescription& variable) const {
     return variable.standard_name.empty() &&
            variable.name == metadata_.dimensions.axes[2].coordinate;
@@ -160,7 +161,8 @@ class AirFinder {
   std::vector<std::string> deviations_;
 };
 
-// Keeps the whole pressure if the file has both, and otherwise explains the other.
+// If the file has both the whole pressure and its deviation from a reference state, removes the
+// deviation. If it has only the deviation, adds an assumption that names the reference.
 void ChoosePressure(CfMetadata& metadata) {
   const auto deviation =
       std::ranges::find(metadata.air, AirVariable::kPressureDeviation,

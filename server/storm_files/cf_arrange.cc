@@ -58,7 +58,8 @@ bool IsUnstructured(const netcdf::NetcdfFile& file, const std::string& field,
   return latitude && longitude;
 }
 
-// Returns the direction of a dimension and its coordinate variable.
+// Returns the direction of a dimension, or nothing if it is not known. Sets the dimension's
+// coordinate variable.
 std::optional<CfDirection> FindDirection(const netcdf::NetcdfFile& file, const std::string& field,
                                          CfDimension& dimension) {
   if (file.HasVariable(dimension.name)) {
@@ -79,8 +80,8 @@ std::optional<CfDirection> FindDirection(const netcdf::NetcdfFile& file, const s
   return DirectionOf({dimension.name, "", "", "", "", ""});
 }
 
-// Returns a variable of two dimensions that are among those of the field and have no direction yet,
-// and that is a longitude.
+// Returns the two dimensions of a longitude, in the file's order, if both are in `among`: the
+// field's dimensions whose direction is not known yet.
 std::optional<Names> DimensionsOfLongitude(const netcdf::NetcdfFile& file, const Names& among) {
   for (const std::string& name : file.Variables()) {
     const CfDescription described = DescribeCf(file, name);

@@ -26,7 +26,7 @@ struct CfVariable {
   std::array<int, 3> more = {0, 0, 0};
   // The index along z of the first value that is read.
   std::size_t first_level = 0;
-  // True if the variable is in the run's file of heights, which is another one than the fields'.
+  // True if the variable is in the run's file of heights, which is not the file of the fields.
   bool of_heights_file = false;
 };
 

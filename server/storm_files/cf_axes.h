@@ -27,7 +27,7 @@ struct CfAxis {
   bool reversed = false;  // true if the file's axis runs to the west, to the south or downwards
   CfAxisUnit unit = CfAxisUnit::kMetres;
   double units_per_written = 1.0;  // metres or degrees in one unit of the file's coordinate
-  std::vector<double> faces;       // ascending, one more than cells; even but for the height axis
+  std::vector<double> faces;       // ascending, one more than cells; evenly spaced if horizontal
   std::vector<std::string> assumptions;  // sentences for the user
 
   double Middle() const { return 0.5 * (faces.front() + faces.back()); }
@@ -45,14 +45,17 @@ absl::StatusOr<CfAxis> ReadHorizontalAxis(const netcdf::NetcdfFile& file,
 // bounds, because its thickness is not known otherwise.
 absl::StatusOr<CfAxis> ReadHeightAxis(const netcdf::NetcdfFile& file, const CfDimension& dimension);
 
-// Returns the faces of the cells around two or more ascending `centres`. If possible, the cells
-// start at 0 and `centres` are exactly their centres. Otherwise each face is half-way between two
-// neighbouring centres.
+// Returns the faces of the cells around two or more ascending `centres`. Faces are evenly spaced if
+// the centres are. Otherwise the lowest face is chosen so that `centres` are exactly the cells'
+// centres, and thicknesses change little from cell to cell. The lowest face is then at 0, or half
+// the first distance below the first centre. If neither is possible, each inner face is half-way
+// between two neighbouring centres.
 std::vector<double> FacesAround(const std::vector<double>& centres);
 
-// Returns the faces from CF bounds of a coordinate, in its units: two for each cell. The array is
-// empty if there are no bounds. Bounds that are not contiguous are an error. `period` is the
-// difference that means nothing: 360 for degrees of longitude, otherwise 0.
+// Returns the faces of the cells of a coordinate from its CF bounds, in the coordinate's units.
+// There is one more face than cells. The array is empty if there are no bounds. Bounds that are not
+// contiguous are an error. Values that differ by `period` are the same place: it is 360 for degrees
+// of longitude, otherwise 0.
 absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
                                                const std::string& coordinate, std::size_t cells,
                                                double period);

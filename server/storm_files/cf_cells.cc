@@ -21,7 +21,7 @@ bool IsNamed(std::string_view text, std::initializer_list<std::string_view> list
   return std::ranges::find(list, text) != list.end();
 }
 
-// A variable with a coordinate of each cell, in degrees times `scale`.
+// A variable with a coordinate of each cell. Its values times `scale` are degrees.
 struct CellCoordinate {
   std::string name;
   double scale = 1.0;
@@ -47,8 +47,8 @@ bool HoldsPlaces(const CfDescription& described, CfDirection direction) {
          DirectionOf({"", "", described.units, "", ""}) == direction;
 }
 
-// Returns the variable with a coordinate of exactly the cells. Variables that the field lists come
-// first.
+// Returns the variable with a coordinate of exactly the cells. Variables that the field lists are
+// preferred.
 std::optional<CellCoordinate> FindCoordinate(const netcdf::NetcdfFile& file,
                                              const std::string& field, const std::string& dimension,
                                              CfDirection direction) {

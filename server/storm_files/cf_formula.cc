@@ -62,8 +62,9 @@ struct SurfaceValues {
 // model is about half a step above the ground.
 bool BeginsFarAbove(double above_ground, double step) { return above_ground > step; }
 
-// Keeps the faces of terms only if all of them have faces. Otherwise reports that faces are
-// half-way between layers, which a single layer does not have.
+// Keeps the faces of the terms only if all terms have faces. Otherwise removes them, and adds the
+// assumption that faces are half-way between the middles of layers. Returns an error for a single
+// layer, which has no such faces.
 absl::Status AgreeOnFaces(const netcdf::NetcdfFile& file, const CfParametric& coordinate,
                           const std::vector<CfTermValues*>& terms,
                           std::vector<std::string>& assumptions) {
@@ -130,7 +131,8 @@ absl::StatusOr<CfHeights> ReadHybridHeight(const netcdf::NetcdfFile& file,
   return LinearHeights(file, coordinate, std::move(a), {{std::move(b), *terrain}}, assumptions);
 }
 
-// Returns the only value of a variable in m.
+// Returns the only value of a variable, in m. Returns nothing if the variable has several values or
+// a value that is not above 0.
 std::optional<double> HeightOfTop(const netcdf::NetcdfFile& file, const std::string& name) {
   if (!file.HasVariable(name)) return std::nullopt;
   const auto values = file.ReadDoubles(name);
@@ -320,7 +322,8 @@ absl::StatusOr<CfHeights> ReadParametric(const netcdf::NetcdfFile& file,
                    ", whose formula is not read here"));
 }
 
-// Returns whether the file has the coordinates of CM1's scalars and faces.
+// Returns whether CM1 wrote the file: it has CM1's version, or the coordinates of CM1's scalars and
+// faces.
 bool IsCm1(const netcdf::NetcdfFile& file) {
   for (const char* attribute : {"CM1 version", "CM1_version"}) {
     if (file.TextAttribute("", attribute).has_value()) return true;

@@ -17,7 +17,7 @@ namespace {
 
 // The gravity by which geopotential is divided to get geopotential height.
 constexpr double kGeopotentialGravity_m_per_s2 = 9.80665;
-// Two numbers of levels that differ by less are equal.
+// Two numbers of levels are equal if they differ by less than this.
 constexpr double kSameNumber = 1e-6;
 
 // The kind of heights in an array, by its name.
@@ -85,7 +85,7 @@ std::vector<double> NumbersOf(const netcdf::NetcdfFile& file, const CfDimension&
 }
 
 // Returns the numbers of the half levels around layers: those of the coordinate's bounds, or k and
-// k + 1 around the level k. Layers that are numbered k + 1/2 are in the middle.
+// k + 1 around the level k. A layer that is numbered k + 1/2 is also between k and k + 1.
 std::vector<double> HalfLevelsAround(const netcdf::NetcdfFile& file, const CfDimension& layers,
                                      const std::vector<double>& numbers) {
   const auto bounds = ReadBounds(file, layers.coordinate, layers.length, 0.0);

@@ -31,8 +31,8 @@ bool CountsLevels(const CfDescription& coordinate);
 
 struct CfHeightArray {
   std::optional<CfHeights> heights;      // absent if no array gives the heights of the layers
-  absl::Status unread;                   // why an array does not, if one is there
-  std::vector<std::string> assumptions;  // each one sentence, on `heights`
+  absl::Status unread;                   // why the first unsuitable array cannot be used, if any
+  std::vector<std::string> assumptions;  // sentences about `heights`
 };
 
 // Returns the heights of the layers by an array on the fields' columns. Half levels are preferred

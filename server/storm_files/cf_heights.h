@@ -17,7 +17,7 @@ namespace thunderhead::storm_files {
 // A variable with a value for each column: terrain, or surface pressure.
 struct CfColumnValue {
   CfVariable variable;
-  double scale = 1.0;  // to m or Pa
+  double scale = 1.0;  // factor from the variable's unit to m or Pa
 };
 
 enum class CfHeightKind {
@@ -66,8 +66,9 @@ absl::StatusOr<CfHeights> ReadCfHeights(const netcdf::NetcdfFile& file,
                                         const std::optional<CfColumnValue>& terrain,
                                         std::vector<std::string>& assumptions);
 
-// Returns the terrain height: the variable with the standard name surface_altitude, the
-// geopotential at the surface, or one that models name so. `dimensions` may lack z.
+// Returns the terrain height. This is the variable with the standard name surface_altitude, the
+// geopotential at the surface, or a variable with a name that models use for it. `dimensions` may
+// lack z.
 std::optional<CfColumnValue> FindTerrain(const netcdf::NetcdfFile& file,
                                          const CfDimensions& dimensions,
                                          std::vector<std::string>& assumptions);

@@ -308,7 +308,8 @@ absl::Status CheckArrayAgainstTerrain(const netcdf::NetcdfFile& file, CfMetadata
   return absl::OkStatus();
 }
 
-// Returns the only group with fields, or the root.
+// Returns the name of the only group with fields, or an empty text for the root. Returns
+// INVALID_ARGUMENT if several groups have fields.
 absl::StatusOr<std::string> GroupWithFields(const netcdf::NetcdfFile& file) {
   const auto has_fields = [](const netcdf::NetcdfFile& group) {
     return std::ranges::any_of(Describe(group), [](const CfDescription& variable) {

@@ -59,13 +59,14 @@ void ApplyIcon(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
 
 void ApplyMpas(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
   if (!IsMpas(file) || !Has(metadata, AirVariable::kDensity)) return;
-  // Without humidity, the density counts as that of dry air.
+  // The humidity is removed, because the density then counts as that of dry air.
   std::erase_if(metadata.air,
                 [](const CfAirField& field) { return field.air.variable == AirVariable::kVapour; });
   metadata.assumptions.push_back("The air's density is that of dry air, as in MPAS.");
 }
 
-// CAM names the air of its mixing ratios in an attribute, which older versions lack.
+// CAM's mixing ratios are per kg of moist or of dry air. An attribute says which, but older
+// versions do not write it.
 void ApplyCam(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
   for (CfField& field : metadata.fields) {
     const std::string& name = field.variable.name;

@@ -1,5 +1,6 @@
 // Knowledge of models' output beyond its attributes: advice if the output lacks a needed variable,
-// and the air to which masses belong. Files are recognised by the names that a model uses.
+// and whether masses are per kg of dry or of moist air. Files are recognised by the names that a
+// model uses.
 #pragma once
 
 #include <string>
@@ -10,7 +11,7 @@
 namespace thunderhead::storm_files {
 
 // Returns what to add to this file so that the density of the air is known, for an error: "DALES
-// field dumps lack ...". Returns an empty text if the file is not known to be a model's.
+// field dumps do not have ...". Returns an empty text if the file is not known to be a model's.
 std::string AdviceOnAir(const netcdf::NetcdfFile& file);
 
 // Returns what to add so that the units of the hydrometeors are known, or an empty text.

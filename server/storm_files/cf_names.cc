@@ -126,8 +126,8 @@ bool IsOneOf(std::string_view text, std::initializer_list<std::string_view> list
   return std::ranges::find(list, text) != list.end();
 }
 
-// Returns the substance in a standard name of an amount of water, and whether the amount is a
-// fraction of moist air.
+// Returns the quantity for which a standard name of an amount of water stands. It is a
+// concentration, a fraction of moist air or a ratio to dry air.
 std::optional<CfQuantity> FromStandardName(const std::string& standard_name) {
   absl::string_view substance = standard_name;
   CfQuantity quantity;
@@ -398,7 +398,7 @@ std::optional<CfDirection> DirectionOf(const CfDescription& coordinate) {
                      "bottom_top", "hybrid", "nvertlevels", "nvertlevelsp1"})) {
     return CfDirection::kZ;
   }
-  // CDO numbers equal names: "height_2". ICON and COSMO call their levels so.
+  // CDO appends numbers to equal names, as in "height_2". ICON and COSMO call their levels so.
   for (const char* prefix : {"height_", "lev_", "level", "generalvertical", "plev", "z_"}) {
     if (absl::StartsWith(name, prefix)) return CfDirection::kZ;
   }
@@ -421,7 +421,8 @@ std::optional<double> DegreesIn(std::string_view units, CfDirection direction) {
   if (IsNorthwards(units)) return direction == CfDirection::kY ? std::optional(1.0) : std::nullopt;
   const std::optional<UnitConversion> conversion = ConversionOf(units, "degree");
   if (!conversion.has_value() || conversion->offset != 0.0) return std::nullopt;
-  // UDUNITS takes "degrees_west" for degrees, but not for their opposite.
+  // UDUNITS treats "degrees_west" as plain degrees, without the opposite sign, so such units are
+  // refused.
   return units.find('_') != std::string_view::npos || units.find("true") != std::string_view::npos
              ? std::nullopt
              : std::optional(conversion->scale);

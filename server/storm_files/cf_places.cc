@@ -52,8 +52,8 @@ struct PlaceArrays {
   }
 };
 
-// Returns the name of the variable with latitudes (or longitudes) on exactly y and x. Variables
-// that the field lists come first.
+// Returns the variable with latitudes (or longitudes) on y and x, and perhaps on time. Variables
+// that the field lists are preferred.
 std::optional<CfVariable> FindPlaceVariable(const netcdf::NetcdfFile& file,
                                             const std::string& field, const CfDimensions& on,
                                             CfDirection direction) {
@@ -308,7 +308,7 @@ absl::StatusOr<std::optional<ColumnPlaces>> PlacesByMapping(
   return std::optional(on_map);
 }
 
-// Places columns whose place is not known.
+// Sets the distances between columns whose place on Earth is not known.
 absl::Status PlaceNowhere(const netcdf::NetcdfFile& file, const CfAxis& x, const CfAxis& y,
                           CfPlaces& places) {
   if (x.unit == CfAxisUnit::kNone) return NoCoordinate(file, x);

@@ -24,7 +24,7 @@ struct CfPlaces {
   // The columns of the storm, even in true metres. Null for an idealised run, whose own columns are
   // even.
   std::shared_ptr<const EvenColumns> even;
-  // The columns by their latitudes and longitudes, if these have a time. Otherwise null.
+  // The columns by their latitudes and longitudes, if these depend on time. Otherwise null.
   std::shared_ptr<const ColumnPlaces> listed;
   std::vector<std::string> assumptions;  // sentences for the user
 };

@@ -102,7 +102,7 @@ absl::StatusOr<std::vector<float>> CfSource::ReadColumns(const CfColumnValue& va
   return values;
 }
 
-// Returns the faces of the layers of an array of heights.
+// Returns the heights of the layers' faces from an array of heights.
 absl::StatusOr<std::vector<float>> CfSource::FacesOfArray(
     const std::vector<float>& terrain_m) const {
   const CfHeights& heights = metadata_.heights;

@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kSecondsPerDay = 86'400.0;
 
-// Times are rounded to it, because a number of days is seldom exact.
+// Times are rounded to a millisecond, because a number of days is seldom exact.
 constexpr double kMillisecond_s = 1e-3;
 
 // Returns whether a unit of time is a month or a year. UDUNITS gives them their mean lengths.

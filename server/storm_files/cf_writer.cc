@@ -18,8 +18,8 @@ struct AxisVariables {
   int bounds = 0;
 };
 
-// Defines an axis. A single cell has no size without bounds. `two` is the dimension of the two
-// bounds of a cell.
+// Defines an axis with bounds, because a single cell has no size without them. `two` is the
+// dimension of the two bounds of a cell.
 AxisVariables Axis(netcdf::NetcdfWriter& file, const char* name, int dimension, int two,
                    const char* direction, const char* standard_name) {
   const std::string bounds = absl::StrCat(name, "_bounds");

@@ -22,6 +22,7 @@ struct CfCloud {
 };
 
 // Writes the variable `lwc` (kg m-3) or `extinction` (m-1) on z, y, x in metres, compressed.
+// Returns UNAVAILABLE if the file cannot be encoded or written.
 absl::Status WriteCfCloud(const CfCloud& cloud, const std::string& path);
 
 }  // namespace thunderhead::storm_files

@@ -128,7 +128,7 @@ absl::Status ScanRow(const CloudRow& row, const CloudHeader& header, const Numbe
   return absl::OkStatus();
 }
 
-// A type of particles, and what it is.
+// A type of particles, and the hydrometeor that it is.
 struct CloudKind {
   int type = 0;
   Hydrometeor hydrometeor = Hydrometeor::kCloud;
@@ -174,8 +174,9 @@ double LayerTemperature_K(const CloudHeader& header, std::size_t layer) {
   return header.heights_are_faces ? 0.5 * (each_K[layer] + each_K[layer + 1]) : each_K[layer];
 }
 
-// Finds out what a type of particles is, and says why. The file has only the number of the type. No
-// water is liquid below -40 C, and no ice lasts above 0 C. Returns nothing if that does not decide.
+// Returns the hydrometeor that a type of particles is, by the temperatures at which it occurs. The
+// file has only the number of the type. No water is liquid below -40 C, and no ice lasts above 0 C.
+// Returns nothing if that does not decide.
 std::optional<Hydrometeor> KindByTemperature(const CloudHeader& header, const TypeLevels& levels,
                                              int first_index) {
   constexpr double kAllIce_K = 233.15;

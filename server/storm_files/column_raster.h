@@ -32,8 +32,8 @@ struct EvenGrid {
 };
 
 // Returns the place of each even column among the columns of `mesh`. Places outside of the mesh get
-// the entry of the nearest place inside. Empty if no even column is inside, or if the positions of
-// the mesh do not form a grid.
+// the entry of the nearest place inside. The result is empty if no even column is inside, or if the
+// positions of the mesh do not form a grid.
 std::vector<FromColumn> PlacesAmong(const ColumnMesh& mesh, const EvenGrid& even);
 
 // Returns the area of each column of `mesh`, as a share of `unit_m2`.

@@ -181,7 +181,8 @@ absl::StatusOr<Distances> Evener::Measure(int axis) const {
                    " are at the same place; correct their latitudes and longitudes"));
 }
 
-// Measures lengths on a map that has no edge within the domain.
+// Measures the scale of a map in the domain. Returns INVALID_ARGUMENT if an edge of the map is
+// within the domain.
 absl::Status Evener::MeasureScale(WideMap& wide) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection map, MapProjection::Open(wide.projection));
   bool is_on_map = true;
@@ -235,7 +236,7 @@ std::string Evener::TrueAtMiddle(const std::string& projection) const {
       glm::degrees(model_.PlaneAt(model_.MiddlePosition()).y / words.Number("R").value_or(1.0));
   std::string scaled = WithTrueScaleAt(projection, middle_, y_deg);
   if (scaled != projection || !IsConformal(words)) return scaled;
-  // Without a latitude of true scale, the projection has a factor.
+  // A projection without a latitude of true scale gets a scale factor.
   ProjectionWords unscaled = words;
   for (const char* const name : {"k", "k_0", "lat_ts"}) unscaled.Remove(name);
   const absl::StatusOr<MapProjection> map = MapProjection::Open(unscaled.Joined());
@@ -245,8 +246,9 @@ std::string Evener::TrueAtMiddle(const std::string& projection) const {
   return unscaled.Joined();
 }
 
-// Keeps the model's own columns, which are even in the plane of `projection`. INVALID_ARGUMENT if
-// they are not: a column would be a quarter of a column from its place.
+// Keeps the model's own columns, which are even in the plane of `projection`. Returns
+// INVALID_ARGUMENT if they are not: a column near a corner would be more than a quarter of the
+// spacing, and more than 4 m, from its place.
 absl::Status Evener::Keep(const std::string& projection, EvenColumns& even) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection map, MapProjection::Of(projection, middle_));
   even.columns = model_.Count();
@@ -320,8 +322,8 @@ std::vector<WideMap> Evener::ConformalMaps() const {
   const std::string rest = absl::StrFormat(" +lon_0=%.10g +x_0=0 +y_0=0 %s +units=m +no_defs",
                                            middle_.longitude_deg, model_.Earth());
   std::vector<std::string> projections = {StereographicAt(middle_, model_.Earth())};
-  // A cone touches the Earth between the domain's south and north (Snyder, page 107), and is not
-  // nearly a plane or a cylinder.
+  // A Lambert cone touches the Earth between the domain's south and north (Snyder, page 107). It is
+  // not used near a pole or the equator, where it is nearly a plane or a cylinder.
   constexpr double kFarthest_deg = 80.0;
   constexpr double kNearest_deg = 5.0;
   constexpr double kShare = 1.0 / 6.0;
@@ -344,7 +346,7 @@ std::vector<WideMap> Evener::ConformalMaps() const {
   return maps;
 }
 
-// Chooses the map of a domain on which no flat map has true distances everywhere. The columns stay
+// Chooses the map of a domain that is too wide for true distances on any flat map. The columns stay
 // as they are if their own map is chosen and `may_stay`.
 absl::Status Evener::ChooseWideMap(bool may_stay, EvenColumns& even) const {
   constexpr double kGoodMap = 0.2;
@@ -452,8 +454,9 @@ void Evener::ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m,
     constexpr double kLeastStep = 1.001;
     spacing_m *= std::max(std::sqrt(count.x * count.y / most), kLeastStep);
   }
-  // Around the middle of a domain with north up, the columns are then those of the model, and
-  // interpolation smooths little there.
+  // The number of columns is made even or odd like that of the model. Around the middle of a domain
+  // with north up, the columns then coincide with the model's, and interpolation smooths little
+  // there.
   even.columns = glm::ivec2(columns());
   even.columns += (even.columns + model_.Count()) % 2;
   even.dx_m = spacing_m.x;

@@ -53,20 +53,23 @@ struct EvenColumns {
   // The projection in which the columns are even, in PROJ's notation, with true scale at the
   // middle. Its y axis is the columns' y axis.
   std::string projection;
-  volume::EarthPlace middle;   // the middle of the model's domain and of the even columns
-  double reach_m = 0.0;        // distance from the middle to the farthest edge; 0 if not measured
-  double least_scale = 1.0;    // lengths on the map as a share of the true ones: the least share in
-  double largest_scale = 1.0;  // the domain, and the largest
-  double largest_error = 0.0;  // the larger deviation of these shares from 1
+  volume::EarthPlace middle;  // the middle of the model's domain and of the even columns
+  double reach_m = 0.0;       // distance from the middle to the farthest edge; 0 if not measured
+  // Lengths on the map divided by true lengths: the smallest and the largest ratio in the domain.
+  double least_scale = 1.0;
+  double largest_scale = 1.0;
+  double largest_error = 0.0;   // the larger deviation of these two ratios from 1
   glm::ivec2 model_columns{0};  // the number of the model's own columns
-  glm::dvec2 shortest_m{0.0};   // the true distances between the model's columns along its own x
-  glm::dvec2 longest_m{0.0};    // and y axes: the shortest, the longest
-  glm::dvec2 mean_m{0.0};       // and the mean
+  // The true distances between neighbouring columns of the model, along its own x and y axes.
+  glm::dvec2 shortest_m{0.0};
+  glm::dvec2 longest_m{0.0};
+  glm::dvec2 mean_m{0.0};
   double grid_north_rad = 0.0;  // the direction of the model's y axis at the middle,
                                 // counter-clockwise from true north
 
   // True if the model's columns are the cells of an unstructured grid, in one row. Then each even
-  // column has the values of the nearest cell, and `mean_m` is the distance of the nearest cells.
+  // column has the values of the nearest cell, and `mean_m` is the mean distance between a cell and
+  // its nearest neighbour.
   bool unstructured = false;
   // The places of the even columns among the model's columns, x fastest. It is empty if the model's
   // columns are even already.
@@ -96,8 +99,9 @@ struct EvenOptions {
 // - Distances on one flat map are right to 1 % up to about 1270 km from its middle. The columns of
 //   a wider domain stay on the model's map if that is conformal and its distances are right to
 //   20 %. Otherwise they are resampled to the conformal map with the smallest errors. If the domain
-//   is wider than a hemisphere, the model's map is the only one.
-// INVALID_ARGUMENT if the places are not usable, or if a domain wider than a hemisphere has no map.
+// is wider than a hemisphere, the model's map is the only one. Returns INVALID_ARGUMENT if the
+// places are not usable, or if a domain wider than a hemisphere has no map. Returns
+// RESOURCE_EXHAUSTED if there are too many columns to resample.
 absl::StatusOr<EvenColumns> MakeEven(const ColumnPlaces& places, const EvenOptions& options = {});
 
 // Returns the projection that MakeEven gives the columns, with the same errors. It takes less time,

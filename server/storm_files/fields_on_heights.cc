@@ -239,7 +239,7 @@ absl::StatusOr<std::vector<float>> TimeReader::CondensateShare() {
 absl::StatusOr<std::shared_future<void>> TimeReader::ReadAir() {
   if (!NeedsAir()) return std::async(std::launch::deferred, [] {}).share();
   THUNDERHEAD_ASSIGN_OR_RETURN(LayerState state, source_.Air());
-  // A density in the file is taken as that of the whole air.
+  // A density in the file is taken as that of the whole air, so it is not increased by condensate.
   std::vector<float> condensate;
   if (NeedsWholeAir() && !state.air_density_kg_per_m3.empty()) {
     condensate.assign(state.air_density_kg_per_m3.size(), 0.0F);

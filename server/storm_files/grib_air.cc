@@ -103,7 +103,8 @@ std::vector<float> HydrostaticInterfaces(const std::vector<float>& interface_pre
                                          const std::vector<float>& ground_m) {
   const std::size_t columns = ground_m.size();
   const std::size_t levels = virtual_temperature_K.size() / columns;
-  // The top of the model has no pressure. The highest level then reaches up to half its pressure.
+  // The pressure at the top of the model can be 0. The highest level then ends where the pressure
+  // is half of that at its bottom.
   constexpr float kLeastShare = 0.5F;
   std::vector<float> heights(interface_pressure_Pa.size());
   for (std::size_t column = 0; column < columns; ++column) {

@@ -12,9 +12,10 @@ namespace thunderhead::storm_files {
 inline constexpr double kStandardGravity_m_per_s2 = 9.80665;  // of geopotential heights
 
 // Moves the interfaces of levels below the ground to the ground, so that these levels are empty. A
-// level is below the ground if its pressure is higher, or its height lower, than that of the
-// ground. An empty `surface_pressure_Pa` or `ground_m` means that the file does not have it. If
-// `ground_m` is empty, levels below the ground become missing (NaN) instead.
+// level is below the ground if its pressure is higher than that of the ground. If the file has no
+// surface pressure, heights are compared instead. An empty `surface_pressure_Pa` or `ground_m`
+// means that the file does not have it. If `ground_m` is empty, levels below the ground become
+// missing (NaN) instead.
 void CutAtGround(const std::vector<double>& level_pressure_Pa, const std::vector<float>& height_m,
                  const std::vector<float>& surface_pressure_Pa, const std::vector<float>& ground_m,
                  std::vector<float>& interface_height_m);

@@ -7,7 +7,7 @@
 namespace thunderhead::storm_files::grib_finder {
 namespace {
 
-// Tells which fields belong to a storm.
+// Decides which fields belong to a storm.
 class StormFields {
  public:
   StormFields(const Selections& all, const Selection& wanted)

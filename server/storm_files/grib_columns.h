@@ -13,7 +13,8 @@ namespace thunderhead::storm_files {
 ColumnPlaces PlacesOf(const grib::Grid& grid);
 
 // Returns for each column the angle in radians, anticlockwise, from east to the direction of the
-// grid's x axis. It is empty if all angles are 0. INVALID_ARGUMENT if columns have no place.
+// grid's x axis. It is empty if all angles are 0. Returns INVALID_ARGUMENT if columns have no
+// place.
 absl::StatusOr<std::vector<float>> AxisAngles(const grib::Grid& grid);
 
 }  // namespace thunderhead::storm_files

@@ -1,7 +1,8 @@
-// Finds the fields of one run and member in the indexes of GRIB files. Only grib_layers.h uses it.
-// The file grib_candidates.cc has the fields of a storm, and grib_layers.cc puts those of a time
-// together. The file grib_levels.cc finds hydrometeors, the state of the air and the levels that
-// they share. The file grib_heights.cc finds heights, the ground and motion.
+// Finds the fields of one run and member in the indexes of GRIB files. Only FindGribStorms
+// (grib_layers.h) uses it. The file grib_candidates.cc has the fields of a storm, and
+// grib_layers.cc puts those of a time together. The file grib_levels.cc finds hydrometeors, the
+// state of the air and the levels that they share. The file grib_heights.cc finds heights, the
+// ground and motion.
 #pragma once
 
 #include <algorithm>
@@ -31,10 +32,10 @@ inline constexpr int kHybridHeight = 118;
 inline constexpr int kHybridPressure = 119;
 inline constexpr int kGeneralized = 150;
 
-// Returns the name of the storm's levels, "hybrid levels".
+// Returns the name of the storm's levels, such as "hybrid levels".
 std::string LevelKind(int type);
 
-// Returns the name of one level, "hybrid level 5" or "850 hPa".
+// Returns the name of one level, such as "hybrid level 5" or "850 hPa".
 std::string LevelName(int type, double value);
 
 bool IsHeight(GribKind kind);

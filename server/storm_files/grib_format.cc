@@ -21,12 +21,12 @@ class GribFormat final : public StormFormat {
   std::string_view Requirement() const override { return "GRIB2 (it has no GRIB message)"; }
 
   bool MayBegin(std::string_view start) const override {
-    // A netCDF file that was made from GRIB names it in attributes.
+    // A netCDF file that was made from a GRIB file may have the word GRIB in its attributes.
     if (netcdf::NetcdfFile::BeginsLikeNetcdf(start)) return false;
     return grib::BeginsLikeGrib(start) || grib::BeginsCompressed(start);
   }
 
-  // The listing of a compressed file has offsets in the plain one.
+  // Does not check a compressed file, because its listing has offsets in the decompressed file.
   absl::Status CheckNeighbours(const std::string& path, std::string_view start,
                                std::uint64_t size_bytes) const override {
     if (!grib::BeginsLikeGrib(start)) return absl::OkStatus();

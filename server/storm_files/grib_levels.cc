@@ -48,7 +48,8 @@ absl::Status Finder::CheckOtherGrids(GribKind kind) const {
   return absl::OkStatus();
 }
 
-// Adds temperature, humidity and, on model levels that need it, pressure to `needed`.
+// Adds temperature and, if the file has it, humidity to `needed`. Returns an error if there is no
+// temperature.
 absl::Status Finder::FindState(absl::Time time, std::vector<Found>& needed) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Found temperature, LevelsOf(GribKind::kTemperature, time));
   if (temperature.levels.empty()) {

@@ -35,7 +35,8 @@ constexpr GribMeaning Number(Hydrometeor hydrometeor) {
 constexpr GribMeaning Only(GribKind kind) { return {.kind = kind}; }
 
 // Sources: WMO code table 4.2, version 30, and for the names NCEP's GRIB2 tables, DWD's and ECMWF's
-// parameter databases. If several rows are one hydrometeor, the first that a file has is used.
+// parameter databases. If a file has several parameters of one hydrometeor, the one on the most
+// levels is used (grib_levels.cc).
 constexpr std::array kRows = {
     Row{{0, 1, 22}, Ratio(Hydrometeor::kCloud), "CLMR", "QC", nullptr},
     Row{{0, 1, 83}, Specific(Hydrometeor::kCloud), "SPCLW", "CLWC", "clwc"},

@@ -51,8 +51,9 @@ struct GribMeaning {
 
 GribMeaning MeaningOf(const grib::Parameter& parameter);
 
-// Returns the name that the centre itself uses, e.g. "CLMR" at NCEP or "QC" at DWD, otherwise the
-// numbers, e.g. "0/1/22".
+// Returns a parameter's name: NCEP's at NCEP, e.g. "CLMR", and DWD's at centres that use its
+// models, e.g. "QC". At other centres it is ECMWF's name or, if there is none, NCEP's. Returns the
+// numbers of an unknown parameter, e.g. "0/1/22".
 std::string GribNameOf(const grib::Parameter& parameter, int centre);
 
 // Returns the name of a kind in a sentence: "temperature (0/0/0)".

@@ -1,4 +1,4 @@
-// Tells to which time of which storm a GRIB file belongs. Centres that write one file for each
+// Finds out to which time of which storm a GRIB file belongs. Centres that write one file for each
 // field and level spread a time over hundreds of files.
 #pragma once
 

@@ -58,8 +58,8 @@ class Composer {
 
   bool Has(const std::string& name) const { return attributes_.contains(name); }
 
-  // Return an attribute. A missing or wrong one is a problem, and they then return a value that is
-  // not used.
+  // The functions from here to Positive return an attribute. If the attribute is missing or wrong,
+  // they record a problem, and their result is not used.
   std::vector<double> Numbers(const std::string& name) {
     const auto found = attributes_.find(name);
     if (found == attributes_.end()) {

@@ -58,9 +58,9 @@ struct MappedGrid {
 };
 
 // Returns the projection that the attributes of a grid mapping variable describe. The attribute
-// crs_wkt, or GDAL's spatial_ref, is used only if there is no grid_mapping_name. INVALID_ARGUMENT
-// if an attribute is missing or wrong, or if the mapping is not supported; the error names the
-// attribute. The caller adds the names of the file and the variable.
+// crs_wkt, or GDAL's spatial_ref, is used only if there is no grid_mapping_name. Returns
+// INVALID_ARGUMENT, which names the attribute, if an attribute is missing or wrong, or if the
+// mapping is not supported. The caller adds the names of the file and the variable.
 absl::StatusOr<GridMapping> ReadGridMapping(const Attributes& attributes, const MappedGrid& grid);
 
 // Returns the figure of the Earth that the attributes of a grid mapping variable give, in PROJ's

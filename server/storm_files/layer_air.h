@@ -24,9 +24,10 @@ void GeopotentialToHeight(const std::vector<float>& base, std::vector<float>& ge
 // Returns the heights of the interfaces between layers whose middles are known. An interface is
 // half-way between two middles. The lowest is the ground if `ground_m` is not empty, and otherwise
 // as far below the lowest middle as the next interface is above it. The highest is as far above the
-// highest middle as the next interface is below it. A ground that is missing, or not below the
-// lowest middle, is not used. Missing middles give missing interfaces. The first present middle
-// above missing ones is the lowest. A single layer needs the ground.
+// highest middle as the next interface is below it. A ground is not used if it is missing, not
+// below the lowest middle, or farther below it than 1.5 times the distance to the next middle.
+// Missing middles give missing interfaces. The first present middle above missing ones is the
+// lowest. A single layer needs the ground.
 std::vector<float> InterfacesBetween(const std::vector<float>& middles_m,
                                      const std::vector<float>& ground_m, int levels,
                                      std::size_t columns);

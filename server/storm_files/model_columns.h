@@ -26,7 +26,7 @@ double ShortDistance_m(const volume::EarthPlace& a, const volume::EarthPlace& b,
 // from column to column.
 class ModelColumns {
  public:
-  // Checks the places. INVALID_ARGUMENT if they are not usable.
+  // Checks the places. Returns INVALID_ARGUMENT if they are not usable.
   static absl::StatusOr<ModelColumns> Of(const ColumnPlaces& places);
 
   const glm::ivec2& Count() const { return places_.columns; }

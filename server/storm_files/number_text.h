@@ -26,7 +26,8 @@ std::vector<double> LeadingNumbers(std::string_view line);
 // line.
 class NumberText {
  public:
-  // A word that begins with one of the characters `comments` ends its line.
+  // A comment begins with one of the characters `comments` anywhere on a line, and ends with the
+  // line.
   NumberText(std::shared_ptr<const base::ByteSource> bytes, std::string_view comments);
 
   // Goes to the next line that is neither blank nor only a comment. Returns false at the end.

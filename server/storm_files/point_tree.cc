@@ -7,7 +7,7 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// Fewer points are not sorted, but searched one by one.
+// Up to this many points are not sorted, but searched one by one.
 constexpr std::size_t kLeaf = 8;
 
 }  // namespace

@@ -19,8 +19,8 @@ struct ColumnWindow {
 };
 
 struct RecordPart {
-  // The whole domain, with all of its columns. The conversion is implicit, because a record's index
-  // is what most callers have.
+  // Makes the part that is the whole domain of record `index`. The conversion is implicit, because
+  // most callers have only the index of a record.
   RecordPart(std::size_t index = 0) : record(index) {}
 
   std::size_t record;

@@ -25,7 +25,7 @@ double ReferenceAtmosphere::Pressure_Pa(double height_m) const {
   }
   const double depth = kGravity_m_per_s2 * height_m / (kGas_J_per_kg_K * sea_level_K);
   if (lapse_K == 0.0) return sea_level_Pa * std::exp(-depth);
-  // The height has an end, where the temperature would be zero.
+  // Above the height at which the temperature would be 0 K, the pressure stays the same.
   const double root = std::sqrt(std::max(0.0, 1.0 - 2.0 * lapse_K * depth / sea_level_K));
   return sea_level_Pa * std::exp(-sea_level_K / lapse_K * (1.0 - root));
 }

@@ -11,12 +11,13 @@
 namespace thunderhead::storm_files {
 
 struct ReferenceAtmosphere {
-  std::string variable;         // that has the attributes
+  std::string variable;         // the variable that has the attributes
   double sea_level_Pa = 1e5;    // p0sl
   double sea_level_K = 288.15;  // t0sl
-  // Temperature falls by this for each unit of the logarithm of pressure (dt0lp, irefatm 1).
+  // The decrease of temperature upwards for each unit of the logarithm of pressure (dt0lp, irefatm
+  // 1).
   double lapse_K = 42.0;
-  // Temperature approaches sea_level_K - excess_K upwards, with this scale (irefatm 2).
+  // True if temperature approaches sea_level_K - excess_K exponentially upwards (irefatm 2).
   bool exponential = false;
   double excess_K = 75.0;          // delta_t
   double scale_height_m = 10'000;  // h_scal

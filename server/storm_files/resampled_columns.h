@@ -13,8 +13,9 @@ namespace thunderhead::storm_files {
 // inside.
 enum class Beyond { kZero, kNearest };
 
-// The functions below need resampled columns. `values` has a value for each of the model's columns,
-// x fastest, or several levels of them.
+// Resampled and NearestColumn need columns that are resampled (EvenColumns::Resampled). Unless a
+// comment says otherwise, `values` has a value for each of the model's columns, x fastest, or
+// several levels of them.
 
 // Returns the values at the even columns, interpolated bilinearly between the model's columns.
 std::vector<float> Resampled(const EvenColumns& even, const std::vector<float>& values,

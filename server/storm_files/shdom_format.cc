@@ -55,7 +55,7 @@ absl::StatusOr<CloudHeader> ReadParticleHeader(NumberText& text) {
   return header;
 }
 
-// Reads past a phase function or, of a polarized file, one of its six series.
+// Skips a phase function or, of a polarized file, one of its six series.
 absl::Status SkipPhaseFunction(NumberText& text, bool is_polarized) {
   THUNDERHEAD_RETURN_IF_ERROR(text.NeedLine("a phase function"));
   if (is_polarized) {
@@ -156,15 +156,15 @@ bool LooksLikePropertyFile(const std::vector<StartLine>& lines) {
          (lines.size() == 2 || lines[2].is_cut || lines[2].numbers.size() >= kValues);
 }
 
-// The layouts, all in km, g m-3 and um, with indices from 1:
+// Reads two kinds of layouts. All are in km, g m-3 and um, with indices from 1:
 // - Particle files of types 2 and 3 are documented in SHDOM's propgen.f90, whose heights are those
 //   of grid points. The I3RC model's PhysicalPropertiesToDomain documents types 1 to 3, and has one
 //   height more, those of the faces of layers. AT3D (util.py, to_2parameter_lwc_file) writes
 //   type 2.
-// - Property files are documented in SHDOM's shdom.txt, "Property file format": extinction only
-// (E),
-//   tabulated phase functions (T), the same polarized (P), and the standard format. Extinction is
-//   in the inverse unit of the distances, which propgen.f90 writes in km.
+// - Property files are documented in SHDOM's shdom.txt, "Property file format". They have only
+//   extinction (E), tabulated phase functions (T), the same for polarized light (P), or the
+//   standard format. Extinction is in the inverse unit of the distances, which propgen.f90 writes
+//   in km.
 // Numbers are read as by Fortran: they may continue on further lines of the header, and text after
 // the numbers of a line is ignored.
 class ShdomFormat final : public StormFormat {

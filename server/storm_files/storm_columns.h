@@ -1,6 +1,6 @@
 // The columns of a storm's regular grid, and the values of a source's columns at them. Values are
-// resampled if the source's columns are not even in true metres, and averaged over blocks if a
-// stride is wanted.
+// resampled if the source's columns are not even in true metres, and averaged over blocks if the
+// stride is above 1.
 #pragma once
 
 #include <cstddef>

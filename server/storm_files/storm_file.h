@@ -34,8 +34,8 @@ class RecordReader {
 
   // Reads a part of a record. `grid` is the storm's height grid. If it is absent, the reader
   // chooses a grid from this part. A format whose heights are the same at all times can ignore
-  // `grid`. The fields lie where they are in the whole storm. INVALID_ARGUMENT if the storm has no
-  // such part.
+  // `grid`. The fields lie where they are in the whole storm. Returns INVALID_ARGUMENT if the storm
+  // has no such part.
   virtual absl::StatusOr<volume::HydrometeorFields> Read(
       const RecordPart& part, const std::optional<VerticalGrid>& grid,
       const ReadCheckpoint& checkpoint) const = 0;
@@ -79,7 +79,8 @@ struct StormFile {
   std::string run;                           // text that is the same for all files of one run, and
                                              // different for other runs
   std::optional<absl::Time> run_start;       // when the model run began, if the file says so
-  // The calendar of the dates of `times` and `run_start`. Times between them are counted in it.
+  // The calendar of the dates of `times` and `run_start`. Durations between them are counted in
+  // this calendar.
   Calendar calendar = Calendar::kGregorian;
   std::optional<double> latitude_deg;  // latitude of the middle of the domain
   std::optional<double> longitude_deg;

@@ -76,13 +76,13 @@ class StormFormat {
   virtual std::string_view Requirement() const = 0;
 
   // Returns whether a file that begins with these bytes may have this format. A file that no format
-  // may read is refused before a process is started for it. By default a file may be netCDF, which
-  // is checked elsewhere.
+  // may read is refused before a process is started for it. By default returns false.
+  // StormFormats::CheckStart also accepts a netCDF file for which all formats return false.
   virtual bool MayBegin(std::string_view start) const;
 
   // Checks a file of `size_bytes` bytes, which begins with `start`, against other files of its
-  // folder. Returns an error if they show that it is not whole. It is called where files may be
-  // opened.
+  // folder. Returns an error if they show that it is not whole. It is called in a process that may
+  // open files.
   virtual absl::Status CheckNeighbours(const std::string& /*path*/, std::string_view /*start*/,
                                        std::uint64_t /*size_bytes*/) const {
     return absl::OkStatus();
@@ -142,9 +142,10 @@ class StormFormats {
   absl::StatusOr<StormFile> Describe(const std::string& path) const;
 
   // Describes several files, each separately, in the order of `paths`. This is faster than to
-  // describe small files one after the other. In another process, files that need longer than
-  // `patience` together, or kLongestDescription alone, are given up. If `patience` is shorter, or
-  // if there are several files, such a file gets ABORTED: describe it alone and with more patience.
+  // describe small files one after the other. In another process, the files together may take
+  // `patience`, but at most kLongestDescription. If they take longer, each file that is not
+  // described gets ABORTED: describe it alone and with more patience. If a single file takes
+  // kLongestDescription, the error says that its reader took too long.
   std::vector<absl::StatusOr<StormFile>> DescribeEach(
       const std::vector<std::string>& paths,
       std::chrono::milliseconds patience = kLongestDescription) const;

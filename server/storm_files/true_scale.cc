@@ -18,7 +18,7 @@ namespace {
 // The latitude in radians beyond which a Lambert projection has no scale.
 constexpr double kPole = glm::half_pi<double>() - 1e-6;
 
-// The eccentricity of the Earth in a projection's text, 0 for a sphere.
+// Returns the eccentricity of the Earth in a projection's text, or 0 for a sphere.
 double EccentricityOf(const std::string& projection) {
   const absl::StatusOr<volume::MapProjection> map = volume::MapProjection::Open(projection);
   const double inverse = map.ok() ? map->Figure().inverse_flattening : 0.0;

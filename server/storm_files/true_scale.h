@@ -17,7 +17,8 @@ class ProjectionWords {
  public:
   explicit ProjectionWords(std::string_view text);
 
-  // Returns a parameter's text without the plus sign, or "" if it is missing.
+  // Returns the text of a parameter's value. It is empty if the parameter is missing or has no
+  // value.
   std::string Text(std::string_view name) const;
   std::optional<double> Number(std::string_view name) const;
   bool Has(std::string_view name) const;

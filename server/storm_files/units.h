@@ -10,7 +10,8 @@
 
 namespace thunderhead::storm_files {
 
-// Loads the database of units. Later calls do nothing. FAILED_PRECONDITION if it cannot be read.
+// Loads the database of units. Later calls do nothing. Returns FAILED_PRECONDITION if the database
+// cannot be read.
 absl::Status LoadUnits();
 
 // A value in the wanted unit is `scale` times the value in the file, plus `offset`.

@@ -9,8 +9,8 @@
 
 namespace thunderhead::storm_files {
 
-// No cloud of a storm is higher. Models reach up to 80 km, and a grid up to there would have cells
-// that are several times as thick as the layers of clouds.
+// No cloud of a storm is higher than this. Models reach up to 80 km, and a grid up to there would
+// have cells that are several times as thick as the layers of clouds.
 inline constexpr double kHighestCloud_m = 30'000.0;
 
 struct VerticalGrid {
@@ -31,9 +31,10 @@ struct Layers {
 };
 
 // Returns a grid that reaches from the lowest to the highest interface of `columns` columns, with a
-// small margin above. It ends at `highest_m` if the interfaces begin below half of this height. Its
-// cells are as thin as the thinnest level (mean over columns), but there are at most 1.25 times as
-// many cells as levels. VerticalGrid::cells is zero if all layers are missing.
+// small margin above. It ends at `highest_m` if the interfaces reach above this height and begin
+// below half of it. Its cells are as thin as the thinnest level (mean over columns), but there are
+// at most 1.25 times as many cells as levels. VerticalGrid::cells is zero if all layers are
+// missing.
 VerticalGrid ChooseVerticalGrid(const std::vector<float>& interface_height_m, int levels,
                                 std::size_t columns, double highest_m = kHighestCloud_m);
 

@@ -70,10 +70,9 @@ std::vector<glm::dvec2> MeanWinds(const std::vector<float>& u_m_per_s,
 glm::dvec2 SteeringWind_m_per_s(const std::vector<glm::dvec2>& winds,
                                 const std::vector<double>& interface_height_m);
 
-// Returns the wind difference between two heights of the fields. The heights are the mean height of
-// frozen hydrometeors and, subtracted, the mean height of cloud water. `winds` has one value for
-// each level, and `interface_height_m` one height more. Returns 0 if the fields have no ice or no
-// cloud water.
+// Returns the wind at the mean height of the frozen hydrometeors, minus the wind at the mean height
+// of cloud water. Both heights are weighted by mass. `winds` has one value for each level, and
+// `interface_height_m` one height more. Returns 0 if the fields have no ice or no cloud water.
 glm::dvec2 Shear_m_per_s(const volume::HydrometeorFields& fields,
                          const std::vector<glm::dvec2>& winds,
                          const std::vector<double>& interface_height_m);

@@ -20,10 +20,10 @@ struct WrfColumnNames {
 };
 
 // Reads the places of `columns` columns at a record. The variables may lack the time. If the places
-// are evenly spaced in the projection, they are given by it, with the step that the places have.
-// The attributes DX and DY are not used, because they stay as they are if a program keeps only
-// every second column. Returns nothing if the file does not have one place a column, or if the
-// domain is so small that places stored as floats do not give its size.
+// are evenly spaced in the projection, returns them as even steps in its plane. The steps are
+// measured between the places. The attributes DX and DY are not used, because they stay as they are
+// if a program keeps only every second column. Returns nothing if the file does not have one place
+// for each column, or if the domain is so small that places stored as floats do not give its size.
 absl::StatusOr<std::optional<ColumnPlaces>> ReadWrfColumns(const netcdf::NetcdfFile& file,
                                                            const WrfColumnNames& names,
                                                            const glm::ivec2& columns,

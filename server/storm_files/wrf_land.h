@@ -20,8 +20,8 @@ struct WrfLand {
   std::string snow_depth;  // variable with the depth in m, used if there is no share
 };
 
-// Skips land use of an unknown scheme, and variables of unexpected shape or units. The variables
-// may have no time.
+// Returns the land-cover variables of the file. Skips land use of an unknown scheme, and variables
+// of unexpected shape or units. The variables may have no time.
 WrfLand FindLand(const netcdf::NetcdfFile& file, const WrfLayout& layout);
 
 }  // namespace thunderhead::storm_files

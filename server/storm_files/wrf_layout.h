@@ -46,7 +46,8 @@ struct WrfLayout {
   std::vector<std::size_t> Interfaces() const;
 };
 
-// Finds the layout of an open file. INVALID_ARGUMENT names a dimension that is missing.
+// Finds the layout of an open file. Returns INVALID_ARGUMENT, which names the dimension, if one is
+// missing.
 absl::StatusOr<WrfLayout> FindWrfLayout(const netcdf::NetcdfFile& file);
 
 // Says whether a variable may change with time.

@@ -80,7 +80,8 @@ absl::Status CheckSpacing(const netcdf::NetcdfFile& file, const WrfMetadata& met
       "and no latitudes and longitudes (XLAT, XLONG) give the distances; add one of them"));
 }
 
-// A variable that another program writes in place of WRF's own, and its unit in SI units.
+// A variable that another program writes in place of WRF's own. Its values times `scale`, plus
+// `offset`, are in SI units.
 struct Alternative {
   const char* variable;
   const WrfUnit& unit;
@@ -381,8 +382,8 @@ absl::Status ReadProjections(const netcdf::NetcdfFile& file, WrfMetadata& metada
   return absl::OkStatus();
 }
 
-// Makes true distances of DX and DY, which are lengths on the model's map, without the places of
-// columns.
+// Converts DX and DY, which are lengths on the model's map, to true distances by the mean map
+// factor. It is used if the places of the columns are not known.
 absl::Status DivideByMapFactor(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
   // A factor this close to 1 changes no distance noticeably.
   constexpr double kUnnoticed = 1e-3;

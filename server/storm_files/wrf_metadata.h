@@ -95,8 +95,9 @@ struct WrfMetadata {
   WrfPlace place;
   std::vector<std::string> assumptions;  // for users; each text is one sentence
 
-  // Returns the distances between columns along x and y. They are DX and DY if `even` is null or
-  // agrees with DX and DY to their accuracy, and otherwise those of `even`.
+  // Returns the distances between columns along x and y. They are DX and DY if `even_at_record` is
+  // null or agrees with DX and DY to the accuracy of places, and otherwise those of
+  // `even_at_record`.
   glm::dvec2 DistancesOf(const EvenColumns* even_at_record) const;
 
   // Returns whether another field comes from the same variable.

@@ -18,8 +18,8 @@ namespace {
 constexpr WrfUnit kNorth = {"degree_north"};
 constexpr WrfUnit kEast = {"degree_east"};
 
-// Middles that are closer than this are the same place. It is about a metre, which is the
-// precision of XLONG.
+// Middles that are closer than this are the same place. It is about 2 m, which is the precision of
+// XLONG.
 constexpr double kSamePlace_deg = 2e-5;
 
 // Returns the mean of `values`. They can be longitudes, so each is first brought to within 180

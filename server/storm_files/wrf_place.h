@@ -25,8 +25,8 @@ struct WrfPlace {
 };
 
 // Reads the place from XLAT and XLONG, which may have no time. Without them it is the attributes
-// CEN_LAT and CEN_LON, if the file has the whole outermost domain. INVALID_ARGUMENT if XLAT or
-// XLONG do not have one value for each column.
+// CEN_LAT and CEN_LON, if the file has the whole outermost domain. Returns INVALID_ARGUMENT if XLAT
+// or XLONG do not have one value for each column.
 absl::StatusOr<WrfPlace> ReadWrfPlace(const netcdf::NetcdfFile& file, const WrfLayout& layout);
 
 // Returns GRID_ID, the number of the nested domain, counted from 1.

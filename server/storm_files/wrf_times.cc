@@ -158,7 +158,7 @@ absl::StatusOr<WrfTimes> ReadWrfTimes(const netcdf::NetcdfFile& file, const WrfL
   THUNDERHEAD_RETURN_IF_ERROR(CheckRecords(file.Path(), layout.records));
   WrfTimes read;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<std::string> rows, RowsOf(file));
-  // XTIME of a run without a date counts on where Times may stay at zero.
+  // In a run without a date, Times may stay at zero while XTIME counts the minutes.
   const bool no_date = std::ranges::any_of(rows, HasZeroDate);
   absl::StatusOr<std::vector<absl::Time>> times =
       rows.empty() || no_date ? CountedTimes(file, layout) : WrittenTimes(file, rows);

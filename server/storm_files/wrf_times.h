@@ -18,9 +18,8 @@ struct WrfTimes {
 };
 
 // Reads the valid times from the variable Times, otherwise from XTIME or the coordinate of time,
-// which count in their own units. Dates in the year 0 of month and day 0 are those of an idealised
-// run, which begins in year 1. DATA_LOSS if the file has no times, because its writer may not have
-// finished.
+// which count in their own units. The date 0000-00-00 is that of an idealised run, and is taken as
+// 0001-01-01. Returns DATA_LOSS if the file has no times, because its writer may not have finished.
 absl::StatusOr<WrfTimes> ReadWrfTimes(const netcdf::NetcdfFile& file, const WrfLayout& layout);
 
 }  // namespace thunderhead::storm_files

@@ -1,6 +1,6 @@
 // Reads coastlines and borders of the whole Earth from the data package GSHHG, in the binned netCDF
 // files that GMT reads (Wessel and Smith 1996, J. Geophys. Res. 101, 8741-8743). Debian's packages
-// are gmt-gshhg-low and gmt-gshhg-high. They are read only for storms whose place on Earth is
+// are gmt-gshhg-low and gmt-gshhg-high. The files are read only for storms whose place on Earth is
 // known. This code is safe to call from any thread.
 #pragma once
 
@@ -32,14 +32,15 @@ class BorderData {
   // Returns the data in `folder`, or null if the folder contains no border data.
   static std::shared_ptr<BorderData> Find(const std::string& folder);
 
-  // Returns the map of lines around a storm's grid at a time of the storm, from the coarsest data
-  // set that is as fine as the map's texels. If an equal map is still in use, returns this map.
-  // Returns null for a storm without a map projection. If the data cannot be read, returns null and
-  // logs the error.
+  // Returns the map of lines around a storm's grid at a time of the storm. The lines are from the
+  // coarsest data set that is as fine as the map's texels, or from the finest if none is. If an
+  // equal map is still in use, returns this map. Returns null for a storm without a map projection.
+  // If the data cannot be read, returns null and logs the error.
   std::shared_ptr<const volume::BorderMap> MapOf(const StormInfo& storm, std::size_t time_index,
                                                  const volume::RegularGrid& grid);
 
-  // Returns the coastlines and borders that cross the area of `grid`, in world metres.
+  // Returns the coastlines and borders in the area of `grid` and near it, in world metres. Small
+  // islands and lakes are left out. Returns an error if a data file cannot be read.
   absl::StatusOr<std::vector<volume::BorderLine>> LinesOf(const volume::MapProjection& projection,
                                                           const volume::BorderGrid& grid) const;
 

@@ -138,7 +138,9 @@ class CachedStormStore final : public StormStore,
     std::optional<Fields> result;
   };
 
-  // The functions below are called with `lock` held on mutex_ and return with it held.
+  // The functions below are called with mutex_ locked, and return with it locked. TakeFound,
+  // KeepIds, Checkpoint, ReadDue, ReadAhead, Start, End and the overrides lock it themselves.
+  // ReplacedRetryAfter does not need it.
   using Lock = std::unique_lock<std::mutex>;
   std::optional<std::size_t> PlaceOf(std::string_view id) const;
   absl::Status NoSuchStorm(std::string_view id) const;
@@ -186,7 +188,7 @@ class CachedStormStore final : public StormStore,
   void TakeId(std::size_t place);      // records the id of the storm at `place` as its own
   void ReleaseIds(std::size_t place);  // lets other storms take the ids of that place
 
-  // Returns the delay after which a file that has just been replaced may be described.
+  // Returns the delay after which a file that has just replaced another one is probably described.
   std::chrono::milliseconds ReplacedRetryAfter() const;
   absl::Status Checkpoint(PendingRead& read, Activity& activity, double share);
   // Runs queued reads until the store ends. It is the function of a reading thread.
@@ -230,7 +232,7 @@ class CachedStormStore final : public StormStore,
   StormIds kept_ids_;       // the ids that were kept last; used by the searching thread only
   bool following_ = false;  // true if changes are reported to listener_
 
-  // These exist from Start to End.
+  // `live_` exists from Follow to End, the others from Start to End.
   std::unique_ptr<LiveCatalogue> live_;
   std::optional<base::MemoryBudget::Member> member_;
   std::vector<base::LooseThread> threads_;

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using std::chrono::duration;
 using std::chrono::steady_clock;
 
-// The time after which a read takes so long that another read may begin in parallel.
+// If a read takes longer than this, a read of another file may begin in parallel.
 constexpr std::chrono::seconds kTakesLong{5};
 
 // The interval at which the read-ahead thread checks whether a hanging storage responds again.
@@ -98,8 +98,8 @@ bool AreOfOneStorage(const storm_files::StormFile& file, const std::string& path
   return fs::path(file.path).parent_path() == fs::path(path).parent_path();
 }
 
-// Returns the first time whose file is there. The file of a deleted time cannot be read, and
-// another file may have its path. Returns 0 if all times are deleted.
+// Returns the index of the first time whose file still exists. The file of a deleted time cannot be
+// read, and another file may have its path. Returns 0 if all times are deleted.
 std::size_t FirstTimeThere(const StormInfo& storm) {
   const auto first = std::ranges::find(storm.times, false, &StormTime::deleted);
   return first == storm.times.end() ? 0 : static_cast<std::size_t>(first - storm.times.begin());
@@ -247,8 +247,7 @@ std::optional<HungRead> CachedStormStore::NoteHang(Activity& activity) const {
 }
 
 steady_clock::time_point CachedStormStore::HangsAt(const Activity& activity) const {
-  // A thread without a read cannot hang. Waiting callers check again when a read begins or makes
-  // progress.
+  // A thread without a read cannot hang. Waiting callers check again when a read begins.
   if (!activity.reads) return Now() + options_.read_deadline;
   return activity.went_on + options_.read_deadline;
 }
@@ -413,7 +412,8 @@ CachedStormStore::Fields CachedStormStore::ReadFile(Lock& lock, PendingRead& rea
 // Returns the height grid of the storm's first time that is not deleted, whichever time is read
 // first. A time's image therefore does not depend on which times were viewed before. If an earlier
 // time is added to the storm later, the grid stays the same. If the grid is not known yet, returns
-// nothing if `place` is the first time or the first time cannot be read.
+// nothing if `place` is the first time or the first time cannot be read. Returns UNAVAILABLE if
+// another file has replaced the first time's file. The lock is released while the file is read.
 absl::StatusOr<std::optional<storm_files::VerticalGrid>> CachedStormStore::VerticalGridOf(
     Lock& lock, const Place& place) {
   const std::optional<ChosenGrid>& known = storms_[place.key.storm].grid;

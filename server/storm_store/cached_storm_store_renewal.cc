@@ -203,7 +203,8 @@ StormChange CachedStormStore::Replace(std::size_t place, std::optional<Catalogue
     cache_.Remove({place, number});
     std::erase(wanted_, TimeKey{place, number});
   }
-  // Another run may have other levels, so the grid is chosen again.
+  // If the file from which the grid was chosen has been written anew, its levels may differ, so the
+  // grid is chosen again.
   const auto is_first = [&](const storm_files::StormFile& file) {
     return file.path == held.grid->path && file.version != held.grid->version;
   };

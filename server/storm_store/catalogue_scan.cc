@@ -23,7 +23,8 @@ double Seconds(CatalogueScan::Time::duration duration) {
 // Returns whether times were appended to a file since it was described. Otherwise the file was
 // written anew.
 bool GoesOn(const storm_files::StormFile& before, const storm_files::StormFile& after) {
-  // More times of one storm shift the records of the next ones.
+  // If a file has several storms, additional times of one storm shift the record numbers of the
+  // next ones.
   if (!before.others.empty() || !after.others.empty()) return false;
   return after.times.size() > before.times.size() &&
          std::ranges::equal(before.times, std::span(after.times).first(before.times.size()));
@@ -81,7 +82,8 @@ absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
   return result;
 }
 
-// Forgets the files that the scan has not seen. Returns whether there were any.
+// Forgets the files that the scan has not seen, except those whose storage hangs. Returns whether
+// any file was forgotten.
 bool CatalogueScan::ForgetUnseen() {
   const std::size_t gone = std::erase_if(known_, [this](const auto& entry) {
     const auto hangs = [&entry](const std::string& path) { return entry.first.starts_with(path); };
@@ -103,7 +105,7 @@ void CatalogueScan::EndTurn(Result& result) {
   for (const auto& [folder, waiting] : waiting_) all.insert(folder);
   turns_.KeepOnly(all);
   left_out_.Summarize(now_);
-  // Other users may cause any number of reasons.
+  // Other users can create any number of files, each with its own reason, so the set is limited.
   constexpr std::size_t kMostReported = 10'000;
   if (reported_.size() > kMostReported) reported_.clear();
 }
@@ -131,7 +133,7 @@ bool CatalogueScan::Answers(const std::string& path) {
 void CatalogueScan::ReportOnce(const absl::Status& why, bool is_warning) {
   const std::string reason(why.message());
   if (!reported_.insert(reason).second) return;
-  // A file of another kind, such as a read-me, is normal.
+  // A file of another kind, such as a read-me, is normal and needs no warning.
   left_out_.Add(reason, is_warning || !absl::IsInvalidArgument(why), now_);
 }
 
@@ -266,7 +268,7 @@ absl::StatusOr<storm_files::StormFile> CatalogueScan::DescribeTogether(
   return *known.description;
 }
 
-// Chooses the folders whose turn it is.
+// Chooses the folders in which this scan may describe times that are spread over several files.
 void CatalogueScan::BeginTogether() {
   constexpr std::size_t kMostServed = 16;
   FolderSet waited = std::exchange(waiting_together_, {});
@@ -284,7 +286,7 @@ void CatalogueScan::BeginTogether() {
 
 bool CatalogueScan::MayDescribeTogether(const std::string& folder) {
   const Time now = options_.time->Now();
-  // At least one time is described.
+  // Each scan may describe at least one such time.
   const bool is_certain =
       had_waited_together_ ? folder == first_together_ : !together_ends_.has_value();
   if (!together_ends_.has_value()) together_ends_ = now + options_.turn;
@@ -365,7 +367,8 @@ bool CatalogueScan::MustOpen(const Known& known) const {
 void CatalogueScan::Take(const std::string& path, absl::StatusOr<storm_files::StormFile> file,
                          Known& known) {
   known.tried_at = now_;
-  // The file was being written while it was read, so its description is out of date.
+  // If the stamp has changed, the file was written while it was read, and its description is out of
+  // date.
   if (StampOf(path) != known.stamp) {
     known.tried_at.reset();
     known.settled = false;
@@ -389,7 +392,7 @@ void CatalogueScan::Take(const std::string& path, absl::StatusOr<storm_files::St
   const std::string complaint(file.status().message());
   if (complaint == known.complaint) return;
   known.complaint = complaint;
-  // A file of another kind, such as a read-me, is normal.
+  // A file of another kind, such as a read-me, is normal and needs no warning.
   left_out_.Add(complaint, !absl::IsInvalidArgument(file.status()), now_);
 }
 

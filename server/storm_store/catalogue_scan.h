@@ -65,7 +65,8 @@ class CatalogueScan {
     bool changed = true;                // whether anything changed since the last Scan
     // True if files wait for the next scan, which must follow at once.
     bool is_unfinished = false;
-    // True if some of them were not tried before, so that storms may still be missing.
+    // True if some of these files were not tried yet, or only in a batch, so that storms may still
+    // be missing.
     bool has_untried = false;
   };
 
@@ -80,9 +81,10 @@ class CatalogueScan {
   // when no scan has seen a change for that time. While a file grows, its old description stays
   // valid. The same is true after another file replaced it in one step (by a rename).
   //
-  // A scan ends after a while, although files wait to be described. Folders share the time of the
-  // scans fairly, so that slow files delay only their own folder. If Scan returns an error, such as
-  // a folder that cannot be listed, the previous storms must be kept.
+  // A scan ends when its time (Options::turn) is used up, even if files still wait to be described.
+  // Folders share the time of the scans fairly, so that slow files delay only their own folder. If
+  // Scan returns an error, such as a folder that cannot be listed, the previous storms must be
+  // kept.
   absl::StatusOr<Result> Scan(Time now);
 
   // Ends the scan in progress after the file that it reads, with CANCELLED, and every later scan
@@ -112,7 +114,7 @@ class CatalogueScan {
     bool settled = false;
     std::optional<Time> tried_at;                       // when the file was last opened in its
                                                         // present state
-    int tries = 0;                                      // how often it was, without success
+    int tries = 0;                                      // number of attempts without success
     Trial trial = Trial::kBatch;                        // how it is opened next
     std::optional<storm_files::StormFile> description;  // may describe an earlier, shorter state of
                                                         // the file
@@ -130,8 +132,10 @@ class CatalogueScan {
 
   // The files of one folder that wait to be described.
   struct Waiting {
-    std::vector<std::string> untried;  // at most in a batch
-    std::vector<std::string> tried;    // alone, without success
+    // Files that were not described yet, or only in a batch that took too long.
+    std::vector<std::string> untried;
+    // Files that were described alone, without success.
+    std::vector<std::string> tried;
     std::size_t next_untried = 0;
     std::size_t next_tried = 0;
 
@@ -186,9 +190,10 @@ class CatalogueScan {
   FairFolders turns_;
   Time turn_ends_;
   std::map<std::string, Waiting, FolderOrder> waiting_;  // by folder
-  bool is_unfinished_ =
-      false;                  // whether a file must be described again at once, with more patience
-  bool has_untried_ = false;  // whether one of them was not alone
+  // Whether a file took too long and must be described again by the next scan.
+  bool is_unfinished_ = false;
+  // Whether such a file was in a batch, and must be described alone.
+  bool has_untried_ = false;
   // Folders with times that are spread over several files. Those in waiting_together_ wait for the
   // next scan. Those in served_together_ waited for this scan, which serves them while time
   // remains. It serves first_together_ in any case.
@@ -196,7 +201,9 @@ class CatalogueScan {
   FolderSet served_together_;
   std::string first_together_;
   bool had_waited_together_ = false;
-  std::optional<Time> together_ends_;  // once the scan has described such a time
+  // When the scan stops to describe times that are spread over several files. It is set when the
+  // scan comes to the first of them.
+  std::optional<Time> together_ends_;
   std::uint64_t scans_ = 0;
   std::uint64_t versions_ = 0;
   bool changed_ = true;

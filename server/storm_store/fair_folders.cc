@@ -9,15 +9,15 @@
 namespace thunderhead::storm_store {
 namespace {
 
-// Returns the end of the first component of `path` that begins at `from` or later, with the slash
-// before it. Returns the path's length at its end.
+// Returns the index behind the next component of `path`, which begins at `from` or after the
+// slashes there. Returns the path's length if there is no further component.
 std::size_t EndOfComponent(const std::string& path, std::size_t from) {
   const std::size_t begin = path.find_first_not_of('/', from);
   return begin == std::string::npos ? path.size() : std::min(path.find('/', begin), path.size());
 }
 
 // Returns the keys of a folder: those of the folders above it from the top, its own, and one for
-// its own files, which are a neighbour of its subfolders.
+// its own files. These files count as one more subfolder.
 std::vector<std::string> KeysOf(const std::string& folder) {
   std::vector<std::string> keys;
   for (std::size_t end = 0; end < folder.size();) {

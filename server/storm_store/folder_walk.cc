@@ -148,7 +148,7 @@ void Walk::Sort(const fs::directory_entry& entry, Node& node) {
   }
 }
 
-// Returns the folder that is listed next. There is one.
+// Returns the folder that is listed next. A folder must be waiting.
 Node& Walk::Next() {
   Node* node = &root_;
   while (true) {
@@ -210,7 +210,8 @@ void Walk::FollowLinks() {
   std::ranges::sort(links, {}, &Link::path);
   for (const Link& link : links) {
     Add(link.path, *link.in);
-    // The folders above may have been listed to their end, and then they do not wait any longer.
+    // The folders above may have been listed to their end. They wait again, because they now have a
+    // folder that is not listed yet.
     for (Node* each = link.in; each->parent != nullptr; each = each->parent) {
       if (each->IsWaiting()) each->parent->waiting.emplace(each->entries, each->index);
     }

@@ -70,7 +70,8 @@ void LiveCatalogue::Running::Scan() {
   renew(newest);
 }
 
-// Returns whether there is a folder that was not watched during the scan.
+// Starts to watch the folders that the scan listed. Returns whether one of them was not watched
+// during the scan.
 bool LiveCatalogue::Running::WatchFolders() {
   bool any = false;
   for (const std::string& folder : newest.folders) any = events.Watch(folder) || any;

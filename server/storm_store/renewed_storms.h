@@ -20,7 +20,8 @@ namespace thunderhead::storm_store {
 std::vector<std::optional<std::size_t>> MatchStorms(
     const std::vector<const CataloguedStorm*>& known, const std::vector<CataloguedStorm>& found);
 
-// Returns whether both times are the same record of the same file.
+// Returns whether both times are the same record of the same version of the same file, with the
+// same valid time.
 bool IsSameTime(const CataloguedStorm& one, std::size_t one_time, const CataloguedStorm& other,
                 std::size_t other_time);
 

@@ -1,5 +1,5 @@
-// The storms that a server holds: a catalogue of series found under some paths, and a cache of the
-// times in use within a byte budget. The catalogue can follow changes of the paths. A separate
+// The storms that a server holds: a catalogue of the storms found under some paths, and a cache of
+// recently used times with a byte budget. The catalogue can follow changes of the paths. A separate
 // thread reads the next times ahead. The store is safe to call from any thread. NetCDF-C is not
 // thread-safe, so one reader works at a time in this process. While a storage blocks that reader,
 // other files can be read only in another process (StormFormats::LeaveTo).
@@ -56,8 +56,10 @@ struct StormInfo {
   std::string path;              // the path that names this storm alone, if it is in one file
   std::vector<StormTime> times;  // in order of valid time
   glm::ivec3 file_cells{0};      // west-east, south-north, bottom-top, as in the file
-  double dx_m = 0.0;  // distances between columns at the first time; those of other times of a
-  double dy_m = 0.0;  // domain that moves can differ
+  // The distances between columns at the first time. Those of other times can differ if the domain
+  // moves.
+  double dx_m = 0.0;
+  double dy_m = 0.0;
   std::vector<physics::Hydrometeor> fields;  // fields in the file
   std::optional<double> latitude_deg;        // latitude of the middle of the domain at the first
                                              // time; nothing if idealised
@@ -186,21 +188,23 @@ struct HungRead {
 
 class StormStore {
  public:
-  // Opens every storm under `paths` and reads only metadata. A file is one storm. A folder is one
-  // series if its files continue one another (same grid, different times). Otherwise each of its
-  // files or sub-folders is a storm. If a given path cannot be used, the error names the file, the
-  // variable and what to do. A file in a folder that cannot be read as a storm is logged and
-  // skipped. Finding no storm at all is an error.
+  // Opens every storm under `paths` and reads only metadata. A file is one storm, or several storms
+  // such as the members of an ensemble. A folder is one series if its files continue one another
+  // (same grid, different times). Otherwise each of its files or sub-folders is a storm. If a given
+  // path cannot be used, the error names the file, the variable and what to do. A file in a folder
+  // that cannot be read as a storm is logged and skipped. Without StormStoreOptions::live, finding
+  // no storm at all is an error.
   static absl::StatusOr<std::unique_ptr<StormStore>> Open(const std::vector<std::string>& paths,
                                                           const StormStoreOptions& options);
   virtual ~StormStore() = default;
 
   // Returns the storms. First come the opened storms, in the order of the paths and by id within a
-  // path. Then come the added storms, in order of addition.
+  // path. Then come the storms whose files are gone but whose fields are in use, and the added
+  // storms.
   virtual std::vector<StormInfoPtr> Storms() const = 0;
 
-  // Adds the storm of a file. Returns ALREADY_EXISTS if another storm has its id. Other errors are
-  // those of Open.
+  // Adds the storm of a file, or the first storm if the file has several. Returns ALREADY_EXISTS if
+  // another storm has its id. Other errors are those of Open.
   virtual absl::StatusOr<StormInfoPtr> Add(const std::string& path) = 0;
 
   // Removes a storm from the store, so that it is no longer listed, found or read. Its files stay.
