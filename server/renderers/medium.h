@@ -78,8 +78,9 @@ class ResidentMedium {
   void Bind(const gl::Program& program) const;
   // Does the same as Bind, and sets the uniforms and textures of common/bricks.glsl.
   void BindWithBricks(const gl::Program& program) const;
-  // Set the parts that need none of the medium's own textures. BindBox sets common/medium_box.glsl.
-  // BindBricks sets the rest of common/bricks.glsl.
+  // Set parts of what BindWithBricks sets, for programs that do not read the extinction textures.
+  // BindBox sets the uniforms of common/medium_box.glsl. BindBricks sets the texture and the other
+  // uniforms of common/bricks.glsl.
   void BindBox(const gl::Program& program) const;
   void BindBricks(const gl::Program& program) const;
   // Fades out detail that is finer than a pixel of a picture of `size_px`. Call it after Bind or

@@ -66,8 +66,9 @@ DiffuseLight::DiffuseLight(DiffusionCells cells)
   }
 }
 
-// Adds 1 / depth^2 for each cell, where depth is the optical depth to the nearer of the two exits
-// along `axis`.
+// Scans the cells for their two exits along `axis`. With the optical depth to an exit, it adds 1 /
+// depth^2 of the nearer exit to `sum`, and of both exits to `all`. It sets `outward` along the
+// axis, and adds the sky that the exits see to sky_seen_.
 void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all,
                              std::vector<glm::vec3>* outward) {
   const int length = cells_.size[axis];
