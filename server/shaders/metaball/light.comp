@@ -62,7 +62,8 @@ void main() {
     sum += vec3(before.r, 0.0, 1.0);
 #elif PASS == 0
     float column = wyvill_column(s);
-    // The part of the ball in front of a place attenuates the light that reaches it. This is the mean over the ball.
+    // The light that reaches a place in the ball is attenuated by the part of the ball in front of
+    // the place. This is the mean along the line of sight to the light.
     float enters = exp(-before.r) * mean_transmittance(column * light_depth);
     sum += column * vec3(enters, before.g + 0.5 * column * scaled_depth, 1.0);
 #else

@@ -8,7 +8,8 @@
 
 layout(local_size_x = kBallGroupSize) in;
 layout(std430, binding = kBallArrivedBinding) readonly buffer Arrived { vec2 arrived[]; };  // from light.comp
-// rgb is the radiance, a the extinction at the centre.
+// rgb is the radiance per unit of opacity. a is the extinction at the centre in 1/m, or with PAPER
+// the optical depth there.
 layout(std430, binding = kBallSourcesBinding) writeonly buffer Sources { vec4 sources[]; };
 
 uniform int ball_count;

@@ -47,7 +47,8 @@ PHYSICS_FUNCTION float equivalent_m(float scale_height_m, float density, AirPath
   // is negligible.
   float bend = max(path.curvature_per_m * (1.0f - path.sin_elevation * path.sin_elevation), 1e-13f);
   float per_m = sqrt(0.5f * bend / scale_height_m);
-  float low = per_m * path.sin_elevation / bend;  // distance of the start from the path's lowest point
+  // Scaled distance of the start from the path's lowest point.
+  float low = per_m * path.sin_elevation / bend;
   float high = low + per_m * path.distance_m;
   float climb_m = path.distance_m * (path.sin_elevation + 0.5f * bend * path.distance_m);
   float from = density * scaled_erfc(abs(low));

@@ -45,8 +45,8 @@ uint counted() {
   return all;
 }
 
-// Fills the histogram with the cells whose opacity is at least `least_opacity`. All invocations must call this
-// function.
+// Fills the histogram with all cells, each weighted by its mean opacity. Opacities below
+// `least_opacity` count as `least_opacity`. All invocations must call this function.
 void count(float least_opacity) {
   int first = int(gl_LocalInvocationIndex);
   for (int i = first; i < kBins; i += kMeterGroupSize) histogram[i] = 0u;
