@@ -1,4 +1,4 @@
-// Cuts drawing into pieces of about 30 ms. Contexts that share a device can then draw in turn, and
+// Cuts drawing into pieces of about 15 ms. Contexts that share a device can then draw in turn, and
 // cancelled drawing ends soon. The result does not depend on where the work is cut. Each context
 // has its own Pieces and its own GL state, which stays bound between two pieces. Use a Pieces
 // object on its context's thread. This code does not use physics.
@@ -43,7 +43,8 @@ class Pieces {
   }
 
   // Marks a place where drawing may be interrupted. If the current piece has lasted long enough,
-  // gives the turn back so that other contexts can draw, and takes it again.
+  // gives the turn back so that other contexts can draw, and takes it again. Returns the error of
+  // DeviceTurn::Take, with which the drawing must end. Steps and Tiles return the same error.
   absl::Status Between();
 
   // Gives the turn back while `work` runs. `work` uses little of the device but much time of this
@@ -67,8 +68,8 @@ class Pieces {
   absl::Status Tiles(const PieceCost& cost, const PixelRect& whole,
                      const std::function<void()>& draw);
 
-  // Returns true for the first call with a program. A new program must be compiled without the turn
-  // (OffTurn) before its first piece.
+  // Returns true for the first call with a program while the turn is held. A new program must be
+  // compiled without the turn (OffTurn) before its first piece.
   bool IsNew(unsigned int program);
 
   // Returns an error that says why long work without the turn must end, or OK if it may continue.

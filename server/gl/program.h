@@ -77,7 +77,8 @@ struct Uniform {
 };
 
 // A linked program. Set does nothing if the program's variant does not have the uniform. If
-// programs are strict (gl/strict_programs.h), Set fails for a uniform that no variant has.
+// programs are strict (gl/strict_programs.h), Set aborts the process for a uniform that no variant
+// has.
 class Program {
  public:
   static absl::StatusOr<Program> Link(const ProgramSource& source);
