@@ -18,7 +18,8 @@ struct LegendEntry {
   glm::vec3 color{1.0F};  // linear sRGB
 };
 
-// Texts are UTF-8. A text that is too long for the picture ends in an ellipsis.
+// Texts are UTF-8. A title, run or time that is too long for the picture ends in an ellipsis. Names
+// of the legend are not shortened.
 struct Annotation {
   std::string title;                // upper left
   std::string run;                  // below the title; may be empty
@@ -31,7 +32,8 @@ struct Annotation {
 // Returns the height of a text line, in pixels, for a picture of that height.
 double TextHeight_px(int picture_height_px);
 
-// Draws the annotation. FAILED_PRECONDITION if this machine has no font.
+// Draws the annotation. Returns FAILED_PRECONDITION if this machine has no font, and
+// RESOURCE_EXHAUSTED if there is not enough memory.
 absl::Status Annotate(const Annotation& annotation, frame::RgbImage& image);
 
 }  // namespace thunderhead::product

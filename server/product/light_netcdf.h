@@ -22,13 +22,14 @@ struct LightMap {
   absl::Time valid;
   std::optional<absl::Time> run;             // start of the run
   std::optional<double> estimated_error;     // relative RMSE of the radiance
-  std::map<std::string, std::string> texts;  // global attributes
+  std::map<std::string, std::string> texts;  // global attributes; "Software" becomes `source`
 };
 
 // Returns the file's bytes; `what` names the file in errors. The file follows CF-1.8, with one grid
 // cell per pixel. If the place has a projection, the file has `grid_mapping` and the latitude and
 // longitude of each pixel. Otherwise the coordinates are metres from the middle of the domain.
-// Holds the lock of netCDF-C while it works. Safe from any thread.
+// Returns INVALID_ARGUMENT if the conventions have no name for the projection. The function holds
+// the lock of netCDF-C while it works, and is safe to call from any thread.
 absl::StatusOr<std::string> EncodeLightNetcdf(const LightMap& map, const std::string& what);
 
 }  // namespace thunderhead::product
