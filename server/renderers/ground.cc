@@ -14,7 +14,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMaxShadowTexels = 192;  // number of texels along the longer side of the shadow map
+// Maximum number of texels along the longer side of the shadow map.
+constexpr int kMaxShadowTexels = 192;
 constexpr double kShadowTexelInCells = 1.0;  // minimum size of a texel
 constexpr double kShadowStepInCells = 1.0;   // distance between samples along the sun's rays
 constexpr double kLevel_m = 1.0;  // terrain with smaller height differences counts as level

@@ -30,7 +30,7 @@ using Medium = scene::GroupedFields;
 // multiplies.
 struct DetailLayer : scene::DetailLayer {
   std::shared_ptr<const DetailNoise> noise;
-  glm::dvec2 drift_m{0.0};  // Displacement by the wind: Drift_m for the storm's motion.
+  glm::dvec2 drift_m{0.0};  // displacement by the wind, from Drift_m
 };
 
 // Shader variant of common/medium.glsl.

@@ -1,6 +1,6 @@
 // Renders a scene and a storm's fields to a linear frame, which is a picture of linear radiance. It
-// keeps each stage's result and reruns from the first stage that a change dirties. The class owns
-// GL objects, so use it on the context's thread.
+// keeps each stage's result and reruns from the first stage whose inputs have changed. The class
+// owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <map>
@@ -28,8 +28,8 @@ struct SeenStorm {
   // The mean distance of the visible parts of the storm from the eye, times the opacity. Null if
   // the technique does not compute it.
   const gl::Texture2D* opacity_distance_m = nullptr;
-  // The box of the textures of a LightCorrection. A correction is looked up at the place at that
-  // mean distance.
+  // The box that the textures of a LightCorrection cover. A ray looks up its correction at the
+  // place at that mean distance.
   volume::WorldBox box;
 };
 

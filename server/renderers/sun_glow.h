@@ -71,7 +71,8 @@ class SunGlow {
   std::vector<physics::PhaseFunction> tabulated_;
   double tabulated_cut_rad_ = -1.0;
   gl::Texture3D table_;
-  std::vector<float> shares_;  // for each group, the scattered share that lies in the cut peak
+  // For each group, the share of its scattering that lies in the cut peak.
+  std::vector<float> shares_;
 };
 
 }  // namespace thunderhead::renderers

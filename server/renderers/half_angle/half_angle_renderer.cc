@@ -22,7 +22,7 @@ namespace {
 // Maximum number of texels along the longer side of the light buffer.
 constexpr int kMaxBufferTexels = 256;
 constexpr double kBufferTexelInCells = 0.75;  // minimum size of a light texel
-constexpr int kThicknessSlices = 128;         // slices perpendicular to the light
+constexpr int kThicknessSlices = 128;         // number of slices in SumThickness
 // Number of slices that one pass adds to the picture. With a larger slab, render targets change
 // less often, but the slab's light takes more memory.
 constexpr int kSlabSlices = 16;

@@ -23,9 +23,9 @@ constexpr float kMaxSlant = 4.0F;
 constexpr float kDarkTransmittance = 1e-12F;
 
 // Light that the six faces of a cell receive from a sky of radiance a + b (1 - sine of the
-// elevation). Component x is the weight of the sky's irradiance from above over pi, y is the weight
-// of its mean radiance. The weights are integrals over a hemisphere. For the vertical faces they
-// are integrals over a quarter of the sphere.
+// elevation). Component x is the weight of the sky's irradiance from above divided by pi, y is the
+// weight of its mean radiance. The weights are integrals over a hemisphere. For the vertical faces
+// they are integrals over a quarter of the sphere.
 constexpr glm::vec2 kSideSees(-0.227F, 0.727F);
 constexpr std::array<glm::vec2, 6> kSkySeen = {kSideSees, kSideSees,       kSideSees,
                                                kSideSees, glm::vec2(0.0F), glm::vec2(1.0F, 0.0F)};

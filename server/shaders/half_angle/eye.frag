@@ -19,10 +19,11 @@
 #include "half_angle/bindings.glsl"
 #include "physics/light_transport.glsl"
 
-// Light that enters each slice of the slab, with one layer for each slice. r is the share of sunlight, g the optical
-// depth towards the sun.
+// Light that enters each slice of the slab, with one layer for each slice. r is the share of
+// sunlight, g the similarity-scaled optical depth towards the sun.
 layout(binding = kSliceLightUnit) uniform sampler2DArray light;
-layout(binding = kSliceThicknessUnit) uniform sampler2D thickness;  // r: optical depth along the whole sun ray
+// Channel r is the similarity-scaled optical depth along the whole sun ray.
+layout(binding = kSliceThicknessUnit) uniform sampler2D thickness;
 
 layout(binding = kEyeBeforeUnit) uniform sampler2D eye;  // eye buffer before this slab
 layout(binding = kDistanceBeforeUnit) uniform sampler2D distance_before;

@@ -58,8 +58,8 @@ struct Surroundings {
   float light_layers;
 };
 
-// Computes the light of one cell. `here_place` is the cell's place in the light's volume. `far_place` is the end of the
-// sampled path there.
+// Computes the light of one cell. `here_place` is the cell's place in the light's volume.
+// `far_place` is the place of the sampled path's end in the light's volume.
 void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroundings around) {
   // Only the part of the sampled path inside the medium's box counts. A block of cells may extend beyond the box.
   vec3 inside = (around.out_place - place) * around.per_near_path;

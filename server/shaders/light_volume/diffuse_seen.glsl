@@ -69,7 +69,7 @@ struct DiffuseSeen {
   float transmittance;  // transmittance for diffuse light and the background
   vec3 sun;  // fluence of sunlight divided by the sun's irradiance
   vec3 sky;  // weight of the sky's mean radiance
-  vec3 level;  // weight of the sky's irradiance from above over pi
+  vec3 level;  // weight of the sky's irradiance on level ground divided by pi
   vec3 ground;  // weight of open ground's radiance
 };
 

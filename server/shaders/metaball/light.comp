@@ -15,9 +15,10 @@
 
 layout(local_size_x = kBallGroupSize) in;
 layout(binding = kBallLightImage, rg32f) uniform image2D light;
-// Light that arrives at each ball, by light source and ball. x is the arriving share of the beam, or that of the sky. y
-// is the mean intensity of multiply scattered light, divided by the beam's irradiance. Between the passes, y is the
-// similarity-scaled optical depth in front of the ball's centre.
+// Light that arrives at each ball, by light source and ball. x is the arriving share of the beam.
+// For diffuse light, x is the share that comes from the sky. y is the mean intensity of multiply
+// scattered light, divided by the beam's irradiance. Between the passes, y is the similarity-scaled
+// optical depth in front of the ball's centre.
 layout(std430, binding = kBallArrivedBinding) buffer Arrived { vec2 arrived[]; };
 
 uniform int first;  // index in `order` of the first ball of this dispatch

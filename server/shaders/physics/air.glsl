@@ -1,5 +1,6 @@
-// Clear air and haze, and their effect on light between an eye and an object. Both decrease exponentially with height.
-// The file compiles as GLSL and as C++ (physics/sky.h).
+// Clear air and haze, and their effect on light between an eye and an object. The densities of air
+// and haze decrease exponentially with height. The file compiles as GLSL and as C++
+// (physics/sky.h).
 #ifdef __cplusplus
 #define PHYSICS_FUNCTION inline
 #else

@@ -1,5 +1,5 @@
-// Closed-form solutions of light transport that all renderers use. The file compiles as GLSL and as C++
-// (physics/optics.h).
+// Closed-form solutions of light transport that renderers share. The file compiles as GLSL and as
+// C++ (physics/optics.h).
 #ifdef __cplusplus
 #define PHYSICS_FUNCTION inline
 #else

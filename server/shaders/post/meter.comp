@@ -1,7 +1,7 @@
-// Measures the luminance of the storm's brightest hundredth in a linear frame, whose alpha is the storm's opacity. If
-// the frame shows almost no storm, the whole picture is measured. One work group divides the picture into cells and
-// makes a histogram of the cells' means. Each mean omits the cell's brightest sample, so that noise and single bright
-// pixels have no effect.
+// Measures the luminance that the brightest hundredth of the storm exceeds, in a linear frame whose
+// alpha is the storm's opacity. If the frame shows almost no storm, the whole picture is measured.
+// One work group divides the picture into cells and makes a histogram of the cells' means. Each
+// mean omits the cell's brightest sample, so that noise and single bright pixels have no effect.
 #include "common/bindings.glsl"
 
 layout(local_size_x = kMeterGroupSize) in;
