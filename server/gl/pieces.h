@@ -34,7 +34,8 @@ class Pieces {
   Pieces(const Pieces&) = delete;
   Pieces& operator=(const Pieces&) = delete;
 
-  // Draws with `draw`. The turn is taken before the call and given back after it.
+  // Draws with `draw`. The turn is taken before the call and given back after it. Returns the error
+  // of taking the turn, or the result of `draw`.
   template <typename Draw>
   auto During(const Draw& draw) -> decltype(draw()) {
     if (absl::Status taken = Take(); !taken.ok()) return taken;
@@ -48,7 +49,7 @@ class Pieces {
   absl::Status Between();
 
   // Gives the turn back while `work` runs. `work` uses little of the device but much time of this
-  // thread.
+  // thread. Returns the error of taking the turn again.
   template <typename Work>
   absl::Status OffTurn(const Work& work) {
     if (turn_ == nullptr) {

@@ -141,7 +141,8 @@ class ProgramCache {
 
   gl::Pieces& Pieces() { return pieces_; }
 
-  // Returns the program of `source`. The pointer is valid as long as the cache.
+  // Returns the program of `source`. The pointer is valid as long as the cache. Returns INTERNAL
+  // with the compiler's log if the program does not compile or link.
   absl::StatusOr<const Program*> Get(const ProgramSource& source);
 
  private:

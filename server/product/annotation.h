@@ -25,7 +25,8 @@ struct Annotation {
   std::string run;                  // below the title; may be empty
   std::string valid_time;           // lower left
   std::vector<LegendEntry> legend;  // lower right, first entry on top
-  // In the upper right corner, at most a sixth of the picture's height; may be null.
+  // In the upper right corner, at most a sixth of the picture's height and a quarter of its width;
+  // may be null.
   const Logo* logo = nullptr;
 };
 

@@ -1,6 +1,6 @@
 // Encodes a top-down picture as radiance in a CF netCDF file, for programs that compute with maps.
-// The file has the radiance, the storm's opacity and optical depth, and the height at which the
-// optical depth reaches 1.
+// The file has the radiance and its standard error, and the storm's opacity and optical depth. It
+// also has the height at which the optical depth reaches 1, and its distance from the eye.
 #pragma once
 
 #include <map>
