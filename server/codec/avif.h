@@ -1,5 +1,6 @@
 // Encodes and decodes AVIF pictures by libavif. They have 10 bits per channel and no chroma
-// subsampling, so that a clear sky shows no banding. Pure functions, safe from any thread.
+// subsampling, so that a clear sky shows no banding. The functions are pure and safe to call from
+// any thread.
 #pragma once
 
 #include <string>
@@ -17,7 +18,8 @@ struct AvifOptions {
 absl::StatusOr<std::string> EncodeAvif(const frame::FineImage& image,
                                        const AvifOptions& options = {});
 
-// Decodes an AVIF. For tests and measurements; clients have their own decoder.
+// Decodes an AVIF for tests and measurements. Clients have their own decoder. Returns
+// INVALID_ARGUMENT for bytes that are not an AVIF.
 absl::StatusOr<frame::FineImage> DecodeAvif(const std::string& avif);
 
 }  // namespace thunderhead::codec

@@ -44,8 +44,9 @@ vpx_codec_enc_cfg_t ConfigFor(int width_px, int height_px) {
   config.g_timebase = {1, static_cast<int>(kPicturesPerSecond)};
   config.g_lag_in_frames = 0;
   config.g_pass = VPX_RC_ONE_PASS;
-  // Droppable pictures may never reach the decoder. Without this option, each picture depends on
-  // the one before it even if it does not refer to it. The option costs 2 % of the bytes.
+  // Droppable pictures may never reach the decoder. Without this option, a picture could be decoded
+  // only after every picture before it, even those that it does not refer to. The option costs 2 %
+  // of the bytes.
   config.g_error_resilient = VPX_ERROR_RESILIENT_DEFAULT;
   config.kf_mode = VPX_KF_DISABLED;  // key pictures only when they are requested
   config.rc_end_usage = VPX_CBR;

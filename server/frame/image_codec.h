@@ -1,5 +1,8 @@
 // Encodes and decodes JPEG (libjpeg-turbo) and PNG (libpng). Pixels are 8-bit sRGB, three bytes
-// each, rows from top to bottom. The functions are pure and safe to call from any thread.
+// each, rows from top to bottom. The encoders return INVALID_ARGUMENT for a side outside 1 to 65535
+// pixels, a wrong number of bytes or a JPEG quality outside 1 to 100. The decoders return
+// INVALID_ARGUMENT for bytes that are not a whole picture. The functions are pure and safe to call
+// from any thread.
 #pragma once
 
 #include <cstdint>

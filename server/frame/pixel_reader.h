@@ -10,13 +10,14 @@
 
 namespace thunderhead::frame {
 
-// Reads pixels from a GPU through a persistently mapped buffer. This takes a third of the time of
-// reading to the program's memory (docs/performance.md, "On a GPU"). Only the thread of the
-// reader's GL context may use it.
+// Reads pixels. From a GPU it reads through a persistently mapped buffer, which takes a third of
+// the time of reading to the program's memory (docs/performance.md, "On a GPU"). Only the thread of
+// the reader's GL context may use it.
 class PixelReader {
  public:
   // Returns three bytes a pixel, with rows in the order of `texture`. It waits for pending drawing
-  // to the texture, and reads some rows in each piece (gl/pieces.h).
+  // to the texture, and reads some rows in each piece (gl/pieces.h). Returns RESOURCE_EXHAUSTED if
+  // the device has no memory for the buffer.
   absl::StatusOr<std::vector<std::uint8_t>> Rgb(const gl::Texture2D& texture, gl::Pieces& pieces);
 
  private:

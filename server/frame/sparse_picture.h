@@ -27,11 +27,12 @@ glm::ivec2 CoarsestOf(const glm::ivec2& size_px);
 using DrawPlaces =
     std::function<absl::StatusOr<std::vector<std::uint16_t>>(const std::vector<glm::vec2>&)>;
 
-// Computes the whole picture from its coarsest version. A pixel is interpolated if the contrast to
-// its neighbours is at most `contrast`. The contrast is the difference between twice a pixel's
-// value and the sum of its neighbours on both sides, for any colour, in steps of 1/255. For the
-// last picture, the limit is multiplied by kLastContrast. `draw` is called once for each of the two
-// finer pictures, unless all pixels of that picture are interpolated.
+// Computes the whole picture from its coarsest version. A pixel of a finer picture is interpolated
+// if the pixel that contains it in the coarser picture has at most the contrast `contrast`. A
+// pixel's contrast is the difference between twice its value and the sum of its two neighbours on
+// opposite sides. The largest difference over the four directions and three colours counts, in
+// steps of 1/255. For the last picture, the limit is multiplied by kLastContrast. `draw` is called
+// once for each of the two finer pictures, unless all pixels of that picture are interpolated.
 absl::StatusOr<FineImage> CompletePicture(FineImage coarsest, const glm::ivec2& size_px,
                                           double contrast, const DrawPlaces& draw);
 

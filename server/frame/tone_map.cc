@@ -20,7 +20,7 @@ constexpr float kMaxFactor = 64.0F;
 constexpr float kMaxAboveCard = 2.0F;
 
 constexpr gl::PieceCost kPixel{"tone map", 50.0};
-// Guessed cost of a pixel with more than one byte a channel.
+// Guessed cost of reading back a pixel with more than one byte a channel.
 constexpr double kFinePixel_ns = 4.0;
 
 struct ToneMapVariant {

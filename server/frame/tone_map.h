@@ -76,7 +76,8 @@ class ToneMapper {
                     const Display& display);
   absl::StatusOr<FineImage> MapFineTo(const Display& display, const gl::Texture2D& linear,
                                       const glm::ivec2& part_px);
-  // Returns the exposure factor for radiance with the given white balance.
+  // Returns the factor that multiplies radiance with the given white balance. It follows from the
+  // scene's exposure, or from an automatic exposure if the scene has none.
   absl::StatusOr<float> ExposureOf(const gl::Texture2D& linear, const scene::Display& display,
                                    const glm::vec3& balance, const WhiteCard& card);
 

@@ -23,8 +23,9 @@ struct ContextInfo {
 class Context {
  public:
   // Creates a context. `device` is "auto" (the first GPU with a working driver, otherwise
-  // software), "software", or a number N for the Nth GPU. Fails if there is no Nth GPU or its
-  // driver does not work.
+  // software), "software", or the number of a GPU, counted from 0. Returns INVALID_ARGUMENT for any
+  // other text, NOT_FOUND if there is no such GPU, and UNAVAILABLE if the driver of the GPU or the
+  // software renderer does not work.
   static absl::StatusOr<std::unique_ptr<Context>> Create(std::string_view device);
 
   virtual ~Context() = default;

@@ -35,7 +35,7 @@ bool IsOutOfDeviceMemory(const absl::Status& status);
 
 absl::Status StatusOf(DeviceWatch::Fault fault);
 
-// Checks the device with WatchDevice and returns the StatusOf the result.
+// Checks the device with WatchDevice and returns StatusOf the fault.
 absl::Status FaultNow();
 
 }  // namespace thunderhead::gl

@@ -26,7 +26,8 @@ class DeviceMemory {
   // base::FailedAllocation if there is not enough memory even after unused objects were dropped.
   static base::MemoryReservation Reserve(std::size_t bytes);
   // Reserves memory that drawing needs in addition to its GL objects. It is counted only with
-  // software rendering, where that memory and the GL objects are both in main memory.
+  // software rendering, where that memory and the GL objects are both in main memory. Throws like
+  // Reserve.
   static base::MemoryReservation ReserveBeside(std::size_t bytes);
 
  private:

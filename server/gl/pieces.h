@@ -1,4 +1,4 @@
-// Cuts drawing into pieces of about 30 ms. Contexts that share a device can then draw in turn, and
+// Cuts drawing into pieces of about 15 ms. Contexts that share a device can then draw in turn, and
 // cancelled drawing ends soon. The result does not depend on where the work is cut. Each context
 // has its own Pieces and its own GL state, which stays bound between two pieces. Use a Pieces
 // object on its context's thread. This code does not use physics.
@@ -34,7 +34,8 @@ class Pieces {
   Pieces(const Pieces&) = delete;
   Pieces& operator=(const Pieces&) = delete;
 
-  // Draws with `draw`. The turn is taken before the call and given back after it.
+  // Draws with `draw`. The turn is taken before the call and given back after it. Returns the error
+  // of taking the turn, or the result of `draw`.
   template <typename Draw>
   auto During(const Draw& draw) -> decltype(draw()) {
     if (absl::Status taken = Take(); !taken.ok()) return taken;
@@ -43,11 +44,12 @@ class Pieces {
   }
 
   // Marks a place where drawing may be interrupted. If the current piece has lasted long enough,
-  // gives the turn back so that other contexts can draw, and takes it again.
+  // gives the turn back so that other contexts can draw, and takes it again. Returns the error of
+  // DeviceTurn::Take, with which the drawing must end. Steps and Tiles return the same error.
   absl::Status Between();
 
   // Gives the turn back while `work` runs. `work` uses little of the device but much time of this
-  // thread.
+  // thread. Returns the error of taking the turn again.
   template <typename Work>
   absl::Status OffTurn(const Work& work) {
     if (turn_ == nullptr) {
@@ -67,8 +69,8 @@ class Pieces {
   absl::Status Tiles(const PieceCost& cost, const PixelRect& whole,
                      const std::function<void()>& draw);
 
-  // Returns true for the first call with a program. A new program must be compiled without the turn
-  // (OffTurn) before its first piece.
+  // Returns true for the first call with a program while the turn is held. A new program must be
+  // compiled without the turn (OffTurn) before its first piece.
   bool IsNew(unsigned int program);
 
   // Returns an error that says why long work without the turn must end, or OK if it may continue.

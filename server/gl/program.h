@@ -77,7 +77,8 @@ struct Uniform {
 };
 
 // A linked program. Set does nothing if the program's variant does not have the uniform. If
-// programs are strict (gl/strict_programs.h), Set fails for a uniform that no variant has.
+// programs are strict (gl/strict_programs.h), Set aborts the process for a uniform that no variant
+// has.
 class Program {
  public:
   static absl::StatusOr<Program> Link(const ProgramSource& source);
@@ -140,7 +141,8 @@ class ProgramCache {
 
   gl::Pieces& Pieces() { return pieces_; }
 
-  // Returns the program of `source`. The pointer is valid as long as the cache.
+  // Returns the program of `source`. The pointer is valid as long as the cache. Returns INTERNAL
+  // with the compiler's log if the program does not compile or link.
   absl::StatusOr<const Program*> Get(const ProgramSource& source);
 
  private:

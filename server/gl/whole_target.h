@@ -9,8 +9,9 @@
 namespace thunderhead::gl {
 
 // Returns true if the thread's device draws whole targets faster by compute shaders. The speed is
-// measured once in each process. Software GL always rasterizes. The environment variable
-// THUNDERHEAD_WHOLE_TARGETS overrides the measurement with the value "raster" or "compute".
+// measured once for each kind of device in a process. Software GL always rasterizes. The
+// environment variable THUNDERHEAD_WHOLE_TARGETS overrides the measurement with the value "raster"
+// or "compute".
 bool ComputesWholeTargets();
 
 class WholeTarget {

@@ -22,15 +22,16 @@ struct ExrAttributes {
   std::map<std::string, float> numbers;
 };
 
-// Returns the file's bytes.
+// Returns the file's bytes, or INTERNAL if OpenEXR fails.
 absl::StatusOr<std::string> EncodeExr(const LinearPicture& picture,
                                       const ExrAttributes& attributes = {});
 
-// Replaces the number `name` in the header of a file that EncodeExr made with that number.
+// Sets the number `name` in the file's header to `value`. EncodeExr must have made `exr` with a
+// number of this name among its attributes.
 void SetExrNumber(const std::string& name, float value, std::string* exr);
 
 // A picture and its attributes, decoded from a file's bytes. Error messages name the file as
-// `what`.
+// `what`. DecodeExr returns INVALID_ARGUMENT for anything but a file of this format.
 struct ExrPicture {
   LinearPicture picture;
   ExrAttributes attributes;
@@ -40,7 +41,8 @@ absl::StatusOr<ExrPicture> DecodeExr(const std::string& exr, const std::string& 
 absl::Status WriteExr(const std::string& path, const LinearPicture& picture,
                       const ExrAttributes& attributes = {});
 
-// Reads a file that WriteExr wrote, and refuses a link or FIFO in its place.
+// Reads a file that WriteExr wrote, and refuses a link or FIFO in its place. Returns
+// INVALID_ARGUMENT if the file cannot be read or is not such a file.
 absl::StatusOr<LinearPicture> ReadExr(const std::string& path);
 
 }  // namespace thunderhead::picture

@@ -16,7 +16,8 @@ struct LinearPicture {
   // pixels whose error is unknown. The vector is empty for a picture without noise, or if no caller
   // needs it.
   std::vector<glm::vec3> standard_error{};
-  // Share of each pixel that the storm covers, 0 to 1. Empty if it is not known.
+  // Share of each pixel that the storm covers, 0 to 1. The vector is empty if the opacity is not
+  // known.
   std::vector<float> opacity{};
   // The storm's optical depth along the ray through each pixel's centre, and the distance in metres
   // from the ray's start at which the optical depth reaches 1. The distance is infinite if it does

@@ -18,20 +18,23 @@ struct LegendEntry {
   glm::vec3 color{1.0F};  // linear sRGB
 };
 
-// Texts are UTF-8. A text that is too long for the picture ends in an ellipsis.
+// Texts are UTF-8. A title, run or time that is too long for the picture ends in an ellipsis. Names
+// of the legend are not shortened.
 struct Annotation {
   std::string title;                // upper left
   std::string run;                  // below the title; may be empty
   std::string valid_time;           // lower left
   std::vector<LegendEntry> legend;  // lower right, first entry on top
-  // In the upper right corner, at most a sixth of the picture's height; may be null.
+  // In the upper right corner, at most a sixth of the picture's height and a quarter of its width;
+  // may be null.
   const Logo* logo = nullptr;
 };
 
 // Returns the height of a text line, in pixels, for a picture of that height.
 double TextHeight_px(int picture_height_px);
 
-// Draws the annotation. FAILED_PRECONDITION if this machine has no font.
+// Draws the annotation. Returns FAILED_PRECONDITION if this machine has no font, and
+// RESOURCE_EXHAUSTED if there is not enough memory.
 absl::Status Annotate(const Annotation& annotation, frame::RgbImage& image);
 
 }  // namespace thunderhead::product

@@ -118,7 +118,7 @@ bool SetProjected(const volume::ProjectionText& text, CfGridMapping& mapping) {
   return true;
 }
 
-// Sets the axes of a grid in degrees, and of a rotated one.
+// Sets the name, parameters and axes of a grid in degrees, which may have a rotated pole.
 void SetDegrees(const volume::ProjectionText& text, double radius_m, CfGridMapping& mapping) {
   Attributes set(text, mapping);
   const double per_metre = glm::degrees(1.0 / radius_m);

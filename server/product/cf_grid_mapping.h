@@ -32,8 +32,8 @@ struct CfGridMapping {
   std::map<std::string, std::vector<double>> numbers;
 };
 
-// Returns the grid mapping of a projection. INVALID_ARGUMENT if the conventions have no name for
-// it.
+// Returns the grid mapping of a projection, or INVALID_ARGUMENT if the conventions have no name for
+// the projection.
 absl::StatusOr<CfGridMapping> GridMappingOf(const volume::MapProjection& projection);
 
 }  // namespace thunderhead::product

@@ -32,8 +32,10 @@ struct GdalLibrary {
   decltype(&::CPLQuietErrorHandler) QuietErrorHandler = nullptr;
   decltype(&::CPLGetLastErrorMsg) GetLastErrorMsg = nullptr;
 
-  // Returns the library, which is loaded once and kept. FAILED_PRECONDITION names the package if
-  // GDAL is not installed. Safe from any thread.
+  // Returns the library, which is loaded at the first call and kept. Returns FAILED_PRECONDITION,
+  // with the package to install, if GDAL is missing or lacks a function. The result of the first
+  // call, also an error, holds until the process ends. The function is safe to call from any
+  // thread.
   static absl::StatusOr<const GdalLibrary*> Get();
 };
 

@@ -11,9 +11,10 @@
 namespace thunderhead::product {
 
 // Returns the file's bytes: red, green and blue with 8 bits each, with lossless compression.
-// `texts` become metadata; their keys are the names. `place` must have a projection.
-// FAILED_PRECONDITION if GDAL is not installed. INVALID_ARGUMENT for a grid with a rotated pole,
-// which GeoTIFF cannot express. Safe from any thread.
+// `texts` become metadata, with their keys as names. The texts "Software" and "Title" become TIFF's
+// own tags. `place` must have a projection. Returns FAILED_PRECONDITION if GDAL is not installed,
+// and INVALID_ARGUMENT for a grid with a rotated pole, which GeoTIFF cannot express. The function
+// is safe to call from any thread.
 absl::StatusOr<std::string> EncodeGeoTiff(const frame::RgbImage& image, const MapPlace& place,
                                           const std::map<std::string, std::string>& texts);
 

@@ -14,8 +14,8 @@ namespace thunderhead::product {
 
 class Logo {
  public:
-  // Decodes a PNG of at most 4096 x 4096 pixels, which may be transparent. DATA_LOSS for anything
-  // else; `what` names the file in the error.
+  // Decodes a PNG of at most 4096 x 4096 pixels, which may be transparent. Returns DATA_LOSS for
+  // anything else. The error names the file as `what`.
   static absl::StatusOr<Logo> Decode(std::string_view png, const std::string& what);
 
   _cairo_surface* Surface() const { return surface_.get(); }

@@ -1,6 +1,7 @@
 // The air that the storm shades. For each ray of a coarse picture, the class computes how much
 // light the storm removes from the air's radiance up to each of several distances. The storm's
-// shadow in the air is the same as on the ground (common/storm_shadow.glsl).
+// shadow in the air comes from the same texture as its shadow on the ground
+// (common/storm_shadow.glsl).
 //
 // The air also scatters light that the air has already scattered (skylight). A place gets skylight
 // from the part of the sky that the storm leaves open. From the hidden part, a place in the storm's
@@ -33,9 +34,9 @@ class AirShade {
  public:
   explicit AirShade(std::shared_ptr<gl::ProgramCache> programs) : programs_(std::move(programs)) {}
 
-  // Sets the light that the air receives at each height. `sun_sine` is the sine of the sun's
-  // elevation. `sky_irradiance` is the irradiance of the clear sky on the ground. It refers to a
-  // sun of irradiance 1.
+  // Sets the light that the air receives at each height. The sine of the sun's elevation is
+  // `sun_sine`. For a sun of irradiance 1, the irradiance of the clear sky on the ground is
+  // `sky_irradiance`.
   void SetLight(const physics::Atmosphere& atmosphere, double sun_sine,
                 const glm::vec3& sky_irradiance);
 
@@ -43,9 +44,9 @@ class AirShade {
   // empty medium hides nothing.
   absl::Status HideSky(const ResidentMedium& medium, const scene::Scene& scene, double ground_m);
 
-  // Computes the missing light for a view, using the storm shadow of `ground`. The object that
-  // casts the shadow is inside `box`. The resolution suits a picture of the size `picture_px`. Call
-  // SetLight and HideSky first.
+  // Computes how much light the storm removes on the rays of a view, using the storm's shadow in
+  // `ground`. The object that casts the shadow is inside `box`. The resolution suits a picture of
+  // the size `picture_px`. Call SetLight and HideSky first.
   absl::Status Cast(const scene::Scene& scene, const scene::View& view, const Ground& ground,
                     const volume::WorldBox& box, const glm::ivec2& picture_px);
   // Removes all shade.

@@ -12,7 +12,7 @@ namespace thunderhead::renderers {
 
 struct Content {
   std::vector<physics::Hydrometeor> fields;  // the drawn fields
-  double occupied_share = 0.0;               // share of the domain's volume that the storm occupies
+  double occupied_share = 0.0;               // share of the domain's volume that is drawn
   int balls = 0;                             // number of metaballs
   // Root mean square error of the metaballs, relative to the root mean square of the extinction.
   double fit_error = 0.0;

@@ -14,7 +14,7 @@ namespace {
 constexpr int kMinCoverTile_px = 8;
 constexpr int kMaxTiles = 256;  // maximum number of tiles along each side
 constexpr float kNowhere = 0.0F;
-// Depth of everything that a cover limits; it lies between the depths in and outside the cover.
+// Depth at which passes limited by a cover are drawn. The cover's depth is 1 inside and 0 outside.
 constexpr double kBetween = 0.5;
 
 int Pixel(double place_px, int size_px) {

@@ -8,7 +8,7 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Maximum number of noises kept after use, so that a user who tries many seeds does not exhaust
+// Maximum number of noises that are kept, so that a user who tries many seeds does not exhaust
 // memory.
 constexpr std::size_t kMaxKept = 8;
 

@@ -14,15 +14,17 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMaxShadowTexels = 192;  // number of texels along the longer side of the shadow map
-constexpr double kShadowTexelInCells = 1.0;  // size of a texel
+// Maximum number of texels along the longer side of the shadow map.
+constexpr int kMaxShadowTexels = 192;
+constexpr double kShadowTexelInCells = 1.0;  // minimum size of a texel
 constexpr double kShadowStepInCells = 1.0;   // distance between samples along the sun's rays
 constexpr double kLevel_m = 1.0;  // terrain with smaller height differences counts as level
 
 constexpr gl::PieceCost kShadowTexel{"ground shadow", 2000.0};
 constexpr gl::PieceCost kDistancePixel{"ground distance", 100.0};
 
-// Returns the steepest slope between neighbouring grid columns.
+// Returns an upper limit of the terrain's slope. It combines the largest slopes between
+// neighbouring grid columns along x and along y.
 double SteepestSlope(const volume::RegularGrid& grid, const std::vector<float>& height_m) {
   double steepest_x = 0.0;
   double steepest_y = 0.0;

@@ -54,8 +54,9 @@ class Ground {
   // Returns the height of the ground's lowest point above sea level.
   double Lowest_m() const { return lowest_m_; }
   GroundVariant Variant() const { return {.relief = relief_}; }
-  // Returns true if ground may stand between the eye and a storm. Level ground curves downwards
-  // from below the storm, so it hides nothing from an eye above the plane of world coordinates.
+  // Returns true if ground may stand between the eye and a storm. Level ground has its highest
+  // point below the storm, at the height Lowest_m, so it hides nothing from an eye above that
+  // height.
   bool MayHide(const scene::View& view) const {
     return relief_ || (view.ground_curvature_per_m > 0.0 && view.eye_m.z < lowest_m_);
   }

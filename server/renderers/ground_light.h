@@ -24,9 +24,10 @@ class GroundLight {
   explicit GroundLight(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // Computes the light around `storm`. The storm's shadow must have been set in `ground`, and
-  // `surroundings` must know the share of the sky that the storm hides. For storms wider than about
-  // 380 km, the function returns the light of open ground.
+  // Computes the light around `storm`. The storm's shadow must have been set in `ground`, and the
+  // share of the sky that the storm hides must have been computed (SkyAndGround::HideSky). If the
+  // storm's box with a margin of the storm's height is wider than 384 km, the function returns the
+  // light of open ground.
   absl::StatusOr<LitGround> Find(const Ground& ground, const SkyAndGround& surroundings,
                                  const volume::WorldBox& storm, const Illumination& light);
 

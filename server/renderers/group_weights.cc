@@ -12,8 +12,9 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Returns offset and slope of the paper's display normalisation. It maps the logarithm of the cut
-// phase function to 0 to 1 over its dynamic range over all colours.
+// Returns offset and slope of the paper's display normalisation. Applied to the logarithm of the
+// cut phase function, they give 1 for its highest value of all colours, and 1 / (1 + log(highest /
+// lowest)) for its lowest.
 glm::vec2 DisplayNormalisation(const physics::PhaseFunction& phase, double cut_cosine) {
   glm::dvec3 lowest = physics::PhaseColors(phase, cut_cosine);
   glm::dvec3 highest = lowest;

@@ -12,9 +12,10 @@
 
 namespace thunderhead::renderers {
 
-// Returns the radiance of a surface of albedo 1 as a function of its normal. The result holds the
-// coefficients of 1, y, z, x, xy, yz, 3 z^2 - 1, xz and x^2 - y^2 of the normal. Because of the
-// truncation, the radiance can be below 0 by up to 3 % of the brightest value.
+// Returns the radiance of a surface of albedo 1 as a function of its normal. `radiance_from` must
+// return the radiance that arrives from a direction. The result holds the coefficients of 1, y, z,
+// x, xy, yz, 3 z^2 - 1, xz and x^2 - y^2 of the normal. Because of the truncation, the radiance can
+// be below 0 by up to 3 % of the brightest value.
 std::vector<glm::vec3> LightMapOf(
     const std::function<glm::vec3(const glm::vec3& direction)>& radiance_from);
 

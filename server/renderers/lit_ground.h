@@ -25,7 +25,8 @@ struct GroundMap {
 // That distribution equals a sum of uniformly bright discs, which three discs approximate. The
 // radii of the three discs, divided by h, are the 1/6, 1/2 and 5/6 quantiles of the radii in that
 // sum. Each disc is looked up in the level of the map whose texels are as long as the disc's
-// radius. Interpolation between these texels has the variance of a disc.
+// radius. The kernel of the interpolation between these texels then has the same variance as the
+// disc.
 class LitGround {
  public:
   // Creates open ground.

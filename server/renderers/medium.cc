@@ -23,8 +23,8 @@ namespace thunderhead::renderers {
 namespace {
 
 constexpr std::size_t kMaxBoxes = 8192;
-// Number of noise levels in which octaves are distinguishable. The coarsest of them is almost
-// uniform.
+// Number of the noise's level whose texels are as long as the noise's longest wavelength, so that
+// this level is almost uniform. Level 0 is the finest.
 constexpr double kLevelsOfBillows = 4.0;
 // Width in cells that a sample represents for light. Light is stored by cell, so detail that cells
 // cannot resolve must not flicker from cell to cell.
@@ -119,7 +119,8 @@ ResidentMedium::ResidentMedium(const scene::Scene& scene, const volume::Hydromet
   constexpr std::array<GLenum, 5> kTransferFormats = {0, GL_RED, GL_RG, 0, GL_RGBA};
   base::Stopwatch stopwatch;
   details_ = LayersOf(content_, fields.motion, noises);
-  // Counts the memory that the upload needs: half floats of each group, and the detail's control.
+  // Reserves the memory of the texels until they are uploaded. Each cell has a half float for each
+  // group, and a texel that controls detail.
   const base::MemoryReservation on_the_way = gl::DeviceMemory::ReserveBeside(
       fields.grid.CellCount() * (2 * content_.groups.size() + sizeof(volume::DetailTexel)));
   Computed computed = ComputedThatFits(fields, content_, noises, effort);
@@ -201,8 +202,8 @@ void ResidentMedium::BindDetails(const gl::Program& program) const {
   for (std::size_t i = 0; i < details_.size(); ++i) {
     const DetailLayer& layer = details_[i];
     sizes.emplace_back(layer.Tile_m() / extent_m);
-    // The term with the low corner is not reduced modulo the tile size, because the tile of fibres
-    // has a different size.
+    // The low corner is not reduced modulo the tile size, because this would displace fibres, whose
+    // tiles have a different size.
     corners.emplace_back((glm::dvec3(layer.drift_m, 0.0) - bounds_.grid.low_corner_m) / extent_m);
     const std::vector<glm::vec4> packed = Packed(layer.share_by_group, 1.0);
     shares.insert(shares.end(), packed.begin(), packed.end());
@@ -245,7 +246,8 @@ void ResidentMedium::BindNoises(const gl::Program& program, const Footprint& foo
                                                  static_cast<GLuint>(i));
     left_out.push_back(static_cast<float>(std::min(level / kLevelsOfBillows, 1.0)));
     // The fade begins where the footprint (the width that a sample represents) is one texel of that
-    // level. It ends where the footprint is as large as the wavelength of the level's last octave.
+    // level. It ends where the footprint is 16 texels, which at the finest level is the longest
+    // wavelength.
     const double level_texel_m = texel_m * std::ldexp(1.0, level);
     const double reach = std::ldexp(1.0, static_cast<int>(kLevelsOfBillows)) - 1.0;
     fades_at_start.push_back(

@@ -30,7 +30,7 @@ using Medium = scene::GroupedFields;
 // multiplies.
 struct DetailLayer : scene::DetailLayer {
   std::shared_ptr<const DetailNoise> noise;
-  glm::dvec2 drift_m{0.0};  // Displacement by the wind: Drift_m for the storm's motion.
+  glm::dvec2 drift_m{0.0};  // displacement by the wind, from Drift_m
 };
 
 // Shader variant of common/medium.glsl.
@@ -78,8 +78,9 @@ class ResidentMedium {
   void Bind(const gl::Program& program) const;
   // Does the same as Bind, and sets the uniforms and textures of common/bricks.glsl.
   void BindWithBricks(const gl::Program& program) const;
-  // Set the parts that need none of the medium's own textures. BindBox sets common/medium_box.glsl.
-  // BindBricks sets the rest of common/bricks.glsl.
+  // Set parts of what BindWithBricks sets, for programs that do not read the extinction textures.
+  // BindBox sets the uniforms of common/medium_box.glsl. BindBricks sets the texture and the other
+  // uniforms of common/bricks.glsl.
   void BindBox(const gl::Program& program) const;
   void BindBricks(const gl::Program& program) const;
   // Fades out detail that is finer than a pixel of a picture of `size_px`. Call it after Bind or

@@ -9,8 +9,8 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Number of texels of a curve. The step between them is 0.03 degrees at the 22 degree halo, 0.07
-// degrees at the rainbow and 1e-5 degrees at the first texel.
+// Number of texels of a curve. The step between them is 0.03 degrees at the 22 degree halo, 0.08
+// degrees at the rainbow and 7e-6 degrees at the first texel.
 constexpr int kTexels = 4096;
 
 // Returns the cosine of the scattering angle at a place on the curve. It is the inverse of

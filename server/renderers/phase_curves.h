@@ -1,5 +1,6 @@
-// The phase functions of a medium's groups for shaders/common/phase.glsl. Both formulas and tables
-// are stored as sampled curves, one texture row for each group. This code does not use a renderer.
+// The phase functions of a medium's groups for shaders/common/phase.glsl. Phase functions given by
+// formulas and those given by tables are both stored as sampled curves, one texture row for each
+// group. This code does not use a renderer.
 #pragma once
 
 #include <vector>

@@ -34,8 +34,8 @@ struct Illumination {
   std::vector<Beam> beams{};
   // The sky as a sum of two parts, for diffusion transport. `around_sun` is the bright region
   // around the sun, as an irradiance from the sun's direction. The rest of the sky is approximated
-  // as linear in the sine of the elevation. `rest_of_sky` is its mean radiance, and
-  // `rest_of_sky_level` its irradiance from above over pi.
+  // as linear in the sine of the elevation. The mean radiance of the rest is `rest_of_sky`. Its
+  // irradiance on level ground, divided by pi, is `rest_of_sky_level`.
   glm::vec3 around_sun{0.0F};
   glm::vec3 rest_of_sky{0.0F};
   glm::vec3 rest_of_sky_level{0.0F};
@@ -54,15 +54,15 @@ struct DrawQuality {
   // Scale of the eye buffer's width and height, (0, 2]. A scale of 2 gives 4 rays a pixel.
   double image_scale = 1.0;
   double slice_share = 1.0;  // share of the scene's slices that are drawn, (0, 1]
-  // Only measurements of quality change `light_detail` and `single_precision`. Sessions draw with
-  // the defaults. `light_detail` is the number of texels along a side of the light volume, relative
-  // to the usual number.
+  // Frames of sessions have the default `light_detail` and `single_precision`. Only measurements of
+  // quality and the fit of the path-traced correction change them. The value of `light_detail` is
+  // the number of texels along a side of the light volume, relative to the usual number.
   double light_detail = 1.0;
-  // Buffers of the light and the frame have single instead of half precision.
+  // If true, the buffers of the light and the frame have single instead of half precision.
   bool single_precision = false;
   // Correction of the light volume by path tracing, for the scene's light. Null if there is none.
   std::shared_ptr<const LightCorrection> correction{};
-  // Draws the sun's disc and its aureole where they are in view.
+  // If true, the sun's disc and its aureole are drawn where they are in view.
   bool sun_seen = true;
   // The size of the linear frame, if it differs from the scene's size. SceneRenderer::DrawChosen
   // then adds the missing rays. The turbulent detail still suits pixels of the scene's size.
@@ -102,7 +102,7 @@ struct RenderSettings {
   // size `detail_size`. The eye buffer then has the size ChosenRays::Size().
   const ChosenRays* chosen = nullptr;
 
-  // Returns the settings of a technique that draws a medium.
+  // Returns the technique's settings for its medium. The technique must draw a medium.
   const scene::MediumSettings& Medium() const;
 };
 

@@ -1,6 +1,6 @@
-// A pool of scene renderers for viewers of different scenes. Each renderer keeps the stages of the
-// scene that it drew last, so alternating viewers do not discard each other's results. The class
-// owns GL objects, so use it on the context's thread.
+// A pool of scene renderers for viewers of different scenes. Each renderer keeps the results of all
+// stages for the scene that it drew last, so alternating viewers do not discard each other's
+// results. The class owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <cstddef>

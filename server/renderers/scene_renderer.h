@@ -1,6 +1,6 @@
 // Renders a scene and a storm's fields to a linear frame, which is a picture of linear radiance. It
-// keeps each stage's result and reruns from the first stage that a change dirties. The class owns
-// GL objects, so use it on the context's thread.
+// keeps each stage's result and reruns from the first stage whose inputs have changed. The class
+// owns GL objects, so use it on the context's thread.
 #pragma once
 
 #include <map>
@@ -28,8 +28,8 @@ struct SeenStorm {
   // The mean distance of the visible parts of the storm from the eye, times the opacity. Null if
   // the technique does not compute it.
   const gl::Texture2D* opacity_distance_m = nullptr;
-  // The box of the textures of a LightCorrection. A correction is looked up at the place at that
-  // mean distance.
+  // The box that the textures of a LightCorrection cover. A ray looks up its correction at the
+  // place at that mean distance.
   volume::WorldBox box;
 };
 
@@ -70,7 +70,8 @@ class SceneRenderer {
   scene::Stage FirstStage(const scene::Scene& scene, const Fields& fields) const;
 
   // Draws `scene` from `fields`, which are those of its storm and time. Returns INVALID_ARGUMENT if
-  // the technique is not registered or cannot be drawn.
+  // the technique is not registered or cannot be drawn, and CANCELLED if the drawing was cancelled
+  // between two pieces (gl/pieces.h).
   absl::StatusOr<LinearFrame> Draw(const scene::Scene& scene, const Fields& fields,
                                    const DrawQuality& quality);
 
@@ -103,14 +104,15 @@ class SceneRenderer {
   // Returns true if the scene differs from the drawn scene, up to the light stage, only in lights
   // other than the sun.
   bool OnlyLightsDiffer(scene::Scene scene, const Fields& fields) const;
-  // Records the inputs of the kept results, except the inputs of the view.
+  // Records the inputs of the kept results, and marks the view as not drawn.
   void Keep(const scene::Scene& scene, const Fields& fields, const DrawQuality& quality);
   // Draws the storm's view after its light was computed. Returns the part of the eye buffer that
   // may show the storm (cover.h), or null if this can be all of it.
   absl::StatusOr<const Cover*> DrawContent(const scene::Scene& scene, RenderSettings& settings,
                                            StageTimes* times);
-  // Draws the storm's shadow. If `packed` is false, it also draws the distance of the ground where
-  // ground may hide a part of the storm.
+  // Draws the storm's shadow on the ground, if it has changed and the technique does not draw it.
+  // If `packed` is false, it also draws the distance of the ground where ground may hide a part of
+  // the storm.
   absl::Status DrawGround(RenderSettings* settings, bool packed, StageTimes* times);
   absl::Status ShadeAir(const scene::Scene& scene, const RenderSettings& settings,
                         StageTimes* times);
@@ -151,7 +153,7 @@ class SceneRenderer {
   std::optional<scene::Scene> drawn_scene_;
   std::weak_ptr<const volume::HydrometeorFields> drawn_fields_;
   DrawQuality drawn_quality_;
-  bool view_is_drawn_ = false;  // false if drawing the view was cancelled
+  bool view_is_drawn_ = false;  // false if no view is drawn, or its drawing was cancelled
   // Quality of the light that is kept.
   double drawn_light_tolerance_ = kLightTolerance;
   double drawn_light_layer_ = 1.0;

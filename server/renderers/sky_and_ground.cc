@@ -17,7 +17,7 @@ namespace thunderhead::renderers {
 namespace {
 
 // Steps of the eye heights for which sky tables are computed, so that a moving camera rarely needs
-// a new table. The heights are about 150 m apart near the ground and 6 % apart far above it. Tables
+// a new table. The heights are about 160 m apart near the ground and 6 % apart far above it. Tables
 // are interpolated between two heights.
 constexpr double kSkyStep_m = 2500.0;
 constexpr double kSkySteps = 16.0;

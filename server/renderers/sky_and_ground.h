@@ -81,7 +81,7 @@ class SkyAndGround {
   void SetEyeSky(double altitude_m);
   // Binds the table of the sky that water on the ground reflects.
   void BindGroundSky();
-  // Returns the sky's table for height number `step` of the eye heights with tables.
+  // Returns the sky's table for an eye at the height HeightOfStep(step) above the ground.
   const std::vector<glm::vec4>& TableOfStep(int step);
   // Returns the light of the bright region around the sun. `sky_` must be turned to `sun`.
   glm::vec3 AroundSun(const glm::vec3& sun) const;

@@ -24,14 +24,14 @@ constexpr double kDiscPixel_ns = 200.0;
 
 using physics::Aureole;
 
-// Includes the blurred edge of the disc.
+// Angle from the sun's centre up to which the disc and its blurred edge are drawn.
 constexpr double kDiscReach_rad = 2.0 * physics::kSunRadius_rad;
 
 bool IsDark(const SunGlow::Sun& sun) {
   return std::max({sun.irradiance.r, sun.irradiance.g, sun.irradiance.b}) <= 0.0F;
 }
 
-// Returns the angle across a pixel in the picture's middle.
+// Returns the angle across a pixel in the picture's middle, at least 1e-5.
 double PixelAngle_rad(const scene::View& view, const glm::ivec2& size_px) {
   return std::max(2.0 * view.tan_half_height / size_px.y, 1e-5);
 }

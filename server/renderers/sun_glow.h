@@ -24,8 +24,8 @@
 
 namespace thunderhead::renderers {
 
-// Returns the pixels of a picture of `size_px` that may show a place within `angle_rad` of
-// `direction`. The rectangle is empty if there are no such pixels.
+// Returns the pixels of a picture of `size_px` whose rays may be within `angle_rad` of `direction`.
+// The rectangle is empty if no ray is.
 PixelRect RectAround(const glm::dvec3& direction, double angle_rad, const scene::View& view,
                      const glm::ivec2& size_px);
 
@@ -71,7 +71,8 @@ class SunGlow {
   std::vector<physics::PhaseFunction> tabulated_;
   double tabulated_cut_rad_ = -1.0;
   gl::Texture3D table_;
-  std::vector<float> shares_;  // for each group, the scattered share that lies in the cut peak
+  // For each group, the share of its scattering that lies in the cut peak.
+  std::vector<float> shares_;
 };
 
 }  // namespace thunderhead::renderers

@@ -49,8 +49,8 @@ struct Workspace {
   SkyAndGround surroundings;
 };
 
-// A technique. The scene renderer calls its stages in order, beginning with the first dirty stage.
-// It calls the stages after MakeContent only if Empty returns false.
+// A technique. The scene renderer calls its stages in order, beginning with the first stage whose
+// inputs changed. It calls the stages after MakeContent only if Empty returns false.
 class Technique {
  public:
   using Fields = std::shared_ptr<const volume::HydrometeorFields>;
@@ -69,9 +69,9 @@ class Technique {
   // Returns the bounding box of what is drawn.
   virtual volume::WorldBox Box() const = 0;
 
-  // Computes the light of what is drawn. If CastsShadow is true, the technique must set the
-  // ground's shadow (Ground::TakeShadow). Otherwise the shadow is computed from the workspace's
-  // medium.
+  // Computes the light that arrives at the content. If CastsShadow returns true, the function must
+  // set or clear the ground's shadow (Ground::TakeShadow, ShareShadow or ClearShadow). Otherwise
+  // the shadow is computed from the workspace's medium.
   virtual absl::Status CarryLight(const scene::Scene& scene, const Fields& fields,
                                   const RenderSettings& settings, StageTimes* times) = 0;
   virtual bool CastsShadow() const { return false; }
@@ -80,8 +80,8 @@ class Technique {
   // radiance, a is the transmittance to the background.
   virtual absl::Status DrawView(const scene::Scene& scene, const RenderSettings& settings,
                                 StageTimes* times) = 0;
-  // Returns true if the technique draws only the workspace's medium, so that the picture is empty
-  // outside the medium's occupied bricks.
+  // Returns true if the technique draws only the workspace's medium, so that the eye buffer is
+  // empty outside the medium's occupied bricks (blocks of cells that are not empty).
   virtual bool KeepsToCover() const { return false; }
   // Returns true if DrawView supports RenderSettings::chosen.
   virtual bool DrawsChosen() const { return false; }
@@ -99,14 +99,15 @@ class Technique {
 };
 
 // Returns the content of a technique that draws the workspace's medium. `leaps` is true if the
-// technique skips empty bricks.
+// technique skips empty bricks. Otherwise the medium's whole box counts as drawn.
 Content DescribeMedium(const ResidentMedium& medium, const volume::HydrometeorFields& fields,
                        bool leaps);
 // Returns the box around the workspace's medium.
 volume::WorldBox BoxOf(const ResidentMedium& medium);
 
 // Runs `work` and appends its wall time, including the time of its GL commands. The time for which
-// its pieces (gl/pieces.h) waited for other work is not counted.
+// its pieces (gl/pieces.h) waited for other work is not counted. Returns the error of `work`, or
+// the error with which Pieces::Between ends the drawing.
 template <typename Work>
 absl::Status Timed(gl::Pieces& pieces, scene::FrameStage stage, StageTimes* times,
                    const Work& work) {

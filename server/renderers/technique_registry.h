@@ -13,8 +13,8 @@ namespace thunderhead::renderers {
 
 class TechniqueRegistry {
  public:
-  // Creates a registry with the built-in techniques. The registry owns their preparations on the
-  // CPU.
+  // Creates a registry with the built-in techniques. The registry owns the techniques, and with
+  // them the results of preparations, such as fits of metaballs.
   static TechniqueRegistry BuiltIn();
 
   // Adds a technique. Returns ALREADY_EXISTS if the registry has a technique of the same name.

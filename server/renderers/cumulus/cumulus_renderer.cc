@@ -20,7 +20,8 @@ namespace {
 
 constexpr int kShadowTexels = 1024;  // number of texels along each side of the shadow map
 constexpr int kGroundShadowTexels = 256;
-constexpr double kBeforeSurface_m = 2.0;  // distance from the sun's eye to the surface
+// Distance from the shadow map's eye to the sphere around the surface.
+constexpr double kBeforeSurface_m = 2.0;
 constexpr int kRoughnessOctaves = 4;
 // Wavelength of the roughness relative to the radius of the finest bubbles.
 constexpr double kRoughnessInFinest = 1.6;

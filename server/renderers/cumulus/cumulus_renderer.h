@@ -1,8 +1,9 @@
 // Neyret's phenomenological shading of cumulus clouds (2000, "A Phenomenological Shader for the
-// Rendering of Cumulus Clouds") in real time. It ray-casts ellipsoids, nearest cores first, and
-// then shades each fragment as in section 4 of the paper. The result is radiance (rgb) and
-// transmittance (a), like that of the renderers that draw a medium. The class owns GL objects, so
-// use it on the context's thread.
+// Rendering of Cumulus Clouds") in real time. The first pass ray-casts the ellipsoids and finds the
+// distance of the nearest opaque core. The second pass shades each fragment near that core or in
+// front of it, as in section 4 of the paper. The result is radiance (rgb) and transmittance (a),
+// like that of the renderers that draw a medium. The class owns GL objects, so use it on the
+// context's thread.
 #pragma once
 
 #include <memory>
@@ -41,7 +42,8 @@ class CumulusRenderer {
   absl::StatusOr<gl::Texture2D> GroundShadow();
   const LightFrame& ShadowFrame() const { return shadow_frame_; }
 
-  // Draws the surface in the shadow of the last CastShadow. `light_map` comes from LightMapOf.
+  // Draws the surface with the shadow map of the last CastShadow. `light_map` comes from
+  // LightMapOf.
   absl::Status DrawView(const RenderSettings& settings, const std::vector<glm::vec3>& light_map,
                         DetailNoises* noises);
 

@@ -22,8 +22,8 @@ bool HasSurface(physics::Hydrometeor hydrometeor) {
   return hydrometeor == physics::Hydrometeor::kCloud || hydrometeor == physics::Hydrometeor::kIce;
 }
 
-// Returns the smallest coarsening factor along each axis that leaves at most kMaxSurfaceCells
-// cells.
+// Returns the smallest factor that leaves at most kMaxSurfaceCells cells if the grid is coarsened
+// by it along each axis.
 int CoarseningOf(const volume::RegularGrid& grid) {
   int factor = 1;
   while (grid.CellCount() / static_cast<std::size_t>(factor * factor * factor) > kMaxSurfaceCells) {

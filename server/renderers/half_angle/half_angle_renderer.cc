@@ -19,15 +19,16 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMaxBufferTexels = 256;  // number of texels along the longer side of the light buffer
-constexpr double kBufferTexelInCells = 0.75;  // size of a light texel
-constexpr int kThicknessSlices = 128;         // slices perpendicular to the light
+// Maximum number of texels along the longer side of the light buffer.
+constexpr int kMaxBufferTexels = 256;
+constexpr double kBufferTexelInCells = 0.75;  // minimum size of a light texel
+constexpr int kThicknessSlices = 128;         // number of slices in SumThickness
 // Number of slices that one pass adds to the picture. With a larger slab, render targets change
 // less often, but the slab's light takes more memory.
 constexpr int kSlabSlices = 16;
 constexpr gl::PieceCost kSlabPixel{"slab", 15.0 * kSlabSlices};
-// Path length of the light between two exchanges of light with neighbouring texels. It is relative
-// to the distance that one exchange spreads light (consistent transport only).
+// Path length of the light between two exchanges of light with neighbouring texels, in lengths of
+// the longest side of a cell (consistent transport only).
 constexpr double kExchangeInReach = 3.0;
 
 // Runs the current compute program for each texel of a rectangle.
@@ -56,7 +57,8 @@ struct HalfAngleRenderer::Slab {
 
 struct HalfAngleRenderer::CarriedLight {
   BufferRing layers;
-  // Light scattered in one dispatch reaches the neighbouring texels in the next dispatch.
+  // True if light scattered in one dispatch reaches the neighbouring texels only in the next
+  // dispatch.
   bool exchanges_late = false;
   PixelRect due{};  // rectangle of texels in which this exchange is pending
 };
@@ -146,7 +148,7 @@ absl::Status HalfAngleRenderer::Render(const ResidentMedium& medium, const Rende
       const gl::Program* light,
       programs_->Get(gl::ProgramSource::Compute("half_angle/carry.comp", light_variant.Defines())));
   medium.BindWithBricks(*light);
-  // The light is drawn alternately with the eye buffer.
+  // The light is computed for this view only, so its detail fades out as in the eye buffer.
   medium.BindPixel(*light, settings.view, settings.eye_size);
   BindSunRays(*light, slicing, frame);
   light->Set(uniform::light_weights, medium.Weights(weights.light));

@@ -23,7 +23,7 @@ struct SliceLightVariant {
 struct SliceEyeVariant {
   MediumVariant medium;
   gl::DefineValue colored;      // 1 if groups have colours
-  gl::DefineValue even_albedo;  // 1 if all groups have the same albedo and colour
+  gl::DefineValue even_albedo;  // 1 if all groups have the same albedo and no colours
   gl::DefineValue translucent;
   gl::DefineValue consistent;  // 1 if the transport is consistent
   gl::DefineValue ground;      // 1 if ground may hide a part of the medium

@@ -23,9 +23,9 @@ constexpr float kMaxSlant = 4.0F;
 constexpr float kDarkTransmittance = 1e-12F;
 
 // Light that the six faces of a cell receive from a sky of radiance a + b (1 - sine of the
-// elevation). Component x is the weight of the sky's irradiance from above over pi, y is the weight
-// of its mean radiance. The weights are integrals over a hemisphere. For the vertical faces they
-// are integrals over a quarter of the sphere.
+// elevation). Component x is the weight of the sky's irradiance from above divided by pi, y is the
+// weight of its mean radiance. The weights are integrals over a hemisphere. For the vertical faces
+// they are integrals over a quarter of the sphere.
 constexpr glm::vec2 kSideSees(-0.227F, 0.727F);
 constexpr std::array<glm::vec2, 6> kSkySeen = {kSideSees, kSideSees,       kSideSees,
                                                kSideSees, glm::vec2(0.0F), glm::vec2(1.0F, 0.0F)};
@@ -66,8 +66,9 @@ DiffuseLight::DiffuseLight(DiffusionCells cells)
   }
 }
 
-// Adds 1 / depth^2 for each cell, where depth is the optical depth to the nearer of the two exits
-// along `axis`.
+// Scans the cells for their two exits along `axis`. With the optical depth to an exit, it adds 1 /
+// depth^2 of the nearer exit to `sum`, and of both exits to `all`. It sets `outward` along the
+// axis, and adds the sky that the exits see to sky_seen_.
 void DiffuseLight::ScanExits(int axis, std::vector<float>* sum, std::vector<float>* all,
                              std::vector<glm::vec3>* outward) {
   const int length = cells_.size[axis];

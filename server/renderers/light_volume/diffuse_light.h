@@ -108,8 +108,9 @@ class DiffuseLight {
   LinkedCells linked_;
   std::vector<Optics> optics_;  // optics of each numbered cell
   // Resistance to diffuse light, by number and side, in addition to three times the optical depth.
-  // At a surface the resistance is 2 / c, where c is the cosine between the face and the surface
-  // (Marshak's condition). Elsewhere it limits a horizontal step.
+  // At a surface the resistance is 2 / c, where c is the cosine of the angle between the cell's
+  // face and the cloud's surface (Marshak's condition). Elsewhere it limits the horizontal distance
+  // that light travels (kFarthestHop).
   std::vector<std::array<float, 6>> slack_;
   std::vector<float> exit_root_;
   std::vector<glm::vec3> outward_;  // outward directions for AtCells, by number

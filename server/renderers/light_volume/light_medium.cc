@@ -14,9 +14,9 @@ namespace {
 
 constexpr gl::PieceCost kLightMediumBlock{"light medium", 12000.0};
 
-// The texel value of the cell with the largest extinction without detail. Texel values must have
-// room for detail. Billows nearly double a cell's extinction. Preserving the columns' water can
-// first multiply it by ten (volume/water_paths.h). Half floats range from 2^-24 to 2^16.
+// Maximum texel value of the cell that has the largest extinction without detail. Texel values must
+// have room for detail. Billows nearly double a cell's extinction. Preserving the columns' water
+// can first multiply it by ten (volume/water_paths.h). Half floats range from 2^-24 to 2^16.
 constexpr double kThickestTexel = 2048.0;
 
 double PerMetreOf(const ResidentMedium& medium, const GroupWeights& weights) {

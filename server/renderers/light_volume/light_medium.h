@@ -22,8 +22,8 @@ class LightMedium {
   explicit LightMedium(std::shared_ptr<gl::ProgramCache> programs)
       : programs_(std::move(programs)) {}
 
-  // Computes the texture of `medium`, which must not be empty, unless it is up to date.
-  // If `with_transport` is true, texels also hold the similarity-scaled extinction.
+  // Computes the texture of `medium`, which must not be empty, unless the texture is up to date. If
+  // `with_transport` is true, texels also hold the similarity-scaled extinction.
   absl::Status Update(const ResidentMedium& medium, const GroupWeights& weights,
                       bool with_transport);
 

@@ -17,10 +17,12 @@
 namespace thunderhead::renderers {
 namespace {
 
-constexpr int kMaxLightTexels = 256;  // number of texels along each side, at the usual detail
-// Size of a texel across the sun's rays, at the usual detail.
+// Maximum number of texels along each side, at the usual detail.
+constexpr int kMaxLightTexels = 256;
+// Minimum size of a texel across the sun's rays, at the usual detail.
 constexpr double kLightTexelInCells = 0.75;
-// Length of a layer along the sun's rays, relative to the path through a cell.
+// Maximum length of a layer along the sun's rays, at the usual detail, relative to the path through
+// a cell.
 constexpr double kLayerInCells = 1.5;
 constexpr std::array kCorrectionUnits = {shaders::kCorrectionRedUnit, shaders::kCorrectionGreenUnit,
                                          shaders::kCorrectionBlueUnit};
@@ -44,8 +46,8 @@ bool Diffuses(const RenderSettings& settings) {
 
 // Returns the limits of the march's step near the eye. The first limit is in cells, the second is
 // relative to the distance from the eye. Inside or close to a cloud, steps that are long relative
-// to their distance are visible as plates, which move as the eye moves. Frames with few samples
-// also have longer steps there.
+// to their distance are visible as flat layers, which move as the eye moves. Frames with few
+// samples also have longer steps there.
 glm::vec2 NearStep(int slices) {
   constexpr double kInCells = 0.25;
   constexpr double kByDistance = 1.0 / 24.0;
@@ -124,8 +126,8 @@ void LightVolumeRenderer::Resize(const glm::ivec3& carried, const glm::ivec3& ce
   }
   if (arrived_.Size() != cells || light_format_ != format) {
     arrived_ = gl::Texture3D(format, cells);
-    // The march gives unwritten texels the weight 0. It may multiply them by it, so they must be
-    // finite.
+    // The march may read texels that were never written and multiply them by the weight 0, so they
+    // must be finite.
     arrived_.Clear();
     // The texture is allocated now, so that a lack of memory is reported now and not later, while
     // the camera or the sun moves.

@@ -58,8 +58,8 @@ class LightVolumeRenderer {
   // Returns the diffusion pass, which only diffusion transport uses.
   const DiffusionPass& Diffusion() const { return diffusion_; }
 
-  // Draws `medium` with the light of the last CarryLight, whose medium, sun and rendering must have
-  // been the same.
+  // Draws `medium` with the light of the last CarryLight, which must have had the same medium, sun
+  // and technique.
   absl::Status DrawView(const ResidentMedium& medium, const RenderSettings& settings);
 
   // Returns the result of the last DrawView.
@@ -97,8 +97,8 @@ class LightVolumeRenderer {
   gl::Texture2D shadow_;
   gl::Texture3D arrived_;  // light at the medium's cells
   // Ratio of two optical depths of the path next to each cell (arrive.comp). It was computed for
-  // version `near_version_` of light_medium_. The texture is empty on devices that do not draw
-  // sparsely.
+  // version `near_version_` of light_medium_. The texture is empty on devices that compute whole
+  // targets (gl/whole_target.h).
   gl::Texture3D near_ratio_;
   std::uint64_t near_version_ = 0;
   SunParts near_parts_;

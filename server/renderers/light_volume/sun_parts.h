@@ -1,6 +1,6 @@
 // Bookkeeping for light that changes little as the sun moves. The cells are divided into kCount
-// parts. In turns, only one part of the cells is updated at a time, and the others keep their
-// light. The class is a plain value and does not use GL.
+// parts. If the parts are updated in turns, each update computes one part, and the others keep
+// their light. The class is a plain value and does not use GL.
 #pragma once
 
 #include <array>

@@ -38,7 +38,7 @@ struct MarchVariant {
   gl::DefineValue colored;      // 1 if groups have colours
   gl::DefineValue consistent;   // 1 if the transport is consistent
   gl::DefineValue ground;       // 1 if ground may hide a part of the medium
-  gl::DefineValue even_albedo;  // 1 if all groups have the same albedo and colour
+  gl::DefineValue even_albedo;  // 1 if all groups have the same albedo and no colours
   gl::DefineValue diffusion;    // 1 if multiple scattering comes from the diffusion equation
   gl::DefineValue tinted;       // 1 if light from the diffusion equation is absorbed or coloured
   gl::DefineValue corrected;    // 1 if renderers::LightCorrection corrects the radiance

@@ -20,8 +20,8 @@ constexpr double kWallSize = 0.05;
 // (docs/decisions/0009-diffusion-transport.md).
 constexpr double kWallDepth = 1.345;
 // Two walls nearer to each other than this may belong to the same slope. A slope is a smooth cloud
-// surface that the grid represents as steps. The first limit is in shortest paths through a cell,
-// the second is a share of a wall's size.
+// surface that the grid represents as steps. The limit is the larger of two lengths. The first is
+// in units of the shortest path through a cell, the second is a share of a wall's size.
 constexpr double kSameSlopeCells = 1.2;
 constexpr double kSameSlope = 0.3;
 // A wall sees such a near wall only if that wall is at least this many cells above the slope of the

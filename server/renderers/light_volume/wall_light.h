@@ -1,8 +1,8 @@
 // Light that the walls of thick clouds send each other through air that scatters little. A wall is
 // a cell of dense cloud at the cloud's surface. The diffusion equation cannot carry this light,
-// because it has no free flight over long distances. Walls count as white, so the light that they
-// send does not depend on how much arrives. The code works with plain values on the CPU and does
-// not use GL.
+// because it does not model light that travels far without being scattered. Walls count as white:
+// they send out all the light that arrives from other walls, in addition to their own. The code
+// works with plain values on the CPU and does not use GL.
 #pragma once
 
 #include <array>
@@ -25,7 +25,8 @@ class WallLight {
 
   // Sets `arriving` of each wall to the light from other walls. Cells next to walls get the mean of
   // those walls. Other cells stay unchanged. `own` is the light that each cell sends out apart from
-  // this exchange. Both are fluences of four times the flux to a white surface.
+  // this exchange. Both are fluences at a white surface, which are four times the flux that arrives
+  // there.
   void FindArriving(const std::vector<float>& own, std::vector<float>* arriving) const;
 
  private:
@@ -43,7 +44,8 @@ class WallLight {
   glm::dvec3 Outward(const DiffusionCells& cells, std::size_t wall) const;
   static float NearShare(const DiffusionCells& cells, std::size_t wall, const glm::ivec3& other,
                          const glm::dvec3& outward);
-  // `outward` is the outward direction of the cloud surface that the wall belongs to.
+  // Follows a ray from side `side` of a wall, and records in seen_ the wall that the ray meets. The
+  // parameter `outward` is the outward direction of the cloud surface that the wall belongs to.
   void Follow(const DiffusionCells& cells, std::size_t wall, int side, const glm::dvec3& ray,
               const glm::dvec3& outward);
 

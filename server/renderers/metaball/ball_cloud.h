@@ -15,7 +15,8 @@ struct Ball {
   glm::dvec3 middle_m{0.0};
   double radius_m = 1.0;          // R of Man, eq. 16
   double extinction_per_m = 0.0;  // extinction at the ball's centre; at least 0
-  // Share of each of the medium's groups in the ball's extinction. The shares add up to 1.
+  // Share of each of the medium's groups in the ball's extinction. The shares add up to 1, or are 0
+  // if the storm has no extinction in the ball.
   std::array<float, volume::kMaxChannels> shares{1.0F};
 };
 

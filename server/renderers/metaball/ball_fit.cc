@@ -57,7 +57,8 @@ std::vector<float> ExtinctionOf(const volume::HydrometeorFields& fields, const M
   return values;
 }
 
-// Sets each ball's shares of the groups from the extinction in the place of the ball.
+// Sets each ball's shares of the groups from the groups' extinctions, summed over the cells with
+// the ball's field as weight.
 void Share(const volume::HydrometeorFields& fields, const Medium& medium,
            const clouds::MetaballCloud& cloud, std::vector<Ball>* balls) {
   const clouds::BasisOperator basis(fields.grid, cloud.balls, cloud.basis, cloud.overlap, 1);

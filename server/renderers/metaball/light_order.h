@@ -1,7 +1,7 @@
-// The order in which balls are splatted into a light buffer, from the light outwards (Man, 4.1).
-// Balls that cannot touch the same texels are independent of each other and form a level.
-// Processing level after level gives the same result as processing ball after ball. This code does
-// not use GL.
+// The order in which balls are splatted into a light buffer, with the ball nearest to the light
+// first (Man, 4.1). Balls that cannot touch the same texels are independent of each other and form
+// a level. Processing level after level gives the same result as processing ball after ball. This
+// code does not use GL.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct LightDisc {
 
 struct LightOrder {
   std::vector<std::uint32_t> discs;  // indices of the balls, level by level
-  // Index in `discs` at which each level starts, and the size of `discs`.
+  // Index in `discs` at which each level starts, followed by the size of `discs`.
   std::vector<std::uint32_t> starts;
 
   std::size_t Levels() const { return starts.empty() ? 0 : starts.size() - 1; }

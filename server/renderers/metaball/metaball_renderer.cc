@@ -21,10 +21,11 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Number of texels along the longer side of the light buffer.
+// Minimum and maximum number of texels along the longer side of the light buffer.
 constexpr int kMinBallLightTexels = 64;
 constexpr int kMaxBallLightTexels = 1024;
-constexpr double kTexelsAcrossBall = 8.0;  // number of texels across the smaller balls
+// Number of texels across the ball whose radius is the 10th percentile of all radii.
+constexpr double kTexelsAcrossBall = 8.0;
 
 // Wavelength of the surfaces' longest wave, in radii of the mean ball.
 constexpr double kWaveInRadii = 1.5;
@@ -341,7 +342,8 @@ absl::Status MetaballRenderer::FindSources(const RenderSettings& settings) {
 }
 
 // Sets the noise of the balls' surfaces. Its longest wave is shorter than the diameter of the mean
-// ball. The finest level is the one whose texels are as large as the pixels of the nearest ball.
+// ball. The function binds the coarsest level whose texels are no larger than a pixel at the near
+// side of the balls' box. If no level has such texels, it binds the finest level.
 void MetaballRenderer::BindNoise(const gl::Program& program, const RenderSettings& settings,
                                  float share) const {
   double mean_radius_m = 0.0;

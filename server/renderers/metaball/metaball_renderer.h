@@ -67,7 +67,8 @@ class MetaballRenderer {
     }
   };
 
-  // The inputs, apart from its direction, that determine a light's transmittance through the balls.
+  // The inputs, apart from a light's direction, that determine how much of the light arrives at
+  // each ball.
   struct Optics {
     std::vector<glm::vec4> balls;  // all values of the balls, as in the device's buffer
     bool paper = false;

@@ -30,7 +30,7 @@ class BallPreparation final : public Preparation {
   std::shared_ptr<BallFits> fits_;
 };
 
-// Returns the detail of the drawn field with the largest share.
+// Returns the detail of the drawn field whose detail has the largest share.
 scene::Detail RoughestOf(const std::vector<scene::DrawnField>& drawn) {
   scene::Detail roughest;
   for (const scene::DrawnField& field : drawn) {

@@ -14,10 +14,9 @@ namespace thunderhead::renderers {
 struct BallTiles {
   int tile_px = 16;
   glm::ivec2 tiles{1};
-  std::vector<std::uint32_t>
-      // Index in `balls` at which each tile's list starts, row by row from the bottom, and the size
-      // of `balls`.
-      starts;
+  // Index in `balls` at which each tile's list starts, row by row from the bottom, followed by the
+  // size of `balls`.
+  std::vector<std::uint32_t> starts;
   std::vector<std::uint32_t> balls;
 };
 

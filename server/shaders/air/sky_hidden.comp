@@ -3,11 +3,12 @@
 // value is the storm's opacity. The second value is the opacity times a transmittance for diffuse light, which is that
 // of a level layer of the same vertical depth.
 //
-// The transmittance of the layer is the two-stream solution (1 - a / r) exp(-sqrt(3 a r)) / (1 + 3/4 r). Here r is the
-// similarity-scaled depth of transport, and a is the depth of absorption. The layer's reflectance is 1 minus its
-// transmittance without absorption, times the reflectance of a semi-infinite layer. The latter is (1 - s) / (1 + s)
-// with s = sqrt(a / r). The reflectance's mean over directions is stored as a vector. Variants: GROUPS, DETAILS (always
-// 0, because the noise has a mean of 1).
+// The transmittance of the layer is the two-stream solution (1 - a / r) exp(-sqrt(3 a r)) / (1 +
+// 3/4 r). Here r is the similarity-scaled depth of transport, and a is the depth of absorption. The
+// layer's reflectance is 1 minus its transmittance without absorption, times the reflectance of a
+// semi-infinite layer. The latter is (1 - s) / (1 + s) with s = sqrt(a / r). The reflectance's mean
+// over directions is stored as a vector. Variants: GROUPS, DETAILS (always 0, because fine detail
+// averages out).
 #include "common/bindings.glsl"
 #include "common/medium.glsl"
 #include "common/bricks.glsl"

@@ -57,8 +57,10 @@ uint brick_content(MediumRay ray, vec3 place) { return texture(bricks, brick_mid
 // Returns true if the brick is not empty.
 bool is_filled(uint content) { return content == kThickBrick || content == kThinBrick; }
 
-// Returns the distance along the ray from `place` (in bricks) to the end of the cube of empty bricks around it.
-// `content` is the size of that cube in bricks. If it is 1, the distance is that to the end of the brick itself.
+// Returns the distance along the ray from `place` (in bricks) to the end of the cube of empty
+// bricks around it. The brick's content `content` is the distance, in bricks, to the nearest brick
+// that is not empty. If it is 1, the cube is the brick itself. A small margin is added, so that the
+// ray leaves the cube.
 float empty_path(MediumRay ray, vec3 place, uint content) {
   vec3 across = abs(ray.per_brick_step);  // path length through a brick along each axis
   vec3 path = (brick_middle(ray, place) - place) * ray.per_brick_step + (float(content) - 0.5) * across;

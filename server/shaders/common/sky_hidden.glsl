@@ -10,8 +10,8 @@ uniform vec3 faces_sunlight;  // irradiance of the sun on faces of the storm tha
 
 struct StormInSky {
   float hidden;  // share of the sky that the storm hides
-  // Mean radiance of the storm to a point in its shadow, times pi. The irradiance on level ground
-  // by the sun and the clear sky is 1.
+  // Mean radiance of the storm to a point in its shadow, times pi, divided by the irradiance on
+  // level ground by the sun and the clear sky.
   float through;
   float reflects;  // share of light from outside that the storm reflects
   vec3 faces;  // mean of the reflected share times the direction in which it is seen
@@ -24,11 +24,12 @@ StormInSky storm_in_sky(vec3 point_m) {
   return StormInSky(shares.x, shares.y, reflected.a, reflected.rgb);
 }
 
-// Returns the mean radiance over the sky, times pi, of the light that the storm's faces reflect to a point outside the
-// storm's shadow. Faces count as oriented like those of a white sphere. A sphere seen at the angle a from the sun has a
-// share of its full brightness. The share is (sin a + (pi - a) cos a) / pi, and the full brightness is 2/3 of that of a
-// flat face. The function approximates the product by 3/8 + cos(a) / 2. `skylight` is the irradiance on level ground,
-// of which the faces get half.
+// Returns the mean radiance over the sky, times pi, of the light that the storm's faces reflect to
+// a point outside the storm's shadow. Faces count as oriented like those of a white sphere. Let a
+// be the angle at the sphere between the sun and the point. The sphere has the share (sin a + (pi -
+// a) cos a) / pi of its full brightness, which the function approximates by 3/8 + cos(a) / 2. The
+// full brightness is 2/3 of that of a flat face. `skylight` is the irradiance on level ground, of
+// which the faces get half.
 vec3 light_of_faces(StormInSky storm, vec3 towards_sun, vec3 skylight) {
   float sunlit = max(storm.reflects / 4.0 - dot(storm.faces, towards_sun) / 3.0, 0.0);
   return sunlit * faces_sunlight + 0.5 * storm.reflects * skylight;

@@ -1,6 +1,7 @@
-// The storm's shadow, with one texel for each sun ray through the storm's box (Ground::BindShadow). Two moments store
-// where along the ray the storm removes light. The loss of light counts as uniform over an interval with this mean and
-// variance. From the interval follows the share of the shadow at a point inside the box.
+// The storm's shadow, with one texel for each sun ray through the storm's box (Ground::BindShadow).
+// Two moments store where along the ray the storm removes light. The loss of light counts as
+// uniform over an interval with this mean and variance. At a point inside the box, the shadow is
+// the part of this loss that happens in front of the point.
 #include "common/bindings.glsl"
 
 // Channel r is the share of sunlight that the storm blocks from places behind it. Channel g is that share times the

@@ -48,7 +48,8 @@ bool meet(out Meeting meeting) {
   if (entry_m > until_ground(entry_m)) return false;
   meeting.entry_m = entry_m;
   meeting.exit_m = exit_m;
-  // In the unit ball, surfaces of constant depth are balls. The gradient there converts the depth to metres.
+  // In the unit ball, surfaces of constant depth are spheres around the centre. The gradient of the
+  // distance from the centre converts the depth to metres.
   vec3 deepest = o + clamp(nearest_m, entry_m, exit_m) * d;
   float away = max(length(deepest), 1e-6);
   vec3 gradient = from_unit_normal(unit_x.xyz, unit_y, unit_z, deepest) / away;

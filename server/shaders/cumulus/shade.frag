@@ -178,8 +178,9 @@ vec3 core(Meeting meeting, vec3 point_m, float pixel_m) {
 #endif
 }
 
-// Returns the radiance of the corona, in front of the sun (section 4.2, appendix A). The variance of the scattering
-// angle grows with the number of droplets on the path. The lobe is a power of the cosine, scaled to conserve energy.
+// Returns the radiance of the corona (section 4.2, appendix A). It is 0 for rays away from the sun.
+// The variance of the scattering angle grows with the number of droplets on the path. The lobe is a
+// power of the cosine, scaled to conserve energy.
 vec3 corona(Meeting meeting, float rho) {
   float mu = dot(meeting.ray, towards_sun);
   if (mu <= 0.0) return vec3(0.0);

@@ -3,10 +3,11 @@
 // meets the slices. Points in empty bricks are skipped. The method is Riley et al. 2003 (Vis), eq. 5 with the phase of
 // eq. 18. The light comes from carry.comp.
 //
-// Variants: GROUND (the parts of the medium behind the ground are omitted), GROUPS, DETAILS, COLORED (groups have
-// colours), EVEN_ALBEDO (all groups have the same albedo and colour), TRANSLUCENT, CONSISTENT (consistent transport),
-// ORDER. ORDER is 1 if all rays meet the slices in the order of sunlight, 0 if all meet them in the reverse order, and
-// 2 if a wide view has both kinds.
+// Variants: GROUND (the parts of the medium behind the ground are omitted), GROUPS, DETAILS,
+// COLORED (groups have colours), EVEN_ALBEDO (all groups have the same albedo and no colours),
+// TRANSLUCENT, CONSISTENT (consistent transport), ORDER. ORDER is 1 if all rays meet the slices in
+// the order of sunlight, 0 if all meet them in the reverse order, and 2 if a wide view has both
+// kinds.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "common/ground_distance.glsl"
@@ -18,10 +19,11 @@
 #include "half_angle/bindings.glsl"
 #include "physics/light_transport.glsl"
 
-// Light that enters each slice of the slab, with one layer for each slice. r is the share of sunlight, g the optical
-// depth towards the sun.
+// Light that enters each slice of the slab, with one layer for each slice. r is the share of
+// sunlight, g the similarity-scaled optical depth towards the sun.
 layout(binding = kSliceLightUnit) uniform sampler2DArray light;
-layout(binding = kSliceThicknessUnit) uniform sampler2D thickness;  // r: optical depth along the whole sun ray
+// Channel r is the similarity-scaled optical depth along the whole sun ray.
+layout(binding = kSliceThicknessUnit) uniform sampler2D thickness;
 
 layout(binding = kEyeBeforeUnit) uniform sampler2D eye;  // eye buffer before this slab
 layout(binding = kDistanceBeforeUnit) uniform sampler2D distance_before;
@@ -62,7 +64,9 @@ void main() {
   const bool front_to_back = ORDER == 1;
 #endif
   if (!front_to_back) {
-    // On this ray, sunlight meets the slices from behind, so from here on distances are counted towards the eye.
+    // Along this ray, the eye meets the slices in the reverse order of sunlight. From here on,
+    // distances are therefore counted towards the eye, so that the slices are visited in the order
+    // of sunlight.
     safe = -safe;
     path = -path.yx;
   }

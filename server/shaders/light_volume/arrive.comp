@@ -2,9 +2,10 @@
 // cells (volume::CellBlocks). Close to the cell, the medium is sampled towards the sun. Farther away, the optical depth
 // comes from the volume of carry.comp, which is aligned with the sun.
 //
-// r is the square root of the optical depth of the arriving light. The interpolated medium has its kinks at cell
-// centres. At a cloud's edge, extinction rises linearly from a cell centre, so the square root of the optical depth
-// also rises linearly. g is the mean intensity of multiply scattered light, divided by the sun's irradiance.
+// r is the square root of the optical depth of the arriving light. Extinction is linear between
+// cell centres. At a cloud's edge it rises from 0 at a cell centre, so the optical depth rises
+// quadratically, and its square root can be interpolated linearly. g is the mean intensity of
+// multiply scattered light, divided by the sun's irradiance.
 //
 // Variants: GROUPS, DETAILS, CONSISTENT, TRANSLUCENT, DIFFUSE, NEAR. NEAR concerns the path close to a cell. Its
 // optical depth in the medium is divided by its optical depth in the light's medium (light_medium.comp). This ratio
@@ -57,8 +58,8 @@ struct Surroundings {
   float light_layers;
 };
 
-// Computes the light of one cell. `here_place` is the cell's place in the light's volume. `far_place` is the end of the
-// sampled path there.
+// Computes the light of one cell. `here_place` is the cell's place in the light's volume.
+// `far_place` is the place of the sampled path's end in the light's volume.
 void give_light(ivec3 cell, vec3 place, vec3 here_place, vec3 far_place, Surroundings around) {
   // Only the part of the sampled path inside the medium's box counts. A block of cells may extend beyond the box.
   vec3 inside = (around.out_place - place) * around.per_near_path;

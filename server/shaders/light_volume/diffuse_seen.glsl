@@ -1,8 +1,9 @@
-// Light scattered many times along a view ray, from the diffusion equation (renderers/light_volume/diffuse_light.h).
-// The equation treats the medium as scattering isotropically but less. The diffuse light and the background are
-// therefore attenuated by the similarity-scaled extinction. Extinctions are per step. This file needs
-// common/medium.glsl, common/phase.glsl and light_volume/segment.glsl. Variant: TINTED (the diffuse light is absorbed
-// or coloured).
+// Light scattered many times along a view ray, from the diffusion equation
+// (renderers/light_volume/diffuse_light.h). The equation replaces the medium by one that scatters
+// isotropically and has less extinction (similarity scaling). The diffuse light and the background
+// are therefore attenuated by the similarity-scaled extinction. Extinctions are per step. This file
+// needs common/medium.glsl, common/phase.glsl and light_volume/segment.glsl. Variant: TINTED (the
+// diffuse light is absorbed or coloured).
 #include "light_volume/bindings.glsl"
 #include "physics/light_transport.glsl"
 
@@ -15,7 +16,7 @@ layout(binding = kNetInwardUnit) uniform sampler3D net_inward;
 
 uniform vec4 transport_weights[PLANES];  // factors from a texel to the similarity-scaled extinction in 1/m
 uniform vec3 rest_of_sky;  // mean radiance of the sky without the bright region around the sun
-uniform vec3 rest_of_sky_level;  // irradiance of that sky from above over pi
+uniform vec3 rest_of_sky_level;  // irradiance of that sky on level ground divided by pi
 uniform vec3 around_sun;  // irradiance of the bright region around the sun, from the sun's direction
 uniform vec3 from_ground;                // radiance of open ground
 #if TINTED
@@ -68,7 +69,7 @@ struct DiffuseSeen {
   float transmittance;  // transmittance for diffuse light and the background
   vec3 sun;  // fluence of sunlight divided by the sun's irradiance
   vec3 sky;  // weight of the sky's mean radiance
-  vec3 level;  // weight of the sky's irradiance from above over pi
+  vec3 level;  // weight of the sky's irradiance on level ground divided by pi
   vec3 ground;  // weight of open ground's radiance
 };
 
@@ -89,9 +90,10 @@ vec2 sky_shares_of(DiffuseSample there, float scale) {
   return shares * (clamp(shares.x + shares.y, 0.0, 1.0) / max(shares.x + shares.y, 1e-6));
 }
 
-// Adds a segment. The share of the diffuse light that the segment removes is `taken`. The square root of the optical
-// depth from the sun is `sun_depth_root`. The extinction for the eye is `extinction`. The last two are values at the
-// place where half of `taken.share` is reached. Returns the segment's weight in the pixel.
+// Adds a segment. The share of the diffuse light that the segment removes is `taken.share`. The
+// square root of the optical depth from the sun is `sun_depth_root`. The extinction for the eye is
+// `extinction`. These two and `there` are values at the place where half of `taken.share` is
+// reached. Returns the segment's weight in the pixel.
 float see_diffuse(inout DiffuseSeen seen, Taken taken, DiffuseSample there, float sun_depth_root, float extinction) {
   float scale = there.transport / max(extinction, 1e-30);
   float fluence = sun_fluence(there, sun_depth_root * sun_depth_root, scale);

@@ -42,7 +42,9 @@ layout(location = 0) out vec4 radiance_and_transmittance;
 layout(location = 1) out float opacity_distance_m;  // opacity times the mean distance of what is visible
 
 const int kMaxSamples = 16384;
-// Factor of two floating-point steps. Far from the eye, these steps are larger than the margin of empty_path.
+// Factor that increases a distance by about two floating-point steps. Far from the eye, the margin
+// that empty_path adds is smaller than one such step, and the ray would not leave the brick without
+// this factor.
 const float kOnwards = 1.0 + 2.4e-7;
 const bool kDiffusion = DIFFUSION == 1;
 const bool kGlows = CONSISTENT == 1 && !kDiffusion;  // samples add multiply scattered light

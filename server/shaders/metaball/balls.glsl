@@ -3,11 +3,11 @@
 
 struct Ball {
   vec4 middle_radius;  // xyz: middle; w: radius; in metres
-  // Values at the centre in 1/m: extinction along the eye's ray (x), along the sun's ray (y), and similarity scaled
-  // (z). w is the albedo.
+  // Values at the centre in 1/m: extinction along the eye's ray (x), along the sun's ray (y), and
+  // similarity scaled (z). With PAPER, x is an optical depth (paper_depth). w is unused.
   vec4 optics;
   vec4 scattering[2];  // for each group, its scattering divided by the ball's extinction for the eye
-  vec4 tint;  // rgb: the colour of the albedo
+  vec4 tint;  // rgb: the albedo for each colour
 };
 
 layout(std430, binding = kBallsBinding) readonly buffer Balls { Ball balls[]; };

@@ -15,9 +15,10 @@
 
 layout(local_size_x = kBallGroupSize) in;
 layout(binding = kBallLightImage, rg32f) uniform image2D light;
-// Light that arrives at each ball, by light source and ball. x is the arriving share of the beam, or that of the sky. y
-// is the mean intensity of multiply scattered light, divided by the beam's irradiance. Between the passes, y is the
-// similarity-scaled optical depth in front of the ball's centre.
+// Light that arrives at each ball, by light source and ball. x is the arriving share of the beam.
+// For diffuse light, x is the share that comes from the sky. y is the mean intensity of multiply
+// scattered light, divided by the beam's irradiance. Between the passes, y is the similarity-scaled
+// optical depth in front of the ball's centre.
 layout(std430, binding = kBallArrivedBinding) buffer Arrived { vec2 arrived[]; };
 
 uniform int first;  // index in `order` of the first ball of this dispatch
@@ -62,7 +63,8 @@ void main() {
     sum += vec3(before.r, 0.0, 1.0);
 #elif PASS == 0
     float column = wyvill_column(s);
-    // The part of the ball in front of a place attenuates the light that reaches it. This is the mean over the ball.
+    // The light that reaches a place in the ball is attenuated by the part of the ball in front of
+    // the place. This is the mean along the line of sight to the light.
     float enters = exp(-before.r) * mean_transmittance(column * light_depth);
     sum += column * vec3(enters, before.g + 0.5 * column * scaled_depth, 1.0);
 #else

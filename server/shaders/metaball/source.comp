@@ -8,14 +8,16 @@
 
 layout(local_size_x = kBallGroupSize) in;
 layout(std430, binding = kBallArrivedBinding) readonly buffer Arrived { vec2 arrived[]; };  // from light.comp
-// rgb is the radiance, a the extinction at the centre.
+// rgb is the radiance per unit of opacity. a is the extinction at the centre in 1/m, or with PAPER
+// the optical depth there.
 layout(std430, binding = kBallSourcesBinding) writeonly buffer Sources { vec4 sources[]; };
 
 uniform int ball_count;
 uniform vec3 eye_forward;
 uniform vec3 eye_m;
 uniform vec3 towards_light[LIGHTS];
-// Irradiance of each light; the first entry, the sun, is unused, because its irradiance depends on height.
+// Irradiance of each light. The first entry is a factor of the sun's irradiance, which depends on
+// height (sunlight_at).
 uniform vec3 irradiance[LIGHTS];
 uniform vec3 sky_radiance;  // mean radiance of the upper hemisphere; ground_radiance is that of the lower hemisphere
 uniform vec3 ground_radiance;

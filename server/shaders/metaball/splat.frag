@@ -37,7 +37,8 @@ layout(location = 1) out float opacity_distance_m;  // opacity times the mean di
 #if DETAIL
 const float kRelief = 0.5;  // depth of the deepest valley, as a share of a ball's squared radius
 const float kDisplaced = 0.5;  // displacement in radii
-// Factor in the exponent by which noise reduces a ball's optical depth, averaged over its disc, at a roughness of 1.
+// At a roughness of 1, noise reduces a ball's optical depth, averaged over its disc, by a factor of
+// about exp(-kEroded). The optical depth is multiplied by the reciprocal of this factor.
 const float kEroded = 0.7;
 const float kMinSeen = 0.01;  // a ball with a smaller share of a pixel shows its own light instead of the mean
 
@@ -135,8 +136,8 @@ void main() {
     vec3 light = source.rgb;
 #if DETAIL
     if (transmittance * taken > kMinSeen) {
-      // At this place about half of the ball's visible light is in front. Fields grow with the square of the depth
-      // below the surface.
+      // About half of the ball's visible light comes from in front of this place. Fields grow with
+      // the square of the depth below the surface.
       float before = half_chord * min(pow(1.4 / max(depth, 1e-6), 1.0 / 3.0), 1.0);
       // The mean light counts only half. Deeper balls have more weight at this place, and they are darker than the
       // surface.

@@ -9,7 +9,9 @@ struct GroupOptics {
   vec4 albedo;  // w: mean albedo over the colours, for choosing the group
   float share;  // factor of the group's exact extinction
   float asymmetry;
-  int table;  // index of the first table, in floats after the angles; -1 for Henyey and Greenstein's function
+  // Index in `phases` of the group's first table, or -1 for Henyey and Greenstein's function. The
+  // angles, which all tables share, are at the beginning of `phases`.
+  int table;
   int colors;  // number of tables: 1 or 3
 };
 layout(std430, binding = kPathGroupsBinding) readonly buffer Groups { GroupOptics group_optics[]; };

@@ -10,8 +10,8 @@ struct PathState {
   vec4 place;  // xyz: place in bricks; w: limit of the path's first flight in metres
   vec4 direction;  // xyz: unit vector; w: one of the constants kPath...
   vec4 throughput;  // w: number of collisions so far
-  // Weights by colour, which compensate for sampling the hero colour's phase functions. w: number of collisions at
-  // which the path next continues by roulette.
+  // Weights by colour. They compensate for sampling only the phase functions of one colour, the
+  // path's hero colour. w: number of collisions at which the path next continues by roulette.
   vec4 spectral;
   vec4 radiance;  // w: also the result, if it is a distance or a transmittance
   uvec4 counter;  // counter of the path's random numbers; x is the index of the next block

@@ -1,5 +1,6 @@
-// Clear air and haze, and their effect on light between an eye and an object. Both decrease exponentially with height.
-// The file compiles as GLSL and as C++ (physics/sky.h).
+// Clear air and haze, and their effect on light between an eye and an object. The densities of air
+// and haze decrease exponentially with height. The file compiles as GLSL and as C++
+// (physics/sky.h).
 #ifdef __cplusplus
 #define PHYSICS_FUNCTION inline
 #else
@@ -47,7 +48,8 @@ PHYSICS_FUNCTION float equivalent_m(float scale_height_m, float density, AirPath
   // is negligible.
   float bend = max(path.curvature_per_m * (1.0f - path.sin_elevation * path.sin_elevation), 1e-13f);
   float per_m = sqrt(0.5f * bend / scale_height_m);
-  float low = per_m * path.sin_elevation / bend;  // distance of the start from the path's lowest point
+  // Scaled distance of the start from the path's lowest point.
+  float low = per_m * path.sin_elevation / bend;
   float high = low + per_m * path.distance_m;
   float climb_m = path.distance_m * (path.sin_elevation + 0.5f * bend * path.distance_m);
   float from = density * scaled_erfc(abs(low));

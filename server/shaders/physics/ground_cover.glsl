@@ -43,8 +43,8 @@ PHYSICS_FUNCTION vec2 sharp_cell(vec2 place, vec2 footprint) {
 // Returns the level of the mip chain whose texels are as large as the footprint. `footprint` is in texels.
 PHYSICS_FUNCTION float mip_level(vec2 footprint) { return log2(max(max(footprint.x, footprint.y), 1.0f)); }
 
-// Returns the length of the interval [0, x] that stripes cover. There is a stripe of width `stripe` around each
-// multiple of `period`. The interval is counted from -period/2.
+// Returns the length that stripes cover in the interval from -period / 2 to x. There is a stripe of
+// width `stripe` around each multiple of `period`.
 PHYSICS_FUNCTION float striped_length(float x, float period, float stripe) {
   float periods = x / period + 0.5f;
   float whole = floor(periods);
@@ -69,8 +69,9 @@ PHYSICS_FUNCTION vec2 roads(vec2 place, vec2 footprint) {
   return vec2(covered, covered - (2.0f * one - one * one));
 }
 
-// Returns the share of the footprint in the circle of a centre pivot, minus the share of the quarter section that the
-// circle covers.
+// Returns the share of the footprint in the circle of a centre pivot, minus the share of the
+// quarter section that the circle covers. The result fades to 0 as the footprint's side grows to
+// three quarters of the quarter section's side.
 PHYSICS_FUNCTION float pivot(vec2 place, vec2 footprint) {
   vec2 quarters = place / kQuarter_m;
   vec2 from_middle = (quarters - floor(quarters) - 0.5f) * kQuarter_m;

@@ -1,5 +1,5 @@
-// Closed-form solutions of light transport that all renderers use. The file compiles as GLSL and as C++
-// (physics/optics.h).
+// Closed-form solutions of light transport that renderers share. The file compiles as GLSL and as
+// C++ (physics/optics.h).
 #ifdef __cplusplus
 #define PHYSICS_FUNCTION inline
 #else
@@ -50,8 +50,8 @@ PHYSICS_FUNCTION float lit_fluence(float exit, float sun_depth) {
 // Returns fluence near the surface that the diffusion equation omits. It is light that has been
 // scattered but has kept its direction. The place is at the optical depth `sun_depth` from the sun.
 // Its similarity-scaled depth is `transport_sun_depth`. The light is visible where the sun is low
-// above the surface. The factor is closer to the reference than 1.3 in 8 of 11 views of five clouds
-// (docs/decisions/0048-ground-light.md).
+// above the surface. A factor of 1.6 is closer to the reference than 1.3 in 8 of 11 views of five
+// clouds (docs/decisions/0048-ground-light.md).
 PHYSICS_FUNCTION float forward_fluence(float exit, float sun_depth, float transport_sun_depth) {
   float cosine = exit < sun_depth ? exit / sun_depth : 1.0f;
   return 1.6f * (1.0f - cosine * cosine) * (exp(-transport_sun_depth) - exp(-sun_depth));

@@ -93,15 +93,16 @@ vec3 depth_before(vec3 ray, float distance_m) {
   return depth_of_air(turbidity, air_densities, AirPath(altitude_m, ray.z, ground_curvature_per_m, distance_m));
 }
 
-// Returns the clear sky behind a ray. The table's horizon is that of a sphere, but the ground is a paraboloid or
-// terrain. The elevation is therefore moved to the right side of the table's horizon.
+// Returns the clear sky behind a ray. The table's horizon is that of a sphere, but the ground is a
+// paraboloid or terrain. The elevation is therefore moved below the table's horizon if the ray
+// meets level ground, and above it if the ray meets no ground.
 Sky sky_behind(vec3 ray, float ground_m) {
   if (RELIEF == 0 && ground_m > 0.0) ray.z = min(ray.z, horizon_sine - kJustBelow);
   if (ground_m <= 0.0) ray.z = max(ray.z, horizon_sine);
   Sky sky = sky_at(ray, towards_sun_local);
 #if RELIEF
-  // If the table's ray ends after hardly any haze, its radiance is almost zero. The air then counts as bright as just
-  // above the horizon.
+  // If the ray of the table's entry ends after hardly any haze, the entry's radiance is almost
+  // zero. The air then counts as bright as just above the horizon.
   if (sky.air_mass.y < kHardlyAnyHaze) sky = sky_at(vec3(ray.xy, max(ray.z, horizon_sine)), towards_sun_local);
 #endif
   return sky;

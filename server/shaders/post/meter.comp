@@ -1,7 +1,7 @@
-// Measures the luminance of the storm's brightest hundredth in a linear frame, whose alpha is the storm's opacity. If
-// the frame shows almost no storm, the whole picture is measured. One work group divides the picture into cells and
-// makes a histogram of the cells' means. Each mean omits the cell's brightest sample, so that noise and single bright
-// pixels have no effect.
+// Measures the luminance that the brightest hundredth of the storm exceeds, in a linear frame whose
+// alpha is the storm's opacity. If the frame shows almost no storm, the whole picture is measured.
+// One work group divides the picture into cells and makes a histogram of the cells' means. Each
+// mean omits the cell's brightest sample, so that noise and single bright pixels have no effect.
 #include "common/bindings.glsl"
 
 layout(local_size_x = kMeterGroupSize) in;
@@ -45,8 +45,8 @@ uint counted() {
   return all;
 }
 
-// Fills the histogram with the cells whose opacity is at least `least_opacity`. All invocations must call this
-// function.
+// Fills the histogram with all cells, each weighted by its mean opacity. Opacities below
+// `least_opacity` count as `least_opacity`. All invocations must call this function.
 void count(float least_opacity) {
   int first = int(gl_LocalInvocationIndex);
   for (int i = first; i < kBins; i += kMeterGroupSize) histogram[i] = 0u;

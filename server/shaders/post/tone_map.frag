@@ -1,5 +1,7 @@
-// Converts linear radiance to 8-bit sRGB, top row first. With FILMIC 1 a film curve is applied, with 0 values are
-// clipped. With NOISE 1 dither noise is added, without which 8 bits would show bands. NOISE 0 is for higher precision.
+// Converts linear radiance to sRGB, top row first. With FILMIC 1, the contrast is increased and a
+// film curve is applied. With FILMIC 0, values above 1 are clipped. NOISE 1 is for targets of 8
+// bits: it adds dither noise, without which they would show bands. NOISE 0 is for targets of 16
+// bits.
 #include "common/bindings.glsl"
 
 layout(binding = kLinearFrameUnit) uniform sampler2D linear_frame;
@@ -11,9 +13,10 @@ uniform float just_below_white;  // luminance that the change of contrast leaves
 in vec2 position;
 out vec4 display;
 
-// The film curve, applied to each colour. Below m it is a toe m (x / m)^c. From m to s = m + l (1 - m) it is the line y
-// = x. Above s it is a shoulder 1 - (1 - s) exp((s - x) / (1 - s)), which tends to 1. Source: Uchimura 2017, "HDR
-// theory and practice" (CEDEC), with P = a = 1 and b = 0.
+// The film curve, applied to each colour. Below m it is a toe, which blends m (x / m)^c smoothly
+// into y = x. From m to s = m + l (1 - m) it is y = x. Above s it is a shoulder 1 - (1 - s) exp((s
+// - x) / (1 - s)), which tends to 1. Source: Uchimura 2017, "HDR theory and practice" (CEDEC), with
+// P = a = 1 and b = 0.
 vec3 film(vec3 x) {
   const float m = 0.22;
   const float l = 0.75;

@@ -32,7 +32,8 @@ out vec4 added;
 const float kNoGround_m = 1e8;
 const int kMaxSamples = 16384;
 const float kOnwards = 1.0 + 2.4e-7;
-const float kOpaqueDepth = 30.0;  // at most half of this optical depth is that of the peak
+// A ray ends at this optical depth. The peaks hold at most half of it, so almost no light remains.
+const float kOpaqueDepth = 30.0;
 
 // Returns the texel values integrated over the ray, in texel values times metres.
 Medium medium_along(vec3 origin_m, vec3 direction) {
