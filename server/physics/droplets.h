@@ -24,7 +24,8 @@ struct SizeQuadrature {
 SizeQuadrature QuadratureOf(const DropletSizes& sizes, int count);
 
 // Extinction efficiency, albedo and asymmetry of the whole distribution in each colour channel. The
-// efficiency is relative to the geometric cross section.
+// efficiency is relative to the geometric cross section. The quadrature over sizes has `radii`
+// points.
 struct DropletOptics {
   PhaseRgb extinction{};
   PhaseRgb albedo{};

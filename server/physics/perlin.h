@@ -21,8 +21,8 @@ struct PerlinGradient {
   std::int8_t x, y, z;
 };
 
-// Positions of an octave's texels in its lattice cells, in units of 1 / kPerlinPlaceUnits of a
-// cell.
+// The gradients of an octave at its lattice points, and the positions of its texels in a lattice
+// cell. Positions are in units of 1 / kPerlinPlaceUnits of a cell.
 struct PerlinOctave {
   int cells = 0;            // number along an edge of the tile
   int texels_per_cell = 0;  // at least 1
@@ -41,8 +41,8 @@ struct PerlinOctave {
 // octave has 2^index times kPerlinWaves cells along an edge, at most `side`.
 PerlinOctave MakePerlinOctave(int index, int side, std::uint32_t seed);
 
-// The gradients at one lattice point, interpolated for a row of texels in y and z. The noise along
-// the row is slope * place + offset.
+// The share of the lattice points at one x in the noise of a row of texels, interpolated in y and
+// z. Along the row it is slope * place + offset, where the place is relative to that x.
 struct PerlinCorner {
   std::int64_t slope = 0;
   std::int64_t offset = 0;
