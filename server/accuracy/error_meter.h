@@ -33,7 +33,7 @@ class ErrorMeter {
       const reference::MakesTracer& makes_tracer = reference::TracerOnProcessors);
 
   // Sets the picture to measure. Paths that were traced before are kept if the picture has the same
-  // number of pixels as the previous picture.
+  // size as the previous picture.
   void Show(picture::LinearPicture drawn);
 
   // Returns false if almost all pixels of the last shown picture are close to the sun. Pixels close
@@ -74,7 +74,8 @@ class ErrorMeter {
   picture::LinearPicture drawn_;
   double mean_drawn_ = 0.0;
   std::size_t pixels_ = 0;  // number of pixels of drawn_ that are measured
-  // The cumulative probabilities of choosing each pixel, computed from the first shown picture.
+  // The cumulative probabilities of choosing each pixel, computed from the first shown picture of
+  // this size.
   std::vector<double> chances_;
   std::vector<TracedPixel> traced_;
   std::optional<ErrorEstimate> estimate_;
