@@ -79,8 +79,8 @@ struct GroupOptics {
 
 class Medium {
  public:
-  // Creates a medium. Fails if an extinction is negative or not finite, an albedo is outside 0 to
-  // 1, or sizes disagree.
+  // Creates a medium. Returns INVALID_ARGUMENT if an extinction is negative or not finite, an
+  // albedo is outside 0 to 1, sizes disagree, or the box has no volume.
   static absl::StatusOr<std::shared_ptr<const Medium>> Create(MediumDescription description);
 
   const glm::dvec3& Low_m() const { return low_m_; }
