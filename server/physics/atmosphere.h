@@ -1,9 +1,9 @@
 // Clear air around a round Earth: its transmittance for sunlight, and its radiance including all
 // orders of scattering. The components are air (Rayleigh scattering), haze (optical depth from
 // turbidity) and ozone (absorption only). Light scattered more than once counts as isotropic, as if
-// all the air were as bright as the air at the point. The orders of scattering then form a
-// geometric series (Hillaire 2020, A scalable and production ready sky and atmosphere rendering
-// technique, 5.5).
+// all the air around a point were as bright as the air at that point. The orders of scattering then
+// form a geometric series (Hillaire 2020, A scalable and production ready sky and atmosphere
+// rendering technique, 5.5).
 #pragma once
 
 #include <vector>
@@ -108,7 +108,7 @@ class Atmosphere {
   struct Gathered {
     glm::vec3 air{0.0F};      // light scattered once by air, without phase function
     glm::vec3 haze{0.0F};     // light scattered once by haze, without phase function
-    glm::vec3 diffuse{0.0F};  // light that was scattered or reflected before
+    glm::vec3 diffuse{0.0F};  // light scattered after an earlier scattering or reflection
   };
   Gathered Gather(const Line& line, const Sunwards& sun) const;
 

@@ -60,8 +60,9 @@ glm::dmat3 FibresAlong(const glm::dvec2& shear_m_per_s);
 // wraps around.
 glm::dvec2 DetailDrift_m(const glm::dvec2& wind_m_per_s, double time_s, double tile_m);
 
-// Returns the largest displacement of a medium with cells of the size `cell_m`. It is too small to
-// change the order of neighbouring cells.
+// Returns the largest displacement of a medium with cells of the size `cell_m`. It is at most a
+// cell, two cells upwards, and a quarter of the wavelength, so neighbouring cells mostly keep their
+// order.
 glm::dvec3 DetailWarp_m(const glm::dvec3& cell_m, double wavelength_m);
 
 // Samples the tile as a repeating texture at `place`, in units of a tile's edge. Returns billows, 0

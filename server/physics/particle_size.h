@@ -20,8 +20,8 @@ enum class SizeSource {
   kGiven    // one radius, given by the scene
 };
 
-// Returns the radius of all particles by `source` for fields without a radius for each cell.
-// `given_m` is the scene's radius.
+// Returns the radius that `source` gives to all particles of a field without a radius for each
+// cell. `given_m` is the scene's radius.
 float ConstantRadius_m(Hydrometeor hydrometeor, SizeSource source, float given_m);
 
 // Returns the effective radius r_e of particles of default density with the mean mass `mass_kg`. A

@@ -26,8 +26,8 @@ bool HasDistribution(Microphysics microphysics, Hydrometeor hydrometeor);
 // HAIL_OPT, its graupel has the intercept and density of hail. Its snow consists of spheres of 100
 // kg/m3, and the scheme derives the slope of the distribution from the mass of these spheres. Their
 // mass extinction at 1 mm, 30 m2/kg, equals that of observed aggregates (Mitchell 1996: 27 m2/kg).
-// WRF passes 0.5 / slope to its radiation code instead. That is a third of this radius, and suits
-// optics with the density of solid ice.
+// WRF passes 0.5 / slope to its radiation code instead. That is a third of the radius returned
+// here, and suits optics with the density of solid ice.
 //
 // Thompson follows Thompson et al. 2008. Cloud droplets are as in calc_effectRad of WRF 4.7, and
 // graupel has the intercept of that version. The scheme predicts the number of rain and ice
