@@ -41,7 +41,7 @@ class ErrorMeter {
   bool IsMeasurable() const;
 
   // Traces pixels of the picture for some tenths of a second. A measurable picture must have been
-  // shown. Returns the errors of `wanted` and of the tracer. In this case no pixel is added.
+  // shown. Returns the errors of `wanted` and of the tracer. If it fails, it adds no pixel.
   absl::Status Step(const reference::IsWanted& wanted = nullptr);
   // Calls Step for about `seconds`, or until `stop` is requested. Does nothing if the picture is
   // not measurable.

@@ -1,6 +1,6 @@
 // The scattering medium of the path tracer: extinction on a grid for each group of fields with the
 // same optics. A lattice of bricks holds local upper bounds of the extinction (majorants) for
-// null-collision sampling. This code does not use light or files.
+// null-collision sampling. This code does not depend on light sources or files.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // Phase functions that paths can sample. Henyey and Greenstein's is sampled in closed form, any
 // other by a table of its inverse cumulative distribution. Evaluation and sampling use exactly the
-// same function, so both estimate the same light. This code does not use a medium.
+// same function, so both estimate the same light. This code does not depend on a medium.
 #pragma once
 
 #include <array>
