@@ -12,7 +12,7 @@ namespace thunderhead::clouds {
 enum class NoiseInterpolation { kLinear, kCosine, kCubic };
 
 struct NoiseParameters {
-  int octaves = 4;           // Z
+  int octaves = 4;           // Z of eq. 1
   double persistence = 0.5;  // s: ratio of successive octaves' amplitudes
   NoiseInterpolation interpolation = NoiseInterpolation::kCosine;
   std::uint64_t seed = 0;  // with 0 the noise is the paper's; other seeds shift the lattice of each

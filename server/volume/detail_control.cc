@@ -19,7 +19,8 @@ constexpr float kGradientAmplitude = 0.8F;
 constexpr int kProfileSmoothings = 2;  // together they move surfaces by at most a cell
 // Ranges of upward velocity in m/s. Over the first range, the share of cloud water that has billows
 // grows from 0 to 1, because cloud water condenses in rising air. Over the second range, the share
-// of ice grows. Ice in fast updraughts still looks like the liquid tower from which it rises.
+// of ice that has billows grows in the same way. Ice in fast updraughts still looks like the liquid
+// tower from which it rises.
 constexpr std::array<float, 2> kCondensing_m_per_s = {0.0F, 1.0F};
 constexpr std::array<float, 2> kIceBillows_m_per_s = {1.0F, 5.0F};
 // The same for ice in turbulent air: amplitudes of turbulence, or opacities if the turbulence is
