@@ -65,9 +65,9 @@ struct Sprouting {
   std::uint64_t seed = 1;
 };
 
-// Adds bubbles on the bubbles from index `first` on, except where other bubbles or the base would
-// hide them. The parents of these bubbles must be set (LayOnLarger). The result for a seed has the
-// same bits on every machine.
+// Grows new bubbles on the existing bubbles from index `first` on, except where other bubbles or
+// the base would hide them. The parents of the existing bubbles must be set (LayOnLarger). The
+// result for a seed has the same bits on every machine.
 void Sprout(const Sprouting& sprouting, std::size_t first, CumulusSurface* surface);
 
 // Moves and uniformly scales the surface so that it fits into `box` and stands on the box's floor.
