@@ -31,12 +31,12 @@ constexpr double kMaxTexelCount = 262144.0;
 constexpr double kMaxTransmittance = 0.8;
 // The angle below which the forward peak of phase functions is cut off
 // (MediumOptions::peak_cut_deg). 20 degrees give less noise than 3 degrees. The difference between
-// pictures was too small to measure (docs/decisions/0012).
+// pictures was too small to measure (docs/lab/0012-traced-light.md).
 constexpr double kPeakCut_deg = 20.0;
 
 // The number of paths for each ray. Drawing a probe takes as long as tracing one path for each of
 // its rays, so two paths per ray are efficient. The first kPicturesOfOnePath probes have one path
-// per ray, so that the storm is soon seen from many directions (docs/decisions/0012).
+// per ray, so that the storm is soon seen from many directions (docs/lab/0012-traced-light.md).
 constexpr int kPathsOfRay = 2;
 constexpr std::uint64_t kPicturesOfOnePath = 8;
 
