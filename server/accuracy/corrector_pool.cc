@@ -10,7 +10,7 @@
 namespace thunderhead::accuracy {
 namespace {
 
-// A correction is fitted and published again when its number of paths has grown by
+// A correction is fitted and published again when its number of paths has grown by the factor
 // kPublishedGrowth, or after kMaxUnpublished_ms. It is not fitted after every step, because a fit
 // takes as long as several steps of tracing.
 constexpr double kPublishedGrowth = 1.2;

@@ -46,7 +46,9 @@ class CorrectorPool {
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
 
   // Traces one step for the scene. Returns RESOURCE_EXHAUSTED if there are `max_correctors`
-  // correctors and all are busy or claimed, or if there is no memory for another storm. If `claim`
+  // correctors and all are busy or claimed, or if there is no memory for another storm. It also
+  // returns the errors of LightCorrector::Create and LightCorrector::Step. If the scene has no
+  // light to trace (TracesLight), it does nothing and returns a progress without paths. If `claim`
   // is not null, it receives a claim on the scene's light. The correction is published at
   // intervals, and when `wanted_paths` paths are traced.
   absl::StatusOr<LightProgress> Trace(

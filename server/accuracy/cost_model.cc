@@ -14,7 +14,7 @@ constexpr double kForgetting = 0.8;
 // and b cannot be determined separately.
 constexpr double kMinRelativeVariance = 1e-3;
 // The fitted line is used for frames with up to this multiple of the samples of the fitted frames.
-// A full frame has 64 times the samples of the coarsest frame with all its pixels. The first frames
+// A full frame has 64 times the samples of the coarsest frame that is not sparse. The first frames
 // of a server have only about 10 000 samples, and their time is mostly fixed. Extrapolated to an
 // image of 3840 x 2160 pixels, their line would predict an hour.
 constexpr double kReach = 100.0;

@@ -34,7 +34,8 @@ class CostModel {
   double EstimateMs(double mega_samples, scene::Stage first_dirty) const;
 
   // Records that a frame with that number of samples took `total_ms`, of which `stages` gives the
-  // parts. Frames that drew neither slices nor a view are ignored.
+  // parts. A frame that drew neither slices nor a view updates only the times for preparing the
+  // fields and propagating the light.
   void Observe(double mega_samples, double total_ms, const std::vector<scene::StageTime>& stages);
 
  private:

@@ -33,7 +33,7 @@ class ErrorMeter {
       const reference::MakesTracer& makes_tracer = reference::TracerOnProcessors);
 
   // Sets the picture to measure. Paths that were traced before are kept if the picture has the same
-  // number of pixels as the previous picture.
+  // size as the previous picture.
   void Show(picture::LinearPicture drawn);
 
   // Returns false if almost all pixels of the last shown picture are close to the sun. Pixels close
@@ -41,7 +41,7 @@ class ErrorMeter {
   bool IsMeasurable() const;
 
   // Traces pixels of the picture for some tenths of a second. A measurable picture must have been
-  // shown. Returns an error only if `wanted` returns an error; then nothing was traced.
+  // shown. Returns the errors of `wanted` and of the tracer. If it fails, it adds no pixel.
   absl::Status Step(const reference::IsWanted& wanted = nullptr);
   // Calls Step for about `seconds`, or until `stop` is requested. Does nothing if the picture is
   // not measurable.
@@ -74,7 +74,8 @@ class ErrorMeter {
   picture::LinearPicture drawn_;
   double mean_drawn_ = 0.0;
   std::size_t pixels_ = 0;  // number of pixels of drawn_ that are measured
-  // The cumulative probabilities of choosing each pixel, computed from the first shown picture.
+  // The cumulative probabilities of choosing each pixel, computed from the first shown picture of
+  // this size.
   std::vector<double> chances_;
   std::vector<TracedPixel> traced_;
   std::optional<ErrorEstimate> estimate_;

@@ -35,8 +35,8 @@ struct ErrorProgress {
 };
 
 // Returns a version of `scene` whose picture can be compared with the reference. It has full
-// quality and the same size. It has no turbulent detail and no range rings, because the reference
-// shows them differently.
+// quality and the same size. It has no turbulent detail, which the reference does not show. It has
+// no borders and distance rings, which the reference draws differently.
 scene::Scene MeasuredScene(const scene::Scene& scene);
 
 // Returns false for fields with uneven ground, because the reference does not show relief.
@@ -61,9 +61,10 @@ class ErrorMeters {
 
   // Does one step for the scene. `light_paths` is the number of paths that correct the scene's
   // light now. If the scene is new, or if this number has grown much, the step draws a picture by
-  // `draw`. Otherwise it traces paths, unless the measurement has ended or `wanted` returns an
-  // error. Returns RESOURCE_EXHAUSTED if too many other scenes are being measured, or if there is
-  // no memory for another storm.
+  // `draw`. Otherwise it traces paths, unless the measurement has ended. If the fields cannot be
+  // measured (IsMeasurable), the measurement ends at once. Returns the errors of `draw` and
+  // `wanted`, and RESOURCE_EXHAUSTED if too many other scenes are being measured, or if there is no
+  // memory for another storm.
   absl::StatusOr<ErrorProgress> Step(const scene::Scene& scene, const Fields& fields,
                                      std::int64_t light_paths, const Draw& draw,
                                      const reference::IsWanted& wanted = nullptr);

@@ -29,14 +29,14 @@ constexpr int kMaxTexels = 96;
 constexpr double kMaxTexelCount = 262144.0;
 // Rays with a higher transmittance through the storm carry little information about its light.
 constexpr double kMaxTransmittance = 0.8;
-// The angle in degrees around the sun in which the peak of phase functions is cut off. It gives
-// less noise than 3 degrees. The difference between pictures was too small to measure
-// (docs/decisions/0012).
+// The angle below which the forward peak of phase functions is cut off
+// (MediumOptions::peak_cut_deg). 20 degrees give less noise than 3 degrees. The difference between
+// pictures was too small to measure (docs/lab/0012-traced-light.md).
 constexpr double kPeakCut_deg = 20.0;
 
 // The number of paths for each ray. Drawing a probe takes as long as tracing one path for each of
 // its rays, so two paths per ray are efficient. The first kPicturesOfOnePath probes have one path
-// per ray, so that the storm is soon seen from many directions (docs/decisions/0012).
+// per ray, so that the storm is soon seen from many directions (docs/lab/0012-traced-light.md).
 constexpr int kPathsOfRay = 2;
 constexpr std::uint64_t kPicturesOfOnePath = 8;
 
@@ -81,8 +81,8 @@ scene::Scene ProbedScene(const scene::Scene& asked, const volume::HydrometeorFie
   return scene;
 }
 
-// Returns the source of particle sizes for computing the storm's box. If the fields have different
-// sources, it is the model.
+// Returns the source of particle sizes for computing the storm's box: the papers if all fields use
+// their radii, otherwise the model.
 physics::SizeSource SizesOf(const scene::Scene& scene) {
   const bool papers = std::ranges::all_of(scene.fields, [](const scene::FieldParameters& field) {
     return field.sizes == physics::SizeSource::kPapers;

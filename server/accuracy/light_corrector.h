@@ -49,8 +49,8 @@ class LightCorrector {
   bool Serves(const scene::Scene& scene,
               const std::shared_ptr<const volume::HydrometeorFields>& fields) const;
 
-  // Sets the camera from near which half of the probes are drawn to that of `scene`. Serves must be
-  // true for `scene`.
+  // Uses the camera of `scene` from now on. Half of the following probes are drawn from near this
+  // camera. Serves must be true for `scene`.
   void LookAs(const scene::Scene& scene);
 
   // Traces some thousand paths. The first steps trace only paths from the ground; each later step

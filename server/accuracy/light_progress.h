@@ -9,8 +9,8 @@ namespace thunderhead::accuracy {
 
 // The minimum number of paths for a correction; a correction from fewer paths is mostly noise. With
 // the paths of only one probe, the picture's error was 21 to 48 % larger than without correction
-// for two of three storms. With this number of paths, the error was 14 to 47 % smaller for all
-// three (docs/decisions/0012).
+// for two of three storms. With this number of paths, the error was 14 to 46 % smaller for all
+// three (docs/lab/0012-traced-light.md).
 inline constexpr std::int64_t kMinCorrectingPaths = 25'000;
 
 // A claim on the light traced for a scene. While the claim exists, the light is not evicted in

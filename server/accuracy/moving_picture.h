@@ -42,8 +42,8 @@ scene::Scene WithOutputScale(const scene::Scene& scene, double output_scale);
 // Returns true for scenes whose pictures are drawn sparsely while the scene or camera moves.
 bool MovesSparsely(const scene::Scene& scene);
 
-// Returns the quality for drawing the coarse picture with which a sparse picture begins.
-// FrameQuality::sparse must be true in `quality`.
+// Returns the quality for drawing the coarse picture with which a sparse picture begins. For scenes
+// that are not drawn sparsely (MovesSparsely), it is the quality of an ordinary picture.
 renderers::DrawQuality MovingQuality(const scene::Scene& scene, const FrameQuality& quality);
 
 using DrawChosen =

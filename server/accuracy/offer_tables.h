@@ -13,8 +13,8 @@
 
 namespace thunderhead::accuracy {
 
-// A table for each kind of camera, in the order of scene::Camera, or the error why the table is
-// missing.
+// A table for each kind of camera, in the order of scene::Camera, or an error that says why the
+// table is missing.
 using OfferTables = std::array<absl::StatusOr<PricedSettings>, std::variant_size_v<scene::Camera>>;
 
 // Returns the tables that are built into the program.
@@ -28,8 +28,8 @@ const absl::StatusOr<PricedSettings>& TableFor(const OfferTables& tables,
 std::string_view ViewNameOf(const scene::Camera& camera);
 
 // Returns the row that is most similar to `setting` among the rows with the same technique and
-// light model, or null if there is none. For a setting with traced light, it prefers rows with
-// traced light and at most as many paths.
+// light model, or null if there is none. Rows with more paths than `setting` are ignored. For a
+// setting with traced light, it prefers rows with traced light.
 const PricedSetting* NearestRow(const PricedSettings& table, const Setting& setting);
 
 // Returns the row's time in ms, scaled to the size of the scene's picture. It is scaled by the

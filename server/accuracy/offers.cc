@@ -16,8 +16,8 @@ namespace {
 constexpr double kLimitSlack = 1.1;
 constexpr double kWorthChanging = 1.25;
 // The factor by which the time of settings with traced light is multiplied in comparisons. Tracing
-// adds nothing to a frame's time, but uses the machine while the scene is at rest. It should be
-// chosen only if it is clearly better than other settings.
+// adds nothing to a frame's time, but uses the machine while the scene is at rest. Traced light
+// should be chosen only if it is clearly better than other settings.
 constexpr double kTracingIsDearer = 1.2;
 
 // The constrained quantity, its bound, and the objective to minimise within the bound.

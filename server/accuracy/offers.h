@@ -50,10 +50,10 @@ class Offers {
   // Both arguments must outlive this object.
   Offers(const OfferTables& tables, const MachineCosts& costs) : tables_(tables), costs_(costs) {}
 
-  // Returns the scene with the setting that reaches the scene's request. A scene without a request
-  // is returned unchanged. `current` is the present setting of the scene's view, and `measured` has
-  // the errors measured for this scene. Returns an error if there is no table for the scene's
-  // camera.
+  // Returns the scene with the setting that reaches the scene's request. A scene without a request,
+  // or with the reference as its technique, is returned unchanged. The argument `current` is the
+  // present setting of the scene's view, and `measured` has the errors measured for this scene.
+  // Returns an error if there is no table for the scene's camera.
   absl::StatusOr<scene::Scene> Decide(const scene::Scene& scene,
                                       const std::optional<Setting>& current,
                                       const MeasuredErrors& measured = {}) const;

@@ -1,6 +1,6 @@
 // The current corrections of scenes' light by path tracing. One thread traces and publishes
-// corrections (accuracy/corrector_pool.h), and drawing threads find them here. Safe from any
-// thread.
+// corrections (accuracy/corrector_pool.h), and drawing threads find them here. All functions are
+// thread-safe.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@ namespace {
 constexpr int kSlabLayers = 4;
 constexpr int kBallsAChunk = 64;
 
-// Eight partial sums, which the compiler can keep in one vector register.
+// Number of partial sums. The compiler can keep eight of them in one vector register.
 constexpr std::size_t kSimdWidth = 8;
 
 // The values of a ball in one row of cells along x, for x from 0 to count - 1.

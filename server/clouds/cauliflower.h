@@ -23,7 +23,7 @@ inline constexpr int kMaxScales = 5;
 absl::StatusOr<CumulusSurface> Cauliflower(const CauliflowerOptions& options);
 
 // Makes the ellipsoids of a preset (clouds/presets.h), with bubbles on them if `scales` is 2 or
-// more.
+// more. Also returns INVALID_ARGUMENT if there is no such preset.
 absl::StatusOr<CumulusSurface> SurfaceOfPreset(std::string_view preset,
                                                const CauliflowerOptions& options);
 

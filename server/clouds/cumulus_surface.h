@@ -24,8 +24,8 @@ struct Bubble {
 
 // Returns the radius of a ball with the same volume as the bubble.
 double RadiusOf(const Bubble& bubble);
-// Returns the transformation of world coordinates that makes the bubble the unit ball around the
-// origin.
+// Returns the linear map of offsets from the bubble's centre that turns the bubble into the unit
+// ball.
 glm::dmat3 UnitFromWorld(const Bubble& bubble);
 Bubble BubbleOf(const Ellipsoid& ellipsoid);
 Bubble BallOf(const glm::dvec3& centre_m, double radius_m);
@@ -65,8 +65,9 @@ struct Sprouting {
   std::uint64_t seed = 1;
 };
 
-// Adds bubbles to all visible bubbles from index `first` on. The parents of these bubbles must be
-// set (LayOnLarger). The result for a seed has the same bits on every machine.
+// Grows new bubbles on the existing bubbles from index `first` on, except where other bubbles or
+// the base would hide them. The parents of the existing bubbles must be set (LayOnLarger). The
+// result for a seed has the same bits on every machine.
 void Sprout(const Sprouting& sprouting, std::size_t first, CumulusSurface* surface);
 
 // Moves and uniformly scales the surface so that it fits into `box` and stands on the box's floor.

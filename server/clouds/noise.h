@@ -12,7 +12,7 @@ namespace thunderhead::clouds {
 enum class NoiseInterpolation { kLinear, kCosine, kCubic };
 
 struct NoiseParameters {
-  int octaves = 4;           // Z
+  int octaves = 4;           // Z of eq. 1
   double persistence = 0.5;  // s: ratio of successive octaves' amplitudes
   NoiseInterpolation interpolation = NoiseInterpolation::kCosine;
   std::uint64_t seed = 0;  // with 0 the noise is the paper's; other seeds shift the lattice of each
@@ -24,9 +24,9 @@ struct NoiseParameters {
 // m. `shift` is added to m.
 double LatticeNoise(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t shift = 0);
 
-// Computes f of eq. 3, the mean of g over 27 neighbours. These are the lattice point itself and the
-// 26 points around it. The weight of the point itself is 9/18. The weights of the others are 4/(6
-// 18) for 6 faces, 3/(12 18) for 12 edges, 2/(8 18) for 8 corners.
+// Computes f of eq. 3, the weighted mean of g over 27 lattice points. These are the point itself
+// and the 26 points around it. The weight of the point itself is 9/18. The weights of the others
+// are 4/(6 18) for 6 faces, 3/(12 18) for 12 edges, 2/(8 18) for 8 corners.
 double SmoothNoise(std::int32_t x, std::int32_t y, std::int32_t z, std::uint32_t shift = 0);
 
 // Returns the weights of the lattice values at -1, 0, 1 and 2 for interpolation at the position

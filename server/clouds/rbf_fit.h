@@ -49,8 +49,9 @@ struct FitResult {
 };
 
 // Approximates `values`, one for each cell of `grid`, x fastest, none negative. Returns
-// INVALID_ARGUMENT if no value is above 0, or if there are more balls than cells above 0. If `stop`
-// requests it, returns the best result so far, or CANCELLED if no centres were found yet.
+// INVALID_ARGUMENT if an option is out of range, no value is above 0, or there are more balls than
+// cells above 0. If `stop` requests it, returns the best result so far, or CANCELLED if no centres
+// were found yet.
 absl::StatusOr<FitResult> Fit(const volume::RegularGrid& grid, const std::vector<float>& values,
                               const FitOptions& options,
                               const std::function<void(const FitProgress&)>& observer,

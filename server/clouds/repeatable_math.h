@@ -1,6 +1,6 @@
-// Sine, cosine and cube root, computed with the four basic operations only. In contrast to the C
-// library's functions, they return the same bits on every machine with IEEE doubles. Their error is
-// at most 1e-15.
+// Sine, cosine and cube root, computed with the four basic operations and with functions that are
+// exact, such as std::remainder. In contrast to the C library's functions, they return the same
+// bits on every machine with IEEE doubles. Their error is at most 1e-15.
 #pragma once
 
 #include <cmath>

@@ -43,8 +43,8 @@ std::vector<float> Interleaved(const std::vector<float>& exact, const std::vecto
   return both;
 }
 
-// The tables of all phase functions one after another. They are preceded by the angles, which all
-// tables have in common.
+// The tables of all phase functions one after another. They are preceded by the nodes 1 -
+// cos(angle), which all tables have in common.
 class Tables {
  public:
   // Adds the tables of a phase function. Returns the index of the table of its first colour, or -1

@@ -42,8 +42,8 @@ void ForPaths(int threads, std::size_t count, const Work& work) {
                                });
 }
 
-// A bit that separates the host's random streams from those of the device, which end with the
-// number of the sample.
+// This bit separates the host's random streams from those of the device. It is the highest bit of
+// the counter's last word, which in the device's streams is the number of the sample.
 constexpr std::uint64_t kHostStreams = std::uint64_t{1} << 63U;
 
 glm::uvec3 StreamOf(std::size_t ray, std::uint32_t sample, std::uint32_t kind,

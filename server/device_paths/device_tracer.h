@@ -80,9 +80,10 @@ class DeviceTracer {
   gl::Buffer next_list_;
 };
 
-// Returns a factory of tracers. A tracer traces on the device if TracesOnDevice returns true and
-// the device has memory for the medium, otherwise on the CPU. Use the factory and its tracers on
-// the thread of the context of `programs`. Making a tracer fails if the device cannot draw.
+// Returns a factory of tracers. A tracer traces on the device if TracesOnDevice returns true, the
+// device supports the medium (DeviceMedium::Of) and has memory for it. Otherwise it traces on the
+// CPU. Use the factory and its tracers on the thread of the context of `programs`. Making a tracer
+// fails if the device cannot draw.
 reference::MakesTracer TracersFor(std::shared_ptr<gl::ProgramCache> programs);
 
 }  // namespace thunderhead::device_paths

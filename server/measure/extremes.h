@@ -23,8 +23,8 @@ struct Extreme {
   std::function<absl::StatusOr<Verdict>(Probe& probe)> check;
 };
 
-// Returns first the cases of extreme files and numbers, then the cases of pictures of each
-// technique.
+// Returns first the cases of extreme files and numbers. Then follow the cases of pictures by
+// half-angle slicing, the light volume and metaballs.
 std::vector<Extreme> Extremes();
 
 }  // namespace thunderhead::measure

@@ -55,7 +55,8 @@ absl::StatusOr<std::vector<FrameRateRow>> MeasureFrameRates(
 std::string ToJson(const Machine& machine, const std::vector<FrameRateRow>& rows);
 std::string ToTable(const Machine& machine, const std::vector<FrameRateRow>& rows);
 
-// Returns the mass of all condensate. It is largest in a mature storm.
+// Returns the mass of all condensate. The time with the largest mass shows a mature storm, so it is
+// the one to measure.
 double Condensate_kg(const volume::HydrometeorFields& fields);
 
 }  // namespace thunderhead::measure

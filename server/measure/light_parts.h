@@ -1,7 +1,6 @@
 // Parts of the light, used to find out which part a renderer computes wrongly. A part is the same
 // scene with fewer light sources, or with single scattering only. It is drawn by the renderer and
-// traced by the path-traced reference. The functions own GL objects, so use them on the context's
-// thread.
+// traced by the path-traced reference. The functions use GL, so call them on the context's thread.
 #pragma once
 
 #include <memory>

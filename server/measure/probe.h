@@ -39,7 +39,7 @@ struct Look {
   double sun_azimuth_deg = 70.0;
   double sun_elevation_deg = 89.9;
   double distance_in_boxes =
-      5.0;  // of the camera from the middle, in units of the box's longest side
+      5.0;  // camera's distance from the middle, in units of the box's longest side
   double field_of_view_deg = 2.0;
   int side_px = 9;  // odd, so that one pixel lies in the middle
   // Uses 32-bit floats in the light volume's buffers. The buffers of other techniques always do.
@@ -58,6 +58,7 @@ struct Seen {
 class Probe {
  public:
   // Draws with scene.rendering and scene.fields. The camera looks at the middle of the domain.
+  // Returns UNIMPLEMENTED for other techniques than those above.
   absl::StatusOr<Seen> Draw(const scene::Scene& scene, const volume::HydrometeorFields& fields,
                             const Look& look);
 

@@ -32,7 +32,8 @@ std::string UnsoundPicture(const std::vector<float>& eye);
 Soundness LightBufferSoundness(const std::vector<float>& light);
 
 // Checks the light of the light volume after carry.comp and arrive.comp. The optical depth of
-// sunlight must be 0 or more everywhere. It must not decrease along any ray of the sun.
+// sunlight must be 0 or more everywhere. It must not decrease along any ray of the sun. The mean
+// intensity of scattered light must be 0 or more, and at most kMaxFluence / (4 pi).
 Soundness LightVolumeSoundness(const renderers::LightVolumeRenderer& renderer);
 
 // Checks the solution of diffusion transport. The fluence of sunlight must nowhere exceed

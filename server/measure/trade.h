@@ -40,22 +40,25 @@ struct TradeRow {
   // The estimate of the relative RMSE that a server without a reference picture makes. NaN if it
   // was not estimated.
   accuracy::Estimated estimated_error{kUnmeasured, kUnmeasured, kUnmeasured};
-  bool pareto = false;  // no other setting is both faster and more accurate
+  bool pareto = false;  // see MarkPareto
 };
 
-// Returns the settings to measure. They contain all techniques, modes, transports and numbers of
-// slices at full size. Metaballs have only the default mode, with several numbers of balls. The
-// default technique and mode also appear with smaller pictures, with 4 rays a pixel, with finer and
-// coarser light volumes, with single precision and with other JPEG qualities. They also appear with
-// light corrected by path tracing, once for each number in `million_paths`.
+// Returns the settings to measure. They contain the light volume and half-angle slicing at full
+// size, in all modes without detail, with all their transports and several numbers of slices.
+// Metaballs have only the default mode, with several numbers of balls. The default technique and
+// mode also appear with smaller pictures, with 4 rays a pixel, with finer and coarser light
+// volumes, with single precision and with other JPEG qualities. They also appear with light
+// corrected by path tracing, once for each number in `million_paths`.
 std::vector<Setting> DefaultSweep(const std::vector<double>& million_paths);
 
-// Returns settings of the light volume only, as viewers see it. Each field has its own phase
-// function. The transports are consistent transport and diffusion. Diffusion also appears with
-// light corrected by path tracing, once for each number in `million_paths`.
+// Returns settings of the light volume only, at full size and with its default number of slices.
+// Each field has its own phase function. The transports are consistent transport and diffusion.
+// Diffusion also appears with light corrected by path tracing, once for each number in
+// `million_paths`.
 std::vector<Setting> TransportSweep(const std::vector<double>& million_paths);
 
-// Marks the Pareto front of milliseconds and relative RMSE.
+// Marks the Pareto front of milliseconds and relative RMSE. A row is on the front if no other row
+// is better in one of the two and at least as good in the other.
 void MarkPareto(std::vector<TradeRow>* rows);
 
 // Returns the scene that the reference traces. Each field has its own phase function, and there are
@@ -64,8 +67,8 @@ scene::Scene ReferenceScene(scene::Scene scene);
 
 class Trade {
  public:
-  // `scene` gives the settings that are not varied. The reference picture of `comparison` must have
-  // the size of the scene. A server's error estimate is also made for each picture, for
+  // `scene` gives the settings that are not varied. The measured pictures have the size of the
+  // reference picture of `comparison`. A server's error estimate is also made for each picture, for
   // `error_seconds` seconds. With 0 there is no estimate.
   Trade(scene::Scene scene, std::shared_ptr<const volume::HydrometeorFields> fields,
         ReferenceComparison comparison, double error_seconds);

@@ -26,7 +26,7 @@ std::string CsvHead(const TradeTitle& title);
 std::string CsvLine(const TradeRow& row);
 
 // Returns the rows of a file that begins with `head`. Returns INVALID_ARGUMENT if the file begins
-// differently, or if a line cannot be parsed. The error message names the line. An incomplete last
+// differently, or if a line cannot be parsed. The error message quotes the line. An incomplete last
 // line, from an interrupted run, is ignored.
 absl::StatusOr<std::vector<TradeRow>> ReadCsv(std::string_view text, std::string_view head);
 

@@ -39,8 +39,8 @@ float HeightAlong(float height_m, float sine, float distance_m) {
                             kEarthRadius_m);
 }
 
-// Return the distance along a ray to a sphere of the given height around the Earth. DistanceUpTo_m
-// is for a point inside the sphere, the second function for a point outside.
+// Return the distance along a ray to the sphere at height `target_m` above sea level. The ray
+// starts inside the sphere for DistanceUpTo_m and outside it for DistanceDownTo_m.
 float DistanceUpTo_m(float target_m, float height_m, float sine) {
   const double radius = static_cast<double>(kEarthRadius_m) + height_m;
   const double target = static_cast<double>(kEarthRadius_m) + target_m;
@@ -225,8 +225,8 @@ Atmosphere::Line Atmosphere::Along(const Ray& ray) const {
 
 namespace {
 
-// Returns a point of a ray. The vertical at the point tilts with the distance, because the Earth is
-// round.
+// Returns a point of a ray with the sun's elevation there. The vertical at the point tilts with the
+// distance, because the Earth is round.
 AirPlace PlaceOn(const Atmosphere::Line& line, const Atmosphere::Sunwards& sun, float distance_m,
                  float height_m) {
   const float above = distance_m * sun.mu + (kEarthRadius_m + line.height_m) * sun.sine;
@@ -255,7 +255,8 @@ glm::vec3 Atmosphere::SumOrders(const AirPlace& place, float ground_albedo) cons
   constexpr int kDirections = 40;
   const float across = std::sqrt(std::max(1.0F - place.sun_sine * place.sun_sine, 0.0F));
   glm::vec3 second(0.0F);
-  // Share of uniform light that returns to the point after one more scattering.
+  // Sum over the directions of the share of uniform light that reaches the point after one more
+  // scattering or reflection.
   glm::vec3 again(0.0F);
   for (int i = 0; i < kDirections; ++i) {
     // A Fibonacci spiral spreads the directions evenly over the sphere.

@@ -1,9 +1,9 @@
 // Clear air around a round Earth: its transmittance for sunlight, and its radiance including all
 // orders of scattering. The components are air (Rayleigh scattering), haze (optical depth from
 // turbidity) and ozone (absorption only). Light scattered more than once counts as isotropic, as if
-// all the air were as bright as the air at the point. The orders of scattering then form a
-// geometric series (Hillaire 2020, A scalable and production ready sky and atmosphere rendering
-// technique, 5.5).
+// all the air around a point were as bright as the air at that point. The orders of scattering then
+// form a geometric series (Hillaire 2020, A scalable and production ready sky and atmosphere
+// rendering technique, 5.5).
 #pragma once
 
 #include <vector>
@@ -31,7 +31,7 @@ struct AirOptics {
   glm::vec3 extinction{0.0F};
 };
 
-// A point in the atmosphere, as far as its light depends on it.
+// The properties of a point in the atmosphere on which its light depends.
 struct AirPlace {
   float height_m = 0.0F;
   float sun_sine = 0.0F;  // sine of the sun's elevation at the point
@@ -48,7 +48,8 @@ struct TableRow {
   float share = 0.0F;
 };
 
-// A height, prepared for looking up the light that arrives there.
+// The horizon and the table rows of a height, which are computed once for many lookups of the light
+// that arrives there.
 struct AirLevel {
   float horizon_sine = 0.0F;
   TableRow columns;  // rows in the table of the air columns from a height to space
@@ -65,8 +66,8 @@ class Atmosphere {
   // gradually to zero.
   glm::vec3 SunTransmittance(const AirPlace& place) const;
 
-  // Returns the mean radiance, over all directions, of light that was scattered at least once. The
-  // sun has the irradiance 1.
+  // Returns the mean radiance, over all directions, of light that the air scattered or the ground
+  // reflected at least once. The sun has the irradiance 1.
   glm::vec3 DiffuseMeanRadiance(const AirPlace& place) const;
 
   struct Ray {
@@ -107,7 +108,7 @@ class Atmosphere {
   struct Gathered {
     glm::vec3 air{0.0F};      // light scattered once by air, without phase function
     glm::vec3 haze{0.0F};     // light scattered once by haze, without phase function
-    glm::vec3 diffuse{0.0F};  // light scattered more than once
+    glm::vec3 diffuse{0.0F};  // light scattered after an earlier scattering or reflection
   };
   Gathered Gather(const Line& line, const Sunwards& sun) const;
 

@@ -16,8 +16,8 @@ namespace {
 constexpr int kAureoleRings = 600;
 // Number of wave numbers of the Hankel transform, and their step in 1/rad. They reach 15 divided by
 // the radius of the sun's disc. The phase tables are averaged over the disc, so they contain no
-// higher wave numbers. The step is so small that aliases appear only beyond four times the largest
-// angle.
+// higher wave numbers. With the default cut angle, the step is so small that aliases appear only
+// beyond four times the largest angle.
 constexpr int kWaves = 800;
 constexpr double kWaveStep = 4.0;
 

@@ -20,8 +20,9 @@ struct WorkPlan {
   std::function<void(double done)> progress = [](double) {};
 };
 
-// Calls work(i) for i = 0 ... chunks - 1, in no particular order. If a call throws, throws its
-// exception again and makes no further calls. If a thread cannot start, the others do its work.
+// Calls work(i) for i = 0 ... chunks - 1, in no particular order. If a call throws, ForEachChunk
+// starts no further calls, and throws the exception again when the running calls have returned. If
+// a thread cannot be started, the other threads do its work.
 template <typename Work>
 void ForEachChunk(int chunks, const WorkPlan& plan, const Work& work) {
   std::atomic<int> next = 0;

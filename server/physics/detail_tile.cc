@@ -66,7 +66,8 @@ void StoreRanks(const std::vector<float>& values, std::size_t channel, DetailTil
   }
 }
 
-// Scales values by their standard deviation. Their mean must be nearly 0.
+// Stores values as bytes, after shifting their mean to 0 and scaling their standard deviation to
+// kWarpDeviation.
 void StoreDisplacement(const std::vector<float>& values, std::size_t channel, DetailTile* tile) {
   double mean = 0.0;
   double square = 0.0;
@@ -89,8 +90,8 @@ DetailTile MakeDetailTile(int octaves, std::uint32_t seed) {
   DetailTile tile;
   tile.texels.resize(4 * kTexels);
   StoreRanks(Sum(0, octaves, kBillowPersistence, seed, true), 0, &tile);
-  // An offset larger than any seed of a scene. The displacement therefore never has the same seed
-  // as the billows.
+  // This offset is larger than any seed of a scene, so the displacement never has the same seed as
+  // the billows.
   constexpr std::uint32_t kOtherSeeds = 1U << 20U;
   for (std::uint32_t axis = 0; axis < 3; ++axis) {
     StoreDisplacement(Sum(0, kWarpOctaves, 0.5, seed + kOtherSeeds * (axis + 1), false), axis + 1,

@@ -47,19 +47,22 @@ DetailTile MakeDetailTile(int octaves, std::uint32_t seed);
 // texels along an edge, an even number.
 std::vector<std::uint8_t> CoarserLevel(const std::vector<std::uint8_t>& texels, int side);
 
-// Returns the transformation from places in tiles of billows to places in tiles of fibres. It
-// rotates x to the direction of the wind shear, stretches fibres along it and narrows them across
-// it. If the shear is zero, fibres lie from west to east, as winds aloft usually blow.
+// Returns the transformation from places in tiles of billows to places in tiles of fibres, which
+// are streaks of ice and snow. It rotates x to the direction of the wind shear, stretches fibres
+// along it and narrows them across it. If the shear is 1 m/s or less, fibres lie from west to east,
+// as winds aloft usually blow.
 glm::dmat3 FibresAlong(const glm::dvec2& shear_m_per_s);
 
 // Returns how far noise that drifts with `wind_m_per_s` has moved at a time, modulo the tile size.
 // `time_s` is in seconds from any midnight. The wind is rounded so that the noise moves by whole
-// tiles in three hours (kDriftPeriod_s). Billows therefore never jump while the rounded wind stays
-// the same. Fibres use a different tile size, so they can jump.
+// tiles in three hours (kDriftPeriod_s). Billows repeat with the tile, so they never jump while the
+// rounded wind stays the same. Fibres have tiles of another size, so they jump when the result
+// wraps around.
 glm::dvec2 DetailDrift_m(const glm::dvec2& wind_m_per_s, double time_s, double tile_m);
 
-// Returns the largest displacement of a medium with cells of the size `cell_m`. It is too small to
-// change the order of neighbouring cells.
+// Returns the largest displacement of a medium with cells of the size `cell_m`. It is at most a
+// cell, two cells upwards, and a quarter of the wavelength, so neighbouring cells mostly keep their
+// order.
 glm::dvec3 DetailWarp_m(const glm::dvec3& cell_m, double wavelength_m);
 
 // Samples the tile as a repeating texture at `place`, in units of a tile's edge. Returns billows, 0

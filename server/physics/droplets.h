@@ -7,16 +7,17 @@
 
 namespace thunderhead::physics {
 
-// The gamma distribution of droplet radii with effective radius a and effective variance b. Hansen
-// and Travis 1974 (Space Sci. Rev. 16, 527), eq. 2.56: n(r) ~ r^((1 - 3 b) / b) exp(-r / (a b)).
+// The gamma distribution of droplet radii with effective radius a and effective variance b. The
+// source is Hansen and Travis 1974 (Space Sci. Rev. 16, 527), eq. 2.56: n(r) ~ r^((1 - 3 b) / b)
+// exp(-r / (a b)).
 struct DropletSizes {
   double effective_radius_um;
   double effective_variance;
 };
 
 // Radii and their shares of the geometric cross section, which add up to 1. The radii are `count`
-// Gauss-Legendre points in the logarithm of the radius. The omitted sizes have less than 1e-5 of
-// the cross section.
+// Gauss-Legendre points in the logarithm of the radius. Sizes outside the range of these radii have
+// less than 1e-5 of the cross section.
 struct SizeQuadrature {
   std::vector<double> radii_um;
   std::vector<double> area_shares;
@@ -24,7 +25,8 @@ struct SizeQuadrature {
 SizeQuadrature QuadratureOf(const DropletSizes& sizes, int count);
 
 // Extinction efficiency, albedo and asymmetry of the whole distribution in each colour channel. The
-// efficiency is relative to the geometric cross section.
+// efficiency is relative to the geometric cross section. The quadrature over sizes has `radii`
+// points.
 struct DropletOptics {
   PhaseRgb extinction{};
   PhaseRgb albedo{};

@@ -47,9 +47,10 @@ class FieldPattern {
   // Returns the texels, kFieldMapCells along each side.
   const std::vector<glm::u8vec4>& Texels() const { return texels_; }
 
-  // Returns the reflectance in red, green and blue relative to the ground's mean reflectance, which
-  // has the same luminance. The place is in world metres, and the result is averaged over a
-  // footprint in metres. A `contrast` of 1 shows the full pattern.
+  // Returns the reflectance in red, green and blue at a place in world metres, averaged over a
+  // footprint in metres. It is relative to the ground's mean reflectance. The mean over all fields
+  // has the same luminance as the ground, but another hue. A `contrast` of 1 shows the full
+  // pattern.
   glm::vec3 Reflectance(const glm::vec2& place_m, const glm::vec2& footprint_m,
                         float contrast) const;
 

@@ -5,8 +5,8 @@
 // kinds have the effective radius of an observed exponential size distribution at 1 g/m3. The
 // sources for rain and snow are Marshall and Palmer 1948, and Houze et al. 1979 at -20 C. The
 // sources for graupel and hail are Rutledge and Hobbs 1984, and Federer and Waldvogel 1975. The
-// papers' radii and false colours are from Riley et al. 2003 (AMS), Tables II and III. Densities
-// are those of common bulk microphysics.
+// papers' radii are from Riley et al. 2003 (AMS), Table II. Densities are those of common bulk
+// microphysics.
 #pragma once
 
 #include <array>
@@ -105,9 +105,10 @@ struct HydrometeorRow {
 };
 
 // The asymmetry parameters apply if a scene chooses a formula. Water has 0.85 (Mie theory for an
-// effective radius of 10 um at 0.55 um, rounded down for the broad part of the lobe). Smooth ice
-// crystals have 0.78, roughened and rimed ice 0.76. The false colours are Okabe and Ito's (#E69F00,
-// #56B4E9, #CC79A7, #F0E442, #009E73, #D55E00). People with any colour vision can tell them apart.
+// effective radius of 10 um at 0.55 um, rounded down). It is rounded down because a formula
+// represents only the broad part of the forward lobe. Smooth ice crystals have 0.78, roughened and
+// rimed ice 0.76. The false colours are Okabe and Ito's (#E69F00, #56B4E9, #CC79A7, #F0E442,
+// #009E73, #D55E00). People with any colour vision can tell them apart.
 inline constexpr std::array kHydrometeorRows = {
     HydrometeorRow{
         Hydrometeor::kCloud,

@@ -21,14 +21,14 @@ using glm::dvec3;
 
 constexpr int kCrystalChunks = 128;
 
-// Limits at which a ray ends. Its energy is below kMinEnergy times the initial energy, or it has
-// met a face kMaxEncounters times.
+// A ray ends when its energy is below kMinEnergy times the initial energy, or when it has met a
+// face kMaxEncounters times.
 constexpr double kMinEnergy = 1e-5;
 constexpr int kMaxEncounters = 200;
 
 // Returns five numbers for a ray, chosen so that the points of all rays fill the unit cube evenly.
-// The points follow an additive recurrence. Its step consists of the powers of the root of r^6 = r
-// + 1 (Roberts 2018). 64-bit integers keep the recurrence exact.
+// The points follow an additive recurrence. Its step consists of the powers of 1 / r, where r is
+// the root of r^6 = r + 1 (Roberts 2018). 64-bit integers keep the recurrence exact.
 std::array<double, 5> EvenPoint(std::uint64_t index, std::uint64_t seed) {
   constexpr double kRoot = 1.1347241384015194;
   CounterRandom shift(seed, 0);

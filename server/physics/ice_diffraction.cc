@@ -114,7 +114,8 @@ PhaseAccumulator Diffract(const IceCrystal& crystal, const std::vector<double>& 
           const double wave_number = 2.0 * std::numbers::pi / kWavelengthsUm[c];
           const dvec2 q = wave_number * sine * dvec2(std::cos(turn), std::sin(turn));
           // |F|^2 k^2 / (4 pi^2) is the energy scattered into unit solid angle for light of unit
-          // irradiance. The obliquity factor ((1 + cos) / 2)^2 is applied in addition.
+          // irradiance. It is multiplied by 2 pi for all azimuths, and by the obliquity factor ((1
+          // + cos) / 2)^2.
           const double slant = 0.5 * (1.0 + std::cos(angles.angles_rad[j]));
           const double energy = std::norm(FourierTransform(shadow, area, q, size)) * wave_number *
                                 wave_number / (2.0 * std::numbers::pi) * slant * slant;

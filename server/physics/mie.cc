@@ -36,7 +36,7 @@ std::vector<Complex> LogarithmicDerivatives(Complex z, std::size_t count) {
 
 // Returns psi_n(x) for n = 0 ... count. The upward recurrence is used while n < x. For larger n it
 // would lose all digits, so the ratios psi_n / psi_n-1 of the downward recurrence are used. These
-// ratios are finite there, because psi_n has no zero below n.
+// ratios are finite there, because psi_n(x) has no zero at 0 < x < n.
 std::vector<double> PsiFunctions(double x, std::size_t count) {
   const std::size_t top = std::max(count, static_cast<std::size_t>(x)) + 40;
   std::vector<double> ratios(count + 1);

@@ -20,15 +20,16 @@ enum class SizeSource {
   kGiven    // one radius, given by the scene
 };
 
-// Returns the radius of all particles by `source` for fields without a radius for each cell.
-// `given_m` is the scene's radius.
+// Returns the radius that `source` gives to all particles of a field without a radius for each
+// cell. `given_m` is the scene's radius.
 float ConstantRadius_m(Hydrometeor hydrometeor, SizeSource source, float given_m);
 
 // Returns the effective radius r_e of particles of default density with the mean mass `mass_kg`. A
 // sphere of that mass has the radius r_v. The ratio of r_e to r_v depends on the size distribution.
-// Droplets have an effective variance of 0.1, as in the phase tables, so r_e = r_v / 0.72^(1/3).
-// Martin et al. 1994 measured values from 0.67 to 0.80 in place of 0.72. Other particles have an
-// exponential distribution, as bulk microphysics assumes, so r_e = r_v 3 / 6^(1/3).
+// Cloud droplets have an effective variance of 0.1, as in the phase tables, so r_e = r_v /
+// 0.72^(1/3). Martin et al. 1994 measured values from 0.67 to 0.80 in place of 0.72. Other
+// particles have an exponential distribution, as bulk microphysics assumes, so r_e = r_v 3 /
+// 6^(1/3).
 float EffectiveRadius_m(Hydrometeor hydrometeor, float mass_kg);
 
 }  // namespace thunderhead::physics

@@ -13,16 +13,16 @@ inline constexpr int kMaxPerlinSide = 128;  // texels along an edge of a tile
 inline constexpr int kPerlinWaves = 8;      // wavelengths of the first octave along an edge
 // Fixed-point value of a weight of 1.
 inline constexpr std::int64_t kPerlinOne = std::int64_t{1} << 12U;
-// Units in a lattice cell. Texel centres lie at odd multiples of half a texel. With at most 16
-// texels in a cell, half a texel is at least 1 / 32 of a cell.
+// Number of units of length in a lattice cell. Texel centres lie at odd multiples of half a texel.
+// With at most 16 texels in a cell, half a texel is at least 1 / 32 of a cell.
 inline constexpr std::int64_t kPerlinPlaceUnits = 2 * kMaxPerlinSide / kPerlinWaves;
 
 struct PerlinGradient {
   std::int8_t x, y, z;
 };
 
-// Positions of an octave's texels in its lattice cells, in units of 1 / kPerlinPlaceUnits of a
-// cell.
+// The gradients of an octave at its lattice points, and the positions of its texels in a lattice
+// cell. Positions are in units of 1 / kPerlinPlaceUnits of a cell.
 struct PerlinOctave {
   int cells = 0;            // number along an edge of the tile
   int texels_per_cell = 0;  // at least 1
@@ -41,8 +41,9 @@ struct PerlinOctave {
 // octave has 2^index times kPerlinWaves cells along an edge, at most `side`.
 PerlinOctave MakePerlinOctave(int index, int side, std::uint32_t seed);
 
-// The gradients at one lattice point, interpolated for a row of texels in y and z. The noise along
-// the row is slope * place + offset.
+// The contribution of the lattice points with the same x to the noise of a row of texels,
+// interpolated in y and z. Along the row it is slope * place + offset, where the place is measured
+// from that x.
 struct PerlinCorner {
   std::int64_t slope = 0;
   std::int64_t offset = 0;

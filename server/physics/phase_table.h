@@ -30,11 +30,13 @@ class PhaseTable {
  public:
   static constexpr double kForwardAngleDeg = 5.0;
 
-  // Checks `content` and scales its values so that their mean over the sphere is exactly 1. Fails
-  // if the mean before scaling differs from 1 by more than `mean_tolerance`.
+  // Checks `content` and scales its values so that their mean over the sphere is exactly 1. Returns
+  // INVALID_ARGUMENT if angles or values are invalid, or if the mean before scaling differs from 1
+  // by more than `mean_tolerance`.
   static absl::StatusOr<PhaseTable> Create(PhaseTableContent content, double mean_tolerance);
 
-  // Reads text in the format of ToText. Error messages name the line.
+  // Reads text in the format of ToText. Returns INVALID_ARGUMENT if the text is invalid. The
+  // message names the line if a single line is wrong.
   static absl::StatusOr<PhaseTable> Load(std::string_view text);
 
   // Returns the table as text that Load can read. Each line of `provenance` becomes a comment at
@@ -84,7 +86,7 @@ class PhaseTable {
 // Returns the names of the tables built into the program, e.g. "cloud_re10", in alphabetical order.
 std::vector<std::string> PhaseTableNames();
 
-// Returns the table of that name built into the program.
+// Returns the table of that name built into the program, or NOT_FOUND.
 absl::StatusOr<PhaseTable> EmbeddedPhaseTable(std::string_view name);
 
 }  // namespace thunderhead::physics

@@ -20,18 +20,20 @@ bool HasDistribution(Microphysics microphysics, Hydrometeor hydrometeor);
 // (above zero). Only the size of snow depends on `temperature_K`. If the scheme's particle density
 // differs from that of DefaultOptics, the result is the radius of particles of the default density
 // with the same mass extinction. The result lies between kMinRadius_m and kMaxRadius_m.
+// HasDistribution must be true for the scheme and the hydrometeor.
 //
 // WSM6 follows Hong and Lim 2006, with the limits of WRF's mp_wsm6_effectRad. With WRF's option
 // HAIL_OPT, its graupel has the intercept and density of hail. Its snow consists of spheres of 100
 // kg/m3, and the scheme derives the slope of the distribution from the mass of these spheres. Their
 // mass extinction at 1 mm, 30 m2/kg, equals that of observed aggregates (Mitchell 1996: 27 m2/kg).
-// WRF passes 0.5 / slope to its radiation code instead. That is a third of this radius, and suits
-// optics with the density of solid ice.
+// WRF passes 0.5 / slope to its radiation code instead. That is a third of the radius returned
+// here, and suits optics with the density of solid ice.
 //
 // Thompson follows Thompson et al. 2008. Cloud droplets are as in calc_effectRad of WRF 4.7, and
 // graupel has the intercept of that version. The scheme predicts the number of rain and ice
-// particles, so these have no distribution here. Its snow has a mass for each diameter and moments
-// (Field et al. 2005), but no area, on which extinction depends.
+// particles, so these have no distribution here. Snow has none either. The scheme gives its mass
+// for each diameter and the moments of its distribution (Field et al. 2005), but not its area, on
+// which extinction depends.
 float DistributionRadius_m(Microphysics microphysics, Hydrometeor hydrometeor,
                            float content_kg_per_m3, float temperature_K);
 

@@ -1,5 +1,5 @@
 // The clear sky seen from a height above the ground, and its light. The sky is a table for one
-// direction of the sun, which is read by shaders/physics/sky.glsl, compiled for the CPU here.
+// direction of the sun. shaders/physics/sky.glsl reads the table, and is compiled for the CPU here.
 // Radiance is in units of the sun's irradiance above the atmosphere. The air between eye and storm
 // is in shaders/physics/air.glsl.
 #pragma once
@@ -68,7 +68,9 @@ class ClearSky {
   // Returns the transmittance from the ground to the sun.
   const glm::vec3& SunTransmittance() const { return sun_transmittance_; }
 
-  // Returns 2 * kSkyAzimuths by kSkyElevations texels, with rows from the nadir up.
+  // Returns 2 * kSkyAzimuths by kSkyElevations texels, with rows from the nadir up. The left half
+  // holds the light scattered once by air or more than once, and the air mass of air. The right
+  // half holds the light scattered once by haze, without phase function, and the air mass of haze.
   const std::vector<glm::vec4>& Table() const { return table_; }
 
  private:

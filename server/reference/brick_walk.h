@@ -1,6 +1,6 @@
 // Traverses the lattice of a medium's bricks along a ray (Amanatides and Woo 1987). It yields in
 // order the segments of the ray with a constant majorant (upper bound of the extinction). This code
-// does not use light.
+// does not depend on light sources.
 #pragma once
 
 #include <limits>

@@ -63,8 +63,10 @@ using FluxObserver = std::function<void(double share)>;
 
 // Traces photons until `photons` are done, the time limit is reached or `stop` requests a stop.
 // When stopped, it returns the result of the photons traced so far. For a given number of photons
-// the result is bit-identical for any number of threads. Fails if the sun is not above the horizon,
-// the ground's albedo is not within 0 to 1, or no photon was traced.
+// the result is bit-identical for any number of threads. Returns INVALID_ARGUMENT if the sun is not
+// above the horizon or the ground's albedo is not within 0 to 1. It returns the same if the number
+// of photons is below 1 or the domain does not fit the medium. Returns CANCELLED if no photon was
+// traced.
 absl::StatusOr<FluxResult> ComputeFlux(const FluxProblem& problem, const FluxOptions& options,
                                        const FluxObserver& observer, const std::stop_token& stop);
 

@@ -1,6 +1,6 @@
 // The scattering medium of the path tracer: extinction on a grid for each group of fields with the
 // same optics. A lattice of bricks holds local upper bounds of the extinction (majorants) for
-// null-collision sampling. This code does not use light or files.
+// null-collision sampling. This code does not depend on light sources or files.
 #pragma once
 
 #include <array>
@@ -79,8 +79,8 @@ struct GroupOptics {
 
 class Medium {
  public:
-  // Creates a medium. Fails if an extinction is negative or not finite, an albedo is outside 0 to
-  // 1, or sizes disagree.
+  // Creates a medium. Returns INVALID_ARGUMENT if an extinction is negative or not finite, an
+  // albedo is outside 0 to 1, sizes disagree, or the box has no volume.
   static absl::StatusOr<std::shared_ptr<const Medium>> Create(MediumDescription description);
 
   const glm::dvec3& Low_m() const { return low_m_; }

@@ -40,7 +40,8 @@ class Path {
     return radiance_;
   }
 
-  // Returns the light that the medium scatters at `point_m` to the opposite of `direction`.
+  // Returns the light that the medium scatters at `point_m` in the direction opposite to
+  // `direction`.
   glm::dvec3 FollowFrom(const glm::dvec3& point_m, const glm::dvec3& direction) {
     ray_ = {point_m, direction};
     return Scatter(point_m) ? Follow(ray_) : radiance_;

@@ -1,8 +1,8 @@
 // Estimates the radiance along a ray with one random path. The path uses null-collision free
 // flights and Russian roulette. It gathers sunlight at every collision, and the light of sky and
-// ground where it meets them. The estimate is unbiased unless the path continues in a similar
-// medium (Optics::kSimilar). Its mean is the solution of the radiative transfer equation, and
-// nothing is clamped.
+// ground where it meets them. The estimate is unbiased unless PathOptions limits the number of
+// scatterings or continues the path in a similar medium (Optics::kSimilar). Its mean is the
+// solution of the radiative transfer equation, and nothing is clamped.
 #pragma once
 
 #include "glm/vec3.hpp"

@@ -1,6 +1,6 @@
 // Counter-based random numbers: Philox 4x32-10 (Salmon et al. 2011, "Parallel random numbers: as
 // easy as 1, 2, 3"). A number depends only on its key and its index in the sequence, so results are
-// the same for any number of threads. This code does not use light.
+// the same for any number of threads.
 #pragma once
 
 #include <array>

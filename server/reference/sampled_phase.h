@@ -1,6 +1,6 @@
 // Phase functions that paths can sample. Henyey and Greenstein's is sampled in closed form, any
 // other by a table of its inverse cumulative distribution. Evaluation and sampling use exactly the
-// same function, so both estimate the same light. This code does not use a medium.
+// same function, so both estimate the same light. This code does not depend on a medium.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ class SampledPhase {
   // `asymmetry` must lie inside (-1, 1).
   static SampledPhase HenyeyGreenstein(double asymmetry);
   // Normalises `function` to mean 1 over the sphere and tabulates it. The step between angles is
-  // 0.0005 degrees at an angle of 0.01 degrees, and 0.04 degrees at 180 degrees.
+  // 0.0003 degrees at an angle of 0.01 degrees, and 0.04 degrees at 180 degrees.
   static SampledPhase Tabulated(const Function& function);
   // Tabulates one function for each colour: red, green, blue.
   static SampledPhase Tabulated(const std::array<Function, 3>& by_color);

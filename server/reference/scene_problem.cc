@@ -217,7 +217,7 @@ constexpr float kMostGathered = 2.0F;
 // Returns the light that a metre of lit air at `distance_m` on a ray sends to the eye. It is that
 // metre's part of the airlight of AirBefore. Sun and sky share it in proportion to the light that
 // they make the air scatter. AirBefore distributes the sky's light along the ray in proportion to
-// extinction. Next to the sun, haze near the eye contributes more.
+// extinction, although haze near the eye contributes more next to the sun.
 AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
                     const glm::dvec3& towards_sun) {
   namespace air = physics::glsl;

@@ -1,7 +1,6 @@
 // Converts a scene and a storm's fields into the input of the path tracer: medium, surroundings and
 // camera. They describe the scene that the renderers draw, without the renderers' approximations.
-// Extinction has full precision, each field has its own phase function, and the ground has shadows.
-// This code does not use a renderer.
+// Extinction has full precision, and the ground has shadows. This code does not use a renderer.
 #pragma once
 
 #include <cstddef>

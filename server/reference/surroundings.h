@@ -103,8 +103,8 @@ struct Surroundings {
   // Returns the air between the eye and the ground or the medium. If it is not set, that air is
   // perfectly clear. The sky needs no air in front, because its light is the air's own light.
   std::function<Air(const Ray& ray, double distance_m, Behind behind)> air;
-  // The air from whose light, and from that of the seen sky, the medium's shadow is subtracted. If
-  // it is not set, all air is lit.
+  // The air that the medium shades. The light that is missing there is subtracted from the light of
+  // this air and of the seen sky. If it is not set, all air is lit.
   std::optional<ShadedAir> shaded_air;
 };
 

@@ -40,8 +40,9 @@ absl::StatusOr<std::vector<glm::dvec3>> TraceRays(const Medium& medium,
                                                   const std::vector<Ray>& rays,
                                                   const TraceRaysOptions& options);
 
-// A function like TraceRays for one medium, on the CPU or on a device with the same result
-// (device_paths/).
+// A function like TraceRays for one medium, on the CPU or on a device (device_paths/). A device
+// estimates the same radiance with different random numbers, and it can also fail because it cannot
+// draw.
 using RayTracer = std::function<absl::StatusOr<std::vector<glm::dvec3>>(
     const Surroundings&, const std::vector<Ray>&, const TraceRaysOptions&)>;
 

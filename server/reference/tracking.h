@@ -1,6 +1,6 @@
 // Free flights in a heterogeneous medium by null collisions (Woodcock et al. 1965), and
 // transmittances from brick to brick. Both are unbiased and have no quadrature errors. This code
-// does not use light.
+// does not depend on light sources.
 #pragma once
 
 #include <optional>

@@ -21,7 +21,8 @@ struct Capabilities {
   bool field_optics = false;  // the fields' own phase functions and false colours
   bool traced_light = false;  // path tracing can correct the technique's light
   bool slices = false;        // images depend on a number of slices or of samples along a ray
-  // Can render a chosen subset of the rays, which frames of a moving camera need.
+  // True if the technique can render a chosen subset of the rays, which frames of a moving camera
+  // need.
   bool sparse = false;
   // True if a renderer draws the technique on the GPU. False if the technique is path-traced
   // without a renderer.

@@ -49,8 +49,8 @@ std::shared_ptr<const DetailedMedium> DetailedMedium::Of(const Scene& scene,
       PlacedDetailOf(layers, tile_of, volume.grid.spacing_m, fields.motion);
   if (!layers.empty()) {
     detailed->control_ = volume::DetailControlOf(fields, parted.terms, volume);
-    // The detail is placed for each group, because the fields of a group gain and lose extinction
-    // together.
+    // The factors that keep the water paths of columns are computed for each group, because detail
+    // changes the fields of a group together.
     volume::ExtinctionVolume by_group =
         volume::ComputeExtinction(fields, grouped.terms, static_cast<int>(grouped.groups.size()));
     volume::PlacedDetail of_groups = placed;

@@ -1,6 +1,6 @@
 // The extinction of a storm at any place, by field, including turbulent detail. The light volume
-// draws the same medium on the GPU. This class applies the same displacement and noise without GL,
-// and detail does not change the water path of a column (the water above an area of ground).
+// draws the same medium on the GPU. This class applies the same displacement and noise without GL.
+// Detail does not change the water path of a column, which is the water above an area of ground.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,8 @@ class DetailedMedium {
   volume::DrawnMedium::Channels At_per_m(const glm::dvec3& place_m) const;
 
   // Returns the extinction on the grid's cells, with the bounding box of the cells that are not
-  // empty.
+  // empty. It does not include the noise, but it includes the factors that make up for the mean
+  // loss caused by noise.
   const volume::ExtinctionVolume& Volume() const { return volume_; }
 
   // Returns an upper bound of each field's extinction in 1/m.

@@ -21,17 +21,17 @@ bool IsDrawn(const Scene& scene, const volume::HydrometeorField& field);
 struct DrawnField {
   std::size_t index = 0;  // into HydrometeorFields::fields
   physics::Hydrometeor hydrometeor{};
-  // Extinction per unit of the file's mixing ratio, including the scene's scale. It varies by cell
+  // Extinction per concentration of the field, multiplied by the scene's scale. It varies by cell
   // if the model gives particle sizes.
   volume::MassExtinction mass_extinction;
-  // Effective radius of all the field's particles. It has no value if the file gives extinction
-  // instead of a mixing ratio.
+  // One effective radius for the whole field, which selects the phase function. It has no value if
+  // the file gives extinction instead of a mixing ratio.
   std::optional<float> radius_m;
   physics::SizeSource sizes{};  // where radius_m comes from
   float albedo = 1.0F;
   physics::PhaseFunction phase;  // canonical form from physics::PhaseOf
   glm::vec3 color{1.0F};         // white except in false colours
-  // The detail that the technique draws. Its wavelength is resolved if the field has detail.
+  // The detail that the technique draws. Its wavelength is above 0 if the field has detail.
   Detail detail;
   Detail asked_detail;  // the detail in the scene's settings, whether or not the technique shows it
 };

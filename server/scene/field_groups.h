@@ -1,5 +1,5 @@
 // A storm's drawn fields in groups with equal optics and detail, and the noises of their detail.
-// All fields of a group add up to one channel of the extinction volume. Renderers, tracers and
+// The fields of a group add up to one channel of the extinction volume. Renderers, tracers and
 // exporters build their medium from these groups.
 #pragma once
 
@@ -22,7 +22,7 @@ struct FieldGroup {
   float albedo = 1.0F;
   physics::PhaseFunction phase;  // canonical form from physics::PhaseOf
   glm::vec3 color{1.0F};
-  Detail detail;  // the wavelength is resolved if the group has detail
+  Detail detail;  // the wavelength is above 0 if the group has detail
 
   bool operator==(const FieldGroup&) const = default;
 };

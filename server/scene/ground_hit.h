@@ -16,12 +16,13 @@ class Surface {
   // `fields` must outlive the surface.
   Surface(const Scene& scene, const volume::HydrometeorFields& fields);
 
-  // Returns the height above sea level in world coordinates.
+  // Returns the z coordinate of the ground below or above a place, in world coordinates.
   double Height_m(const glm::dvec3& place_m) const;
 
   // Returns the distance along the ray at which the ray first goes below the ground, accurate to a
   // metre. Returns nothing if that is beyond `farthest_m` or if the ray begins below the ground.
-  // `direction` must have the length 1. The search steps grow with the distance.
+  // `direction` must have the length 1. The search steps grow with the distance, so narrow distant
+  // peaks can be missed.
   std::optional<double> MeetsRay_m(const glm::dvec3& origin_m, const glm::dvec3& direction,
                                    double farthest_m) const;
 

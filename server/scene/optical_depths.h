@@ -1,6 +1,5 @@
 // The storm's optical depth along the ray of each pixel, and the distance at which it reaches 1.
-// Both are computed from the fields without GL, so they do not depend on the technique that draws
-// the image.
+// Both are computed from the fields without GL, so they are available for every technique.
 #pragma once
 
 #include "picture/linear_picture.h"

@@ -10,9 +10,9 @@ namespace thunderhead::scene {
 
 // Returns the place that a viewer sees along the ray. In cloud it is the point with half of the
 // cloud's visible contribution in front of it. In a dense cloud that is at an optical depth of ln
-// 2, in thin cloud over the ground it is farther in. A ray with an optical depth below 0.1 sees the
-// ground behind. In the clear sky the result is the point of the ray nearest to the storm's middle.
-// `direction` must have the length 1. The medium has no turbulent detail.
+// 2. In a thin cloud it is at about half of the cloud's optical depth. A ray with an optical depth
+// below 0.1 sees the ground behind. In the clear sky the result is the point of the ray nearest to
+// the storm's middle. `direction` must have the length 1. The medium has no turbulent detail.
 glm::dvec3 PlaceSeen(const Scene& scene, const volume::HydrometeorFields& fields,
                      const glm::dvec3& origin_m, const glm::dvec3& direction);
 

@@ -14,7 +14,7 @@
 
 namespace thunderhead::scene {
 
-// A cubic polynomial of u, the position in a piece of the ray: 0 at its begin, 1 at its end.
+// A cubic polynomial of u, the position in a piece of the ray: 0 at its start, 1 at its end.
 struct Cubic {
   std::array<double, 4> factors{};  // coefficients of 1, u, u^2, u^3
 

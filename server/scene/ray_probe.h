@@ -36,10 +36,13 @@ struct FieldOnRay {
 };
 
 struct RayProbe {
+  // Distances at which the optical depth reaches ProbeSettings::first_cloud_depth and 1, if it
+  // reaches them.
   std::optional<double> first_cloud_m;
   std::optional<double> depth_one_m;
   // Distances of the samples from the eye; empty if the ray misses the domain.
   std::vector<double> distances_m;
+  // Extinction of all drawn fields at each of `distances_m`.
   std::vector<float> extinctions_per_m;
   std::vector<FieldOnRay> fields;  // one entry for each field of the storm
 };

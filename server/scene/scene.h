@@ -21,7 +21,8 @@ namespace thunderhead::scene {
 
 // Turbulent structure finer than the grid (shaders/physics/detail.glsl), which drifts with the
 // wind. It changes the share `share` of the field where the model's air is turbulent. It is drawn
-// if FieldLook::detail of the technique is set.
+// if FieldLook::detail of the technique is set. Metaballs instead show the largest share as
+// roughness of their surfaces.
 struct Detail {
   float share = 0.0F;
   // Wavelength of the first octave. The value 0 stands for kDetailWavelengthInCells cells of the

@@ -98,9 +98,9 @@ Stage DirtiedByLights(const Scene& before, const Scene& after) {
   return same_directions && own ? Stage::kView : Stage::kLight;
 }
 
-// Returns the stage of a change of the sky or of the ground's cover. Diffusion uses the ground's
-// light as a boundary condition. The shares of sun and sky and the ground's albedo therefore change
-// the storm's light.
+// Returns the first stage that a change of the sky or of the ground's cover dirties. Diffusion uses
+// the ground's light as a boundary condition. The storm's light therefore depends on the ground's
+// albedo, and on the shares of sun and sky in the light on the ground.
 Stage StageOfSurroundings(const Scene& after) {
   const MediumSettings* medium = MediumSettingsOf(after.rendering.technique);
   const bool diffuses = medium != nullptr && medium->transport == Transport::kDiffusion;

@@ -16,7 +16,8 @@ struct ShadedAir {
 };
 
 // Returns the boxes for a storm whose medium has the bounding box `storm`. `towards_sun` must be a
-// unit vector. If the sun is below the horizon, the storm casts no shadow and `from_sun` is empty.
+// unit vector. If the sun is below the horizon, the storm casts no shadow and `from_sun` must not
+// be used.
 ShadedAir ShadedAirOf(const volume::WorldBox& storm, const glm::dvec3& towards_sun,
                       double ground_m);
 

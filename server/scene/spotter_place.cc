@@ -29,15 +29,15 @@ constexpr double kSkyAboveTop = 0.05;
 constexpr int kDirections = 24;
 
 // Weights of the costs of a place: the hidden tower, the hidden sky above it, and a view straight
-// towards the sun. Looking towards the sun, the side of the storm that faces the eye is in shadow.
-// The hidden base has the weight 1.
+// towards the sun. In a view towards the sun, the side of the storm that faces the eye is in
+// shadow. The hidden base has the weight 1.
 constexpr double kTowerWeight = 0.5;
 constexpr double kSkyWeight = 0.5;
 constexpr double kBacklitWeight = 1.0;
 
 // A wide anvil hides the tower from eyes within kFarthest_m. Each side is therefore also tried at
-// these multiples of the distance, and farther if cloud surrounds the eye. Each further kFarthest_m
-// adds kDistanceWeight to the cost, because haze reduces contrast.
+// these multiples of kFarthest_m, and farther if cloud surrounds the eye there. Beyond kFarthest_m,
+// each further kFarthest_m adds kDistanceWeight to the cost, because haze reduces contrast.
 constexpr double kFarther[] = {1.5, 2.0};
 constexpr double kDistanceWeight = 0.3;
 
@@ -45,7 +45,7 @@ constexpr double kDistanceWeight = 0.3;
 // by at least this value.
 constexpr double kNearEqual = 0.02;
 
-// The elevations, in radians, under which a camera sees the storm's core.
+// The elevations, in radians, at which a camera sees the storm's core.
 struct CoreView {
   // Lowest elevation of the camera's axis, at which ground fills kMaxGround.
   double lowest_tilt = 0.0;

@@ -46,8 +46,9 @@ void SetSlices(Technique* technique, int slices);
 int CountOf(const Technique& technique);
 void SetCount(Technique* technique, int count);
 
-// Returns the number of slices, balls or ellipsoids that cover a pixel. The cost of a picture is
-// proportional to this number times the number of pixels.
+// Returns the number of slices, balls or ellipsoids that cover a pixel if only `slice_share` of the
+// slices are drawn (above 0, at most 1). The cost of a picture is proportional to this number times
+// the number of pixels.
 double SamplesPerPixel(const Technique& technique, double slice_share);
 
 // Returns when path tracing corrects the technique's light.

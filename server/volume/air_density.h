@@ -40,6 +40,7 @@ class AirDensityMeans {
   // are ignored.
   void Add(int x, int y, double bottom_m, double top_m, float density_kg_per_m3);
 
+  // Returns the means, or an empty AirDensity if a block has no samples.
   AirDensity Means() const;
 
  private:

@@ -11,8 +11,9 @@ namespace thunderhead::volume {
 glm::ivec3 CoarseningFor(const HydrometeorFields& fields, int max_cells);
 
 // Returns means over blocks of `factor` cells. Each field keeps its total mass and its total
-// extinction. The parts of blocks that lie beyond the domain count as empty. Terrain and statistics
-// are not copied.
+// extinction. The parts of blocks that lie beyond the domain count as empty. Only the fields'
+// values and sizes and the air's motion are kept. Terrain, land, borders, air density and
+// statistics are empty.
 HydrometeorFields Coarsened(const HydrometeorFields& fields, const glm::ivec3& factor);
 
 }  // namespace thunderhead::volume

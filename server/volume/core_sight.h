@@ -12,7 +12,8 @@
 namespace thunderhead::volume {
 
 // The visibility of one storm core. Lengths in its criteria are fractions of the tower's height, so
-// that shallow cumulus is treated like a thunderstorm.
+// that shallow cumulus is treated like a thunderstorm. Light that terrain blocks counts as hidden.
+// So does light from parts of the core outside the domain.
 class CoreSight {
  public:
   // `fields` must outlive this object.

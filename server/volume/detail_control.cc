@@ -16,14 +16,17 @@ constexpr float kHalfOpaqueDepth = 4.0F;  // optical depth at which a cell is ha
 constexpr float kFullShare = 0.7F;        // share of the neighbours' largest opacity from which a
                                           // cell counts as inside
 constexpr float kGradientAmplitude = 0.8F;
-constexpr int kProfileSmoothings = 2;  // surfaces move by a cell either way
-// Vertical velocities (m/s) between which cloud water begins to condense, and between which ice
-// still looks like the liquid towers from which it rises.
+constexpr int kProfileSmoothings = 2;  // together they move surfaces by at most a cell
+// Ranges of upward velocity in m/s. Over the first range, the share of cloud water that has billows
+// grows from 0 to 1, because cloud water condenses in rising air. Over the second range, the share
+// of ice that has billows grows in the same way. Ice in fast updraughts still looks like the liquid
+// tower from which it rises.
 constexpr std::array<float, 2> kCondensing_m_per_s = {0.0F, 1.0F};
 constexpr std::array<float, 2> kIceBillows_m_per_s = {1.0F, 5.0F};
-constexpr std::array<float, 2> kIceBillowsTurbulence = {0.3F, 0.7F};  // opacities, if turbulence is
-                                                                      // unknown
-constexpr int kTurbulenceReach = 2;                                   // cells
+// The same for ice in turbulent air: amplitudes of turbulence, or opacities if the turbulence is
+// unknown.
+constexpr std::array<float, 2> kIceBillowsTurbulence = {0.3F, 0.7F};
+constexpr int kTurbulenceReach = 2;  // cells
 // Detail is attenuated where a cell's opacity is below kThinOpacity. The opacity is taken along the
 // cell or along kThinLength_m, whichever is longer.
 constexpr float kThinOpacity = 0.3F;

@@ -35,8 +35,8 @@ using DetailControl = std::vector<DetailTexel>;  // on the extinction's grid, x 
 // The amplitude is that of the turbulence nearby (AirMotion), reduced where the medium is thin.
 // Cloud water has billows where air rises, because it condenses there. If the air's motion is
 // unknown, all cloud water has billows. Ice has billows in fast updraughts and in strong
-// turbulence. If updraughts and turbulence are unknown, opaque ice has billows. Other ice has
-// fibres, and rain has neither.
+// turbulence. If the turbulence is unknown, opaque ice has billows instead. Other ice has fibres,
+// and rain has neither.
 DetailControl DetailControlOf(const HydrometeorFields& fields,
                               const std::vector<ExtinctionTerm>& terms,
                               const ExtinctionVolume& volume);

@@ -28,8 +28,8 @@ struct ColumnPoints {
 
   // The target for the relative standard error of the column's sum, or 0 for no target. Cells in
   // which the medium varies get more points to reach it. For a column whose optical depth is below
-  // 1, the target is an absolute error of the optical depth. For this purpose a column gets at most
-  // `most` points.
+  // 1, the target is an absolute error of the optical depth. To reach the target, a column gets at
+  // most `most` points.
   double error = 0.0;
   int most = 0;
 };

@@ -14,7 +14,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// Returns the terms of fields that have any condensate.
+// Returns the terms that add any extinction.
 std::vector<ExtinctionTerm> EffectiveTerms(const HydrometeorFields& fields,
                                            const std::vector<ExtinctionTerm>& terms) {
   std::vector<ExtinctionTerm> effective;
@@ -155,8 +155,8 @@ ExtinctionVolume ComputeExtinction(const HydrometeorFields& fields,
   volume.negligible_per_m = occupied.negligible_per_m;
   PlaceBox(fields.grid, occupied.cells, &volume);
   volume.maximum_per_m = occupied.maximum_per_m;
-  // This unit scales the largest texel value to just below 2^15. The smallest normal half float is
-  // then 3e-9 times the largest value.
+  // With this unit, the largest texel value lies between 2^14 and 2^15. The smallest normal half
+  // float is then about 3e-9 times the largest value.
   volume.extinction_per_m = std::ldexp(1.0F, std::ilogb(volume.maximum_per_m) - 14);
   const glm::ivec3 low = glm::max(occupied.cells.low - 1, glm::ivec3(0));
   for (int first = 0; first < channels; first += 4) {

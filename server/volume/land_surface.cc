@@ -69,8 +69,8 @@ LandSurface MakeLandSurface(const LandColumns& columns, const glm::ivec2& cells)
     const float water = ValueOf(columns.water, i);
     is_land[i] = std::isfinite(water) ? water <= 0.5F : !use.water;
     if (is_land[i]) {
-      // Here the file's water variable says land, but the class says water. Such a column is a
-      // shore or sea ice, so class 0 (unknown) replaces the class.
+      // If the file's water variable says land but the class says water, the column is a shore or
+      // sea ice. Class 0 (unknown) then replaces the class.
       const physics::LandUse dry = use.water ? physics::LandUseOf(columns.scheme, 0) : use;
       colors[i] = physics::LandReflectance(
           dry, {ValueOf(columns.albedo, i), ValueOf(columns.green_percent, i),

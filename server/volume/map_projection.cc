@@ -59,7 +59,7 @@ ProjContext NewContext() {
   THUNDERHEAD_CHECK(
       context != nullptr && proj_context_set_fileapi(context.get(), &NoFiles(), nullptr) != 0,
       "PROJ takes no file system");
-  // The level alone does not silence PROJ's complaint that it has no database.
+  // PROJ reports that it has no database at every log level, so its messages are discarded here.
   proj_log_func(context.get(), nullptr, [](void*, int, const char*) {});
   proj_context_set_enable_network(context.get(), 0);
   return context;
@@ -170,8 +170,9 @@ absl::StatusOr<MapProjection> MapProjection::Of(std::string_view proj, const Ear
   return map;
 }
 
-// The map's x is proportional to the longitude in `full_circle_m_`'s projections, and with a
-// rotated pole to the longitude in the rotated grid.
+// Returns the distance on the map for 360 degrees of longitude, for a projection whose x is
+// proportional to the longitude. With a rotated pole, x is proportional to the longitude in the
+// rotated grid.
 double MapProjection::FullCircle_m() const {
   if (text_.HasRotatedPole()) {
     return 2.0 * glm::pi<double>() * text_.Number("R").value_or(0.0) *
@@ -189,8 +190,8 @@ std::optional<glm::dvec2> MapProjection::Project(const EarthPlace& place) const 
     return std::nullopt;
   }
   const std::string& kind = text_.Kind();
-  // PROJ returns numbers for places that these maps do not have: the poles, and what a satellite
-  // does not see.
+  // PROJ returns numbers even for places that are not on these maps: the poles on a Mercator map,
+  // and places that a geostationary satellite does not see.
   if (kind == "merc" && std::abs(place.latitude_deg) > kMercatorEnds_deg) return std::nullopt;
   const std::optional<glm::dvec2> map_m = proj_->Forward(place);
   if (kind != "geos" || !map_m.has_value()) return map_m;
@@ -224,7 +225,7 @@ std::optional<EarthPlace> MapProjection::PlaceOf(const glm::dvec2& world_m) cons
 }
 
 std::optional<double> MapProjection::TrueNorth_deg(const EarthPlace& place) const {
-  // The meridian's direction on the map, by places a hundred metres apart.
+  // The meridian's direction on the map follows from two places a hundred metres apart.
   constexpr double kStep_deg = 1e-3;
   EarthPlace south = place;
   EarthPlace north = place;
@@ -255,7 +256,7 @@ absl::StatusOr<std::string> ProjectionOfWellKnownText(const std::string& text) {
   if (system == nullptr) return refused("PROJ cannot parse it");
   const char* const proj = proj_as_proj_string(context.get(), system.get(), PJ_PROJ_4, nullptr);
   if (proj == nullptr) return refused("PROJ has no other notation for it");
-  // These words do not change where a place is on the map.
+  // The words that are removed do not change where a place is on the map.
   std::vector<std::string> words = absl::StrSplit(proj, ' ', absl::SkipEmpty());
   std::erase_if(words, [](const std::string& word) {
     return word == "+type=crs" || absl::StartsWith(word, "+towgs84=");

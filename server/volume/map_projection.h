@@ -29,14 +29,15 @@ struct EarthFigure {
   double inverse_flattening = 0.0;
 };
 
-// A map projection. Safe from any thread; calls from several threads wait for each other.
+// A map projection. It is thread-safe: calls from several threads wait for each other.
 class MapProjection {
  public:
   // Opens a projection in PROJ's notation (see ProjectionText). World coordinates are metres east
-  // and north of the projection's own origin. INVALID_ARGUMENT if the text is not accepted.
+  // and north of the projection's own origin. Returns INVALID_ARGUMENT if the text is not accepted.
   static absl::StatusOr<MapProjection> Open(std::string_view proj);
   // Opens the projection of a grid whose middle is at `middle`. World coordinates are metres from
-  // that middle. INVALID_ARGUMENT if the text is not accepted or the middle is not on the map.
+  // that middle. Returns INVALID_ARGUMENT if the text is not accepted or the middle is not on the
+  // map.
   static absl::StatusOr<MapProjection> Of(std::string_view proj, const EarthPlace& middle);
 
   MapProjection(MapProjection&&) noexcept;
@@ -61,7 +62,7 @@ class MapProjection {
   EarthFigure Figure() const;
 
   // Returns the projection as well-known text, by ISO 19162 or in GDAL's variant of its first
-  // version. Returns an empty text if that cannot express the projection.
+  // version. Returns an empty text if that format cannot express the projection.
   enum class WellKnown { kIso, kGdal };
   std::string WellKnownText(WellKnown variant) const;
 
@@ -80,7 +81,7 @@ class MapProjection {
 };
 
 // Returns the projection of a coordinate reference system in well-known text, in PROJ's notation.
-// INVALID_ARGUMENT if it is not a projection that ProjectionText accepts.
+// Returns INVALID_ARGUMENT if it is not a projection that ProjectionText accepts.
 absl::StatusOr<std::string> ProjectionOfWellKnownText(const std::string& text);
 
 }  // namespace thunderhead::volume

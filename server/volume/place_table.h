@@ -13,14 +13,14 @@ namespace thunderhead::volume {
 struct PlaceTable {
   int nodes = 0;           // along each side
   double reach_deg = 0.0;  // angular distance from the middle to the middle of a side
-  // World coordinates of each node in metres, from west to east and then from south to north. NaN
-  // beyond the map.
+  // World coordinates of each node in metres, from west to east and then from south to north. They
+  // are NaN beyond the map.
   std::vector<float> x_m;
   std::vector<float> y_m;
 };
 
-// Returns the place at the angular distance and direction (u, v), in radians, from `middle`: u and
-// v are coordinates in the azimuthal equidistant projection around it, east and north.
+// Returns the place with the coordinates `u` (east) and `v` (north) in the azimuthal equidistant
+// projection around `middle`. The coordinates are in radians.
 EarthPlace PlaceAround(const EarthPlace& middle, double u, double v);
 
 // Makes the table around `middle`. `reach_deg` is above 0 and below 180.

@@ -102,7 +102,7 @@ absl::StatusOr<ProjectionText> ProjectionText::Parse(std::string_view text) {
   if (!has("R") && !has("a") && !has("ellps") && !has("datum")) {
     return refused("it does not give the size of the Earth (+R=, +a= or +ellps=)");
   }
-  // PROJ would ignore the second one without a word.
+  // PROJ would silently ignore the second parameter.
   if (has("units") && has("to_meter")) return refused("it has both +units= and +to_meter=");
   parsed.kind_ = parsed.Text(rotated ? "o_proj" : "proj");
   return parsed;

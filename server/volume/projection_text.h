@@ -15,7 +15,8 @@ namespace thunderhead::volume {
 class ProjectionText {
  public:
   // Parses and checks `text`. It must name a projection whose coordinates are metres, and a figure
-  // of the Earth. INVALID_ARGUMENT with the first parameter that is not accepted.
+  // of the Earth. Otherwise it returns INVALID_ARGUMENT with the first parameter that is not
+  // accepted.
   static absl::StatusOr<ProjectionText> Parse(std::string_view text);
 
   // Returns the projection's name in PROJ's notation: the value of "proj", or of "o_proj" for a
@@ -26,7 +27,7 @@ class ProjectionText {
   bool Has(std::string_view parameter) const;
   // Returns a parameter's text, or "" if it is missing.
   std::string Text(std::string_view parameter) const;
-  // Returns a parameter's value, or nothing if it is missing or no number.
+  // Returns a parameter's value, or nothing if it is missing or not a number.
   std::optional<double> Number(std::string_view parameter) const;
 
  private:

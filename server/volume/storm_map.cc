@@ -10,7 +10,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// Adds the field's paths to `columns` and finds where the field is strongest.
+// Computes a field's water path in each column and finds where the field is strongest.
 class ColumnScan {
  public:
   ColumnScan(const HydrometeorFields& fields, std::size_t index)
@@ -42,7 +42,8 @@ class ColumnScan {
     const CellBox& box = fields_.condensate;
     const float* const row = field_.concentration_kg_per_m3.data() + fields_.grid.Offset(0, y, z);
     double* const columns = columns_.data() + fields_.grid.Offset(0, y, 0);
-    // Looking up the air is the slowest part, and almost no cell needs it.
+    // Looking up the air's density is the slowest part. It is needed only for cells that can exceed
+    // the largest value so far.
     const float least = peak_.value * thinnest;
     for (int x = box.low.x; x < box.high.x; ++x) {
       columns[x] += row[x];

@@ -1,5 +1,6 @@
 // The height of the ground under a storm. Beyond the domain, the ground has the height of the
-// nearest point of the domain's edge.
+// nearest point of the domain's edge. Without terrain in the file, the ground is the domain's low
+// face.
 #pragma once
 
 #include "glm/vec2.hpp"

@@ -12,8 +12,8 @@ struct WorldBox {
   glm::dvec3 high_m{0.0};
 };
 
-// Returns the box for which 0.1 % of the storm's total extinction lies beyond each face. Returns
-// the whole domain if there is no condensate.
+// Returns the smallest box of whole cells for which at most 0.1 % of the storm's total extinction
+// lies beyond each face. Returns the whole domain if there is no condensate.
 WorldBox VisibleBox(const HydrometeorFields& fields,
                     physics::SizeSource sizes = physics::SizeSource::kModel);
 

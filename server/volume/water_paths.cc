@@ -17,7 +17,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// The smallest and the largest factor that DetailTexel::column, a byte, is used for.
+// The smallest and the largest factor that KeepWaterPaths stores in DetailTexel::column, a byte.
 constexpr float kLeastRest = 8.0F / DetailTexel::kColumnOne;
 constexpr float kMostRest = 255.0F / DetailTexel::kColumnOne;
 

@@ -15,15 +15,16 @@ namespace {
 // Number of rings of equal area that divide the disc. They are narrower than the forward peak of
 // rain.
 constexpr int kRings = 64;
-// Half of the directions around a ring; the other half mirrors them.
+// Number of directions on one half of a ring. The other half is its mirror image.
 constexpr int kDirections = 64;
 
-// Maximum error of the quadrature for light at angles below a hundredth of a degree.
+// Tolerance for the table's mean over the sphere. The quadrature is inaccurate for light at angles
+// below a hundredth of a degree.
 constexpr double kMeanTolerance = 0.02;
 
 struct DiscPoint {
   double along;  // cosine of the angle from the middle
-  // Component perpendicular to that direction, away from the scattering angle's start.
+  // Component perpendicular to the direction of the middle, towards smaller scattering angles.
   double across;
 };
 
