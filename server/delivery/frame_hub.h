@@ -1,9 +1,9 @@
 // Distributes a session's newest frame to its viewers. Each viewer has at most two unacknowledged
-// JPEG frames or eight video frames. A slow viewer skips frames and never slows another viewer. A
-// viewer with a slow link gets video if its client can decode video, or else smaller pictures. Each
-// form (encoding and size) of a frame is encoded once for all viewers. The hub keeps only the
-// newest frame, the newest problem and the newest base picture of each video stream. Safe from any
-// thread. Does not know how frames are drawn, encoded or sent.
+// JPEG frames, or two to eight unacknowledged video frames. A slow viewer skips frames and never
+// slows another viewer. A viewer with a slow link gets video if its client can decode video, or
+// else smaller pictures. Each form (encoding and size) of a frame is encoded once for all viewers.
+// The hub keeps only the newest frame, the newest problem and the newest base picture of each video
+// stream. Safe from any thread. Does not know how frames are drawn, encoded or sent.
 #pragma once
 
 #include <algorithm>
@@ -217,7 +217,8 @@ class FrameHub {
   mutable std::mutex mutex_;
   std::map<std::uint64_t, Watch> watches_;
   std::shared_ptr<PublishedFrame> frame_;
-  // Set since frames of the newest scene were published whose resting frames have not arrived yet.
+  // The time of the first frame of the newest scene whose resting frame has not arrived yet. Absent
+  // if no resting frame is pending.
   std::optional<Time> resting_frame_due_since_;
   std::array<VideoStream, kTiers> streams_;
   std::optional<Problem> problem_;
