@@ -37,7 +37,8 @@ struct PlannerTargets {
   // A frame at rest whose predicted time is longer than this is drawn in pieces, by a worker.
   double whole_ms = 30.0;
   // The delay before a full-quality frame that takes longer than refined_ms. Such a frame would
-  // delay the response to a next change, so it waits until the scene has very likely come to rest.
+  // delay the response to the next change, so it waits until the scene has very likely come to
+  // rest.
   session::Clock::duration settle_delay = std::chrono::milliseconds(500);
 
   // Return the times at which an unchanged scene counts as at rest, and as settled. Both times are
@@ -54,7 +55,8 @@ struct PlannerTargets {
 // this minimum up to 1.
 inline constexpr double kCoarsest = 0.25;
 // The same minimum for sparse frames (frames with rays only where the picture needs them). Below
-// this value the saved rays cost almost nothing, and they are needed at edges.
+// this value, leaving out further rays would save almost no time, and these rays are needed at
+// edges.
 inline constexpr double kCoarsestSparse = 0.353553390593;
 
 // The frame that the source drew last, whose stages it can reuse.
@@ -104,8 +106,9 @@ class FramePlanner {
   // (the reference).
   void GiveUp(std::uint64_t revision);
 
-  // Returns when a finer frame of the last drawn scene will be drawn, if that frame is predicted to
-  // take longer than longest_ms. Returns none if there will be no finer frame.
+  // Returns when the scene will have rested for as long as the next finer frame is predicted to
+  // take, so that this frame is drawn. Returns none if there is no finer frame, or if it is
+  // predicted to take longer than longest_at_rest_ms.
   std::optional<session::Clock::time_point> FinerAt(
       const session::NewestScene& drawn, const std::optional<LastDrawn>& last_drawn) const;
 
