@@ -24,7 +24,7 @@ class Listener {
 
 struct LinkOptions {
   bool reads = true;        // false for a link that never reads
-  double kbit_per_s = 0.0;  // the rate at which it reads; 0 means no limit
+  double kbit_per_s = 0.0;  // the rate at which the link reads; 0 means no limit
 };
 
 // A call of Interact on a separate connection. Destroying the object closes the call.
