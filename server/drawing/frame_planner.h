@@ -18,10 +18,11 @@ namespace thunderhead::drawing {
 
 struct PlannerTargets {
   double coarse_ms = 33.0;  // time limit for a frame while the scene changes
-  // Time limit for the coarsest frame that has all pixels. If that frame takes longer, frames get
-  // fewer pixels.
+  // Time limit for the coarsest frame in the usual size of a moving picture. If that frame takes
+  // longer, moving pictures get a smaller size (speed_scale).
   double whole_size_ms = 45.0;
-  // A frame that takes less time than this gets one ray per pixel even while the scene changes.
+  // A frame that takes less time than this gets one ray per pixel even while the scene changes. For
+  // large pictures (accuracy::MovingOutputScale below 1), coarse_ms applies instead.
   double smooth_ms = 10.0;
   // Time limit for the first frame at rest. Together with rest_delay, encoding and network, the
   // frame is shown within 300 ms.
@@ -126,7 +127,7 @@ class FramePlanner {
  private:
   FramePlan Coarse(const scene::Scene& scene, const std::optional<LastDrawn>& last_drawn) const;
   // Returns FramePlan::speed_scale for coarse frames of the kind of `moving`. It is below 1 if the
-  // coarsest frame with all pixels takes longer than whole_size_ms.
+  // coarsest frame in the usual size takes longer than whole_size_ms.
   double SpeedScale(const scene::Scene& scene, const FrameQuality& moving) const;
   Decision AtRest(const session::NewestScene& newest, session::Clock::time_point now,
                   const std::optional<LastDrawn>& last_drawn) const;

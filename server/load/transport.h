@@ -53,8 +53,8 @@ class Transport {
   // Starts to connect. The listener must outlive the link, and the transport must outlive both.
   virtual std::unique_ptr<Link> Interact(Listener& listener, const LinkOptions& options) = 0;
   // Calls a unary method of the service with a serialized request and returns the serialized
-  // response. Returns DEADLINE_EXCEEDED after the timeout, and CANCELLED if `patience.stop` is
-  // requested. Safe to call from any thread.
+  // response. After the timeout, returns DEADLINE_EXCEEDED (gRPC) or UNAVAILABLE (gRPC-Web).
+  // Returns CANCELLED if `patience.stop` is requested. Safe to call from any thread.
   virtual absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
                                            const CallPatience& patience) = 0;
 };
