@@ -35,8 +35,8 @@ struct PlannedPicture {
   // without its hash.
   std::string server_storm = {};
   std::optional<pipeline::InputFile> server_input = {};
-  absl::Status
-      outcome;  // OK once the picture is made; before, UNAVAILABLE or the error of an attempt
+  // OK once the picture is made. Before, UNAVAILABLE or the error of an attempt.
+  absl::Status outcome;
 };
 
 // Returns a plan with a picture for each time in `times` of the storm number `storm`, in each view.
