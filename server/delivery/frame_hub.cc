@@ -66,7 +66,8 @@ bool FrameHub::IsTooSmall(const Watch& watch, const PublishedFrame& frame) {
     case FrameForm::Kind::kVideo:
       break;
   }
-  // A lower video tier needs no resend: the next video picture follows soon, and JPEG at rest.
+  // A viewer of video whose picture is too small is not sent the frame again. The next video
+  // picture, or at rest a JPEG picture, follows soon and has the new size.
   return false;
 }
 
@@ -166,7 +167,7 @@ std::optional<FrameHub::Offer> FrameHub::OfferFor(const Watch& watch, PublishedF
   if (frame.Rests() && !awaits_resting_frame) return if_wanted(jpeg);
   if (auto video = VideoFor(watch, frame, *video_tier); video.has_value()) return video;
   // The viewer gets small JPEG pictures until the next key picture. A viewer that has the stream's
-  // base picture needs none.
+  // base picture needs no JPEG picture.
   if (watch.place.BaseOf(*video_tier) != 0 || !is_new) return std::nullopt;
   return Offer{
       described.sequence,

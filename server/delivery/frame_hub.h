@@ -1,9 +1,9 @@
 // Distributes a session's newest frame to its viewers. Each viewer has at most two unacknowledged
-// JPEG frames or eight video frames. A slow viewer skips frames and never slows another viewer. A
-// viewer with a slow link gets video if its client can decode video, or else smaller pictures. Each
-// form (encoding and size) of a frame is encoded once for all viewers. The hub keeps only the
-// newest frame, the newest problem and the newest base picture of each video stream. Safe from any
-// thread. Does not know how frames are drawn, encoded or sent.
+// JPEG frames, or two to eight unacknowledged video frames. A slow viewer skips frames and never
+// slows another viewer. A viewer with a slow link gets video if its client can decode video, or
+// else smaller pictures. Each form (encoding and size) of a frame is encoded once for all viewers.
+// The hub keeps only the newest frame, the newest problem and the newest base picture of each video
+// stream. Safe from any thread. Does not know how frames are drawn, encoded or sent.
 #pragma once
 
 #include <algorithm>
@@ -154,9 +154,9 @@ class FrameHub {
   struct Sent {
     std::uint64_t sequence = 0;
     Time at;
-    bool moving = false;  // true for every form except a resting frame
+    bool moving = false;  // true for video, and for JPEG of a frame that is not at rest
     bool video = false;
-    bool was_last = false;  // the window was full, so that no further frame could be sent meanwhile
+    bool was_last = false;  // this frame filled the window, so that no further frame could be sent
     std::optional<Time> changed_at;  // set if it is the first frame of its revision that was sent
   };
   struct Watch {
@@ -190,7 +190,8 @@ class FrameHub {
   static std::optional<int> VideoTier(const Watch& watch, const PictureWidth& width);
   static std::size_t MaxInFlight(const Watch& watch);
   static bool IsReady(const Watch& watch, Time now);
-  // The following functions need mutex_.
+  // The following functions need mutex_, except Made, NotMade, Newest, RestingFrameCame and
+  // WakeAll, which must be called without it.
   //
   // Returns true if the viewer shows a resting frame of the scene and waits for the resting frame
   // of `next`. Until then, any other form of the frame would look worse.
@@ -200,8 +201,8 @@ class FrameHub {
   std::optional<Offer> NextFor(const Watch& watch, Time now) const;
   bool HasFor(const Watch& watch, Time now) const;
   static std::shared_ptr<const EncodedFrame> Made(const Offer& offer, PublishedFrame& published);
-  // Returns the current problem, if any, when an offered frame could not be encoded. Must be called
-  // without mutex_.
+  // Handles an offered frame that could not be encoded: it no longer counts as in flight. Returns
+  // the current problem if the viewer has not received it yet.
   std::optional<FrameEvent> NotMade(std::uint64_t viewer_id, const Offer& offer);
   // Records that the viewer took the offer. Returns true if the viewer must be woken later for its
   // next frame.
@@ -217,7 +218,8 @@ class FrameHub {
   mutable std::mutex mutex_;
   std::map<std::uint64_t, Watch> watches_;
   std::shared_ptr<PublishedFrame> frame_;
-  // Set since frames of the newest scene were published whose resting frames have not arrived yet.
+  // The time of the first frame of the newest scene whose resting frame has not arrived yet. Absent
+  // if no resting frame is pending.
   std::optional<Time> resting_frame_due_since_;
   std::array<VideoStream, kTiers> streams_;
   std::optional<Problem> problem_;

@@ -26,8 +26,8 @@ void LinkEstimate::SetLeast(int step, Time now) {
 }
 
 void LinkEstimate::Acknowledged(Time now, Time sent_at) {
-  // If a frame was in flight since the last arrival, the sample is the time from that arrival to
-  // this one.
+  // If this frame was already in flight when the previous frame arrived, the sample is the time
+  // between the two arrivals. Otherwise it is the time since this frame was sent.
   const bool waited = last_acknowledged_.has_value() && sent_at < *last_acknowledged_;
   const double sample_ms = Milliseconds(waited ? now - *last_acknowledged_ : now - sent_at);
   last_acknowledged_ = now;

@@ -71,7 +71,7 @@ struct PictureWidth {
 
 // Returns the tier of a picture for a window: the smallest size that still fills the window.
 // Returns 0 if `window_px` is 0 (unknown). A moving picture gets the tier that it will have at
-// rest, unless it would then have less than half of the window's pixels.
+// rest, unless it would then be less than half as wide as the window.
 int TierForWindow(const PictureWidth& picture, int window_px);
 
 }  // namespace thunderhead::delivery

@@ -19,7 +19,8 @@ class VideoEncoders {
  public:
   // Encodes a picture, which must have the size of the order's tier. If that size is new to the
   // encoder, the picture becomes a key picture whatever was ordered, and `order` is updated.
-  // RESOURCE_EXHAUSTED if `memory` has too little memory left for an encoder.
+  // Returns RESOURCE_EXHAUSTED if `memory` has too little memory left for an encoder, or the
+  // encoder's error.
   absl::StatusOr<codec::Vp9Picture> Encode(const frame::RgbImage& picture, VideoOrder* order,
                                            base::MemoryBudget& memory);
 

@@ -1,6 +1,6 @@
-// The order of the pictures of a video stream, and one viewer's place in the stream. A video
-// picture can be decoded only after its base picture, so a viewer that missed a base picture waits
-// for a key picture. Plain values; the time is an argument.
+// Decides which pictures of a video stream are encoded and which kinds they have, and records one
+// viewer's place in the stream. A video picture can be decoded only after its base picture, so a
+// viewer that missed a base picture waits for a key picture. Plain values; the time is an argument.
 #pragma once
 
 #include <chrono>
@@ -68,7 +68,8 @@ class VideoStream {
  public:
   using Time = VideoPlace::Time;
 
-  // Minimum time between key pictures that are encoded because viewers ask for them.
+  // Minimum time between key pictures that are encoded because viewers ask for them. It does not
+  // apply if no viewer follows the stream.
   static constexpr std::chrono::seconds kKeyPause{1};
   // Maximum number of consecutive droppable pictures. Viewers that cannot take every picture skip
   // these.

@@ -18,7 +18,7 @@ namespace {
 // With fewer bytes it arrives sooner.
 constexpr int kCoarseJpegQuality = 75;
 
-// The JPEG quality of smaller tiers, which go to viewers with slow links.
+// The JPEG quality of a coarse frame in a smaller tier, which goes to viewers with slow links.
 constexpr int kReducedJpegQuality = 70;
 
 using Pictures = delivery::PictureSizes<frame::RgbImage>;

@@ -78,8 +78,8 @@ Decision FramePlanner::Decide(const session::NewestScene& newest, session::Clock
 FramePlan FramePlanner::Coarse(const scene::Scene& scene,
                                const std::optional<LastDrawn>& last_drawn) const {
   scene::Stage first_dirty = FirstDirty(last_drawn, scene);
-  // A sparse picture's rays are not kept, so a changed tone map redraws the picture. Drawing a
-  // sparse picture at rest takes too long for this, so a coarse one is drawn.
+  // A sparse picture's rays are not kept, so a changed tone map redraws the picture. Redrawing it
+  // in the quality that it had at rest would take too long, so a coarse picture is drawn.
   if (last_drawn.has_value() && last_drawn->quality.sparse && drawn_.refined) {
     first_dirty = std::min(first_dirty, scene::Stage::kView);
   }
@@ -182,7 +182,8 @@ bool FramePlanner::IsFiner(const FrameQuality& quality) const {
 
 FrameQuality FramePlanner::FinestSoon(const scene::Scene& scene, scene::Stage first_dirty) const {
   const FrameQuality rayed = Finest(scene, first_dirty, targets_.refined_ms);
-  // Larger pictures are not drawn sparsely, because the work per pixel on the CPU takes too long.
+  // Large pictures (whose output scale is below 1 while they move) are not drawn sparsely at rest,
+  // because the work per pixel on the CPU takes too long.
   const bool sparse = accuracy::MovesSparsely(scene) && accuracy::MovingOutputScale(scene) >= 1.0;
   if (IsFull(rayed) || !sparse) return rayed;
   const FrameQuality fewer = Finest(scene, first_dirty, targets_.refined_ms, {.sparse = true});

@@ -18,10 +18,11 @@ namespace thunderhead::drawing {
 
 struct PlannerTargets {
   double coarse_ms = 33.0;  // time limit for a frame while the scene changes
-  // Time limit for the coarsest frame that has all pixels. If that frame takes longer, frames get
-  // fewer pixels.
+  // Time limit for the coarsest frame in the usual size of a moving picture. If that frame takes
+  // longer, moving pictures get a smaller size (speed_scale).
   double whole_size_ms = 45.0;
-  // A frame that takes less time than this gets one ray per pixel even while the scene changes.
+  // A frame that takes less time than this gets one ray per pixel even while the scene changes. For
+  // large pictures (accuracy::MovingOutputScale below 1), coarse_ms applies instead.
   double smooth_ms = 10.0;
   // Time limit for the first frame at rest. Together with rest_delay, encoding and network, the
   // frame is shown within 300 ms.
@@ -37,7 +38,8 @@ struct PlannerTargets {
   // A frame at rest whose predicted time is longer than this is drawn in pieces, by a worker.
   double whole_ms = 30.0;
   // The delay before a full-quality frame that takes longer than refined_ms. Such a frame would
-  // delay the response to a next change, so it waits until the scene has very likely come to rest.
+  // delay the response to the next change, so it waits until the scene has very likely come to
+  // rest.
   session::Clock::duration settle_delay = std::chrono::milliseconds(500);
 
   // Return the times at which an unchanged scene counts as at rest, and as settled. Both times are
@@ -54,7 +56,8 @@ struct PlannerTargets {
 // this minimum up to 1.
 inline constexpr double kCoarsest = 0.25;
 // The same minimum for sparse frames (frames with rays only where the picture needs them). Below
-// this value the saved rays cost almost nothing, and they are needed at edges.
+// this value, leaving out further rays would save almost no time, and these rays are needed at
+// edges.
 inline constexpr double kCoarsestSparse = 0.353553390593;
 
 // The frame that the source drew last, whose stages it can reuse.
@@ -104,8 +107,9 @@ class FramePlanner {
   // (the reference).
   void GiveUp(std::uint64_t revision);
 
-  // Returns when a finer frame of the last drawn scene will be drawn, if that frame is predicted to
-  // take longer than longest_ms. Returns none if there will be no finer frame.
+  // Returns when the scene will have rested for as long as the next finer frame is predicted to
+  // take, so that this frame is drawn. Returns none if there is no finer frame, or if it is
+  // predicted to take longer than longest_at_rest_ms.
   std::optional<session::Clock::time_point> FinerAt(
       const session::NewestScene& drawn, const std::optional<LastDrawn>& last_drawn) const;
 
@@ -123,7 +127,7 @@ class FramePlanner {
  private:
   FramePlan Coarse(const scene::Scene& scene, const std::optional<LastDrawn>& last_drawn) const;
   // Returns FramePlan::speed_scale for coarse frames of the kind of `moving`. It is below 1 if the
-  // coarsest frame with all pixels takes longer than whole_size_ms.
+  // coarsest frame in the usual size takes longer than whole_size_ms.
   double SpeedScale(const scene::Scene& scene, const FrameQuality& moving) const;
   Decision AtRest(const session::NewestScene& newest, session::Clock::time_point now,
                   const std::optional<LastDrawn>& last_drawn) const;

@@ -222,9 +222,9 @@ class GlFrameSource final : public FrameSource {
     return renderers_.DropOldest() || meters_.DropOldest() || correctors_.DropOldest();
   }
 
-  // Returns the result of `draw`, or the device's fault. If the device is out of memory, frees
-  // everything that is kept for other pictures and tries once more. This is worthwhile because a
-  // renderer without all its memory is useless.
+  // Returns the result of `draw`, or the device's fault. If memory is exhausted, frees everything
+  // that is kept for other pictures, because a renderer without all its memory is useless. If the
+  // device itself was out of memory, then tries once more.
   template <typename Draw>
   auto Watched(const Draw& draw) -> decltype(draw()) {
     ForgetDrawn();

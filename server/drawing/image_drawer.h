@@ -47,8 +47,8 @@ class ImageDrawer {
   // Completes finished and cancelled pictures, admits new pictures, and starts pictures for which a
   // worker is free.
   void Attend();
-  // Ends all started pictures. Those that are not drawn yet get the error `why`. The workers' work
-  // must have ended.
+  // Ends all started pictures. Those that are not drawn yet get their own error, or `why` if they
+  // have none. The workers' work must have ended.
   void EndAll(const absl::Status& why);
 
  private:
@@ -75,7 +75,7 @@ class ImageDrawer {
   };
 
   absl::Status Admit(ImageJob& job) const;
-  // The following functions run on a worker's thread.
+  // The following two functions run on a worker's thread.
   static absl::Status Read(Begun& image, const std::shared_ptr<Preparation>& preparation);
   static absl::Status Draw(Begun& image, FrameSource& source);
 
@@ -91,8 +91,8 @@ class ImageDrawer {
   void Measure(Begun& image);
   bool EndsTracing(Begun& image);
   void TakeStep(Begun& image, const TracedStep& step);
-  // Returns true if the picture's error is too large for its scene. The picture then starts again
-  // with another setting.
+  // Returns true if the picture's error is too large for its scene and another setting can be used.
+  // The picture then starts again with that setting.
   bool IsRefuted(Begun& image);
   void Report(const Begun& image, const accuracy::LightProgress& progress) const;
   absl::StatusOr<DisplayFrame> Drawn(Begun& image);

@@ -9,16 +9,17 @@
 namespace thunderhead::drawing {
 namespace {
 
-// The number of pixels at the first size. Tracing them takes a tenth of a second on a slow core.
+// The maximum number of pixels of the first size. Tracing them takes a tenth of a second on a slow
+// core.
 constexpr std::int64_t kFirstPixels = 4096;
-// Samples per pixel at each size below the full size. All these sizes together cost a third of as
-// many samples at full size.
+// Samples per pixel at each size below the full size. All these sizes together cost a third of the
+// time of this number of samples at full size.
 constexpr int kSamplesOfSize = 8;
-// A picture is shown from this number of samples per pixel on. With a single sample, it is noisier
-// than the smaller picture before it.
+// A picture is shown from this number of samples per pixel on. With a single sample, it would be
+// noisier than the smaller picture before it. Only the very first picture is shown with one sample.
 constexpr int kMinShownSamples = 2;
 constexpr double kShowEvery_s = 1.0;
-// The relative error at which refining ends. It is far below one level of an 8-bit display.
+// The relative error at which refining ends. It is below one level of an 8-bit display.
 constexpr double kFinished = 1e-3;
 constexpr int kMaxSamples = 1 << 16;
 

@@ -1,6 +1,7 @@
 // The sizes in which a picture is refined by the Monte Carlo reference, and when the picture is
 // shown. The first size is small, so that something is visible within a fraction of a second. Each
-// further size is twice as large, up to the full size. Plain values; the time is an argument.
+// further size has twice the width and height, up to the full size. Plain values; the time is an
+// argument.
 #pragma once
 
 #include "drawing/frame_source.h"

@@ -42,7 +42,8 @@ class TracedReferenceSource final : public ReferenceSource {
 
   picture::LinearPicture Snapshot() override {
     picture::LinearPicture picture = tracer_.Snapshot();
-    // Dropped, because sessions show only its mean over the picture (Refinement).
+    // The standard error is dropped, because sessions show only its mean over the picture
+    // (Refinement).
     picture.standard_error = {};
     return picture;
   }

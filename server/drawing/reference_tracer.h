@@ -29,7 +29,7 @@ namespace thunderhead::drawing {
 struct ReferencePicture {
   picture::LinearPicture picture;
   delivery::Refinement refinement;
-  double trace_ms = 0.0;  // since the request
+  double trace_ms = 0.0;  // time spent tracing since the request
   bool full_size = false;
 };
 

@@ -334,7 +334,7 @@ bool RenderLoop::Recover(const FrameSourceFactory& make_source, const std::vecto
     turn_began_ = 0;
     while (!stopping_ && time_.Now() < *at) wake_.Wait(*at, time_);
     if (stopping_) return false;
-    // A driver can hang here just as it can while drawing.
+    // A driver can hang here just as it can while drawing, so this time is measured like a turn.
     BeginTurn();
     auto made = make_source(nullptr);
     if (made.ok()) {

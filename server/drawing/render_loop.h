@@ -47,8 +47,8 @@ struct RenderLoopOptions {
   // workers down.
   bool workers_yield = true;
   SerializeFrame serialize_frame = [](const delivery::EncodedFrame&) { return ""; };
-  // Maximum number of sessions that show the Monte Carlo reference. Each uses some hundred bytes
-  // per pixel, plus the memory of its storm's fields.
+  // Maximum number of sessions that show the Monte Carlo reference. Each uses about 160 bytes per
+  // pixel, plus reference::MediumBytes of its storm's fields.
   std::size_t max_traced_sessions = 8;
   std::function<accuracy::OfferTables()> offer_tables = accuracy::BuiltInOfferTables;
   ReferenceSourceFactory make_reference_source = [] { return MakeReferenceSource(); };

@@ -1,6 +1,7 @@
 // The fields of the storm that a session shows. They are requested from a FieldsReader, which reads
-// them on another thread than the render loop's. While a time series plays, the next time is
-// prefetched. Used by the render loop's thread only. This code does not use GL.
+// them on another thread than the render loop's. While a time series plays, the fields of the next
+// time are prepared in advance if scenes need preparation. Used by the render loop's thread only.
+// This code does not use GL.
 #pragma once
 
 #include <cstdint>
@@ -50,8 +51,8 @@ class SessionFields {
   // Returns the fields of the scene that Drawable returned last.
   const std::shared_ptr<const volume::HydrometeorFields>& Fields() const { return fields_; }
 
-  // Prefetches the next time if the series is playing step by step. Call it after `shown` was
-  // drawn.
+  // If the series is playing step by step and `shown` needs preparation, reads and prepares the
+  // fields of the next time in advance. Call it after `shown` was drawn.
   void PrepareNext(const scene::Scene& shown);
 
   // Adds the time that reading and preparing fields took since the last frame.

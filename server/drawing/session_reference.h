@@ -23,7 +23,7 @@ class SessionReference {
   void EndUnless(const scene::Scene& newest);
 
   // Begins tracing `shown`, or takes the newest picture from the tracer. Returns true if there is a
-  // new picture to show.
+  // new picture to show, or the error with which tracing could not begin or has ended.
   absl::StatusOr<bool> Trace(const session::NewestScene& shown,
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
   // Returns the picture to show, and marks it as taken.

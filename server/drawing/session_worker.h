@@ -43,7 +43,7 @@ class SessionWorker {
   };
 
   // Returns true if the worker's source already holds the scene's extinction, or if the device has
-  // room for its size of `bytes`.
+  // room for `bytes` more bytes. The caller passes the expected size of the scene on the device.
   bool HasRoomFor(const scene::Scene& scene, std::uint64_t bytes) const {
     return FirstDirty(last_drawn_, scene) > scene::Stage::kExtinction || has_room_(bytes);
   }

@@ -1,13 +1,12 @@
 // The order in which contenders (sessions and workers) draw: deficit round robin, counted in
 // milliseconds. There are three classes of work, in this order: pictures that people wait for,
 // refinement of shown pictures, and pictures outside sessions. Each later class gets at least a
-// tenth of the time that the earlier ones use, even if these always have work, so that its work
-// finishes.
+// tenth of the time, even if the earlier classes always have work, so that its work finishes.
 //
 // Within a class all contenders get the same time, whatever the length of their pieces. A new
 // contender inherits the overuse of one that left, so that leaving and coming back gains nothing.
-// Shared views and own views are two groups that each get half of the time. A school class whose
-// pupils all look around therefore uses at most half of the time.
+// Shared views and own views are two groups that each get half of the time. Therefore, if many
+// viewers of a session open own views, these views together use at most half of the time.
 //
 // A plain value, without a clock.
 #pragma once
@@ -29,7 +28,8 @@ enum class TurnClass {
 };
 inline constexpr std::size_t kTurnClasses = 3;
 
-// Minimum time of a class, as a share of the time that the earlier classes use.
+// Minimum time of a class, as a share of the time that this class and the earlier classes use
+// together.
 inline constexpr double kMinShare = 0.1;
 
 // A session or worker that may get a turn.

@@ -59,11 +59,11 @@ class Worker {
   // its next piece, and later work gets a new source.
   void RenewSource();
 
-  // Returns true if the work waits to draw a piece. If the work was cancelled, lets it run to its
-  // end first.
+  // Returns true if the work waits to draw a piece. If work that waits must end instead, because it
+  // was cancelled or has exceeded a limit, wakes it so that it ends, and returns false.
   bool WantsTurn();
   // Lets the worker draw a piece. Returns the time that the piece took, in milliseconds, once it is
-  // drawn.
+  // drawn. Returns 0 at once if no piece waits.
   double GiveTurn();
 
   // Returns how long the worker has worked since its last piece: computing on the CPU, or in a call

@@ -98,8 +98,8 @@ class JobBoard {
   void Restore(JobRecord record, Time now);
 
   // Adds a job with the id `id`. If there are too many jobs, forgets ended jobs, those of the same
-  // owner first. Jobs with unfetched results are not forgotten. If this does not suffice, returns
-  // RESOURCE_EXHAUSTED and forgets no job.
+  // owner first. Jobs with unfetched results are not forgotten. If this does not suffice, or too
+  // many pictures would wait to be drawn, returns RESOURCE_EXHAUSTED and forgets no job.
   absl::Status Add(const std::string& id, const std::string& result_key, NewJob job, Time now);
   // Returns the job's record, which the caller stores. The job must exist.
   const JobRecord& Record(const std::string& id) const { return jobs_.at(id).record; }
@@ -115,8 +115,9 @@ class JobBoard {
   std::optional<JobNews> NewsOf(const std::string& id, std::uint64_t version) const;
   // Returns all jobs in the order of their creation.
   std::vector<JobView> All() const;
-  // Returns the result file of a picture. Returns NOT_FOUND if the picture has no file, and
-  // FAILED_PRECONDITION if it is not drawn yet.
+  // Returns the result file of a picture. Returns NOT_FOUND if the job does not exist or the
+  // picture has no file. Returns FAILED_PRECONDITION if the picture is not drawn yet, and
+  // INVALID_ARGUMENT if the job has no picture with that index.
   absl::StatusOr<ResultFile> ResultOf(const PicturePlace& picture) const;
   // Returns the id of the job with that result key, or an empty text if there is no such job.
   std::string IdOfKey(const std::string& result_key) const;
@@ -135,7 +136,7 @@ class JobBoard {
              double draw_ms, Time now);
   bool Fail(const PicturePlace& picture, const Problem& problem, Time now);
   // Marks the picture as waiting again, to be begun at `not_before` or later. `counts` says whether
-  // the ended attempt counts towards kMaxAttempts.
+  // the ended attempt counts towards kMaxAttempts. Returns false in the same case as Drawn.
   bool PutBack(const PicturePlace& picture, bool counts, Time not_before);
   // Records why the job's results cannot be written, or nothing if they can. Does nothing if the
   // job does not exist.
@@ -252,7 +253,8 @@ class JobBoard {
   // such picture.
   std::optional<std::size_t> Waiting(Entry& entry, Time now) const;
   ImageRecord* Drawing(const PicturePlace& picture, Entry** entry);
-  // Settles what Next charged for the picture. Without a time, what was charged counts as used.
+  // Replaces the estimated drawing time, which Begin charged to the owner and the job, by the
+  // actual time. Without a time, the estimate counts as used.
   void Settle(const PicturePlace& picture, std::optional<double> draw_ms);
 
   const JobLimits limits_;

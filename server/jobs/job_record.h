@@ -58,8 +58,8 @@ struct PictureOrder {
 struct ImageRecord {
   PictureOrder order;
   PictureState state = PictureState::kWaiting;
-  int attempts = 0;  // number of times that drawing was begun, without attempts that ended by an
-                     // orderly shutdown
+  int attempts = 0;  // number of times that drawing was begun, without attempts that do not count
+                     // (JobBoard::PutBack)
   Problem problem;   // set for failed and dropped pictures
   // The following are set for drawn pictures.
   std::uint64_t bytes = 0;

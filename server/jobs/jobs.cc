@@ -110,8 +110,8 @@ void Jobs::Create(NewJob job, const Done& done) {
 
 void Jobs::SaveNew(const std::string& id, const Done& done) {
   Lock lock(mutex_);
-  // The job may no longer exist, because a client that guessed its id may have cancelled and
-  // removed it meanwhile.
+  // The job may no longer exist, because List returns it already and a client may have removed it
+  // meanwhile.
   std::optional<JobNews> news = board_.NewsOf(id, 0);
   if (!news.has_value()) {
     lock.unlock();

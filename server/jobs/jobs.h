@@ -65,7 +65,7 @@ struct ResultPlace {
 
 struct JobsLoad {
   std::size_t running = 0;  // number of jobs that have not ended
-  std::size_t waiting = 0;  // pictures
+  std::size_t waiting = 0;  // number of waiting pictures
   std::size_t paused = 0;   // number of waiting pictures that may not be begun until clients fetch
                             // results
   std::size_t drawing = 0;
@@ -92,8 +92,8 @@ class Jobs {
   void Start(BeginPicture begin);
 
   // Creates a job and passes its state to `done`. The error is RESOURCE_EXHAUSTED if a limit is
-  // exceeded. It is UNAVAILABLE if the server accepts no new jobs (Drain) or the job cannot be
-  // saved.
+  // exceeded. It is UNAVAILABLE if the server accepts no new jobs (Drain), and ABORTED if a client
+  // removed the job before it was saved. If the job cannot be saved, it is the error of the store.
   void Create(NewJob job, const Done& done);
   absl::StatusOr<JobNews> Get(const std::string& id, const Asker& asker) const;
   // Returns the jobs of `owner`, or of all owners if `everybodys` is true. If `label` is not empty,
@@ -101,18 +101,21 @@ class Jobs {
   std::vector<JobView> List(const std::string& owner, bool everybodys,
                             const std::string& label) const;
   // Cancels a job and ends its pictures at once. If `forget` is true, the job is also removed.
-  // `done` is called when the change is saved.
+  // `done` is called when the change is saved, or with the error of JobBoard::Check or of the
+  // store.
   void Cancel(const std::string& id, const Asker& asker, bool forget, const Done& done);
 
-  // Notifies `watcher` of the job's changes until the watcher is destroyed.
+  // Notifies `watcher` of the job's changes until the watcher is destroyed. Returns the errors of
+  // JobBoard::Check.
   absl::Status Watch(const std::string& id, const Asker& asker, std::weak_ptr<JobWatcher> watcher);
-  // Returns the changes of a job like JobBoard::NewsOf. Returns the error SHUTTING_DOWN when the
-  // server has stopped.
+  // Returns the changes of a job like JobBoard::NewsOf. Returns UNAVAILABLE (base::ShuttingDown)
+  // when the server has stopped.
   absl::StatusOr<std::optional<JobNews>> NewsOf(const std::string& id, std::uint64_t version) const;
 
   absl::StatusOr<ResultPlace> Result(const PicturePlace& picture, const Asker& asker) const;
   // Returns the result with index `place` of the job with that result key. Every client that has
-  // the key may call it. Returns NOT_FOUND for an unknown key.
+  // the key may call it. Returns NOT_FOUND for an unknown key, and the errors of
+  // JobBoard::ResultOf.
   absl::StatusOr<ResultPlace> ResultOfKey(const std::string& result_key, std::size_t place) const;
   // These two functions record that a client has received the whole file of a result.
   void Fetched(const PicturePlace& picture);
@@ -169,7 +172,7 @@ class Jobs {
   absl::Status Save(Lock& lock);
   void SaveNew(const std::string& id, const Done& done);
   void Tell(const std::vector<std::string>& ids, Lock& lock);
-  // Requires mutex_.
+  // DropGoneWatchers requires mutex_.
   void DropGoneWatchers(const std::string& id);
   void RemoveDropped(const std::vector<ResultFile>& dropped);
   void LogOnce(const absl::Status& problem);

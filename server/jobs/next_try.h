@@ -17,7 +17,8 @@ struct NextTry {
 // retried. The picture was begun `attempts` times, including the failed attempt. Failures of the
 // server and of hanging storage do not count as attempts, because jobs must survive them even if
 // they last overnight. Other temporary failures, such as a lost device, may be caused by the
-// picture itself. They count, and the pause doubles with each attempt, up to five minutes. Returns
+// picture itself. They count, and the pause doubles with each attempt, up to five minutes. If
+// `draining` is true (the server shuts down), cancelled pictures do not count either. Returns
 // nothing if a retry would not help or the attempts are used up.
 std::optional<NextTry> NextTryAfter(const absl::Status& why, int attempts, bool draining);
 

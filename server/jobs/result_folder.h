@@ -29,16 +29,17 @@ using WriteFile = std::function<absl::Status(const std::string& path, std::strin
 
 class ResultFolder {
  public:
-  // Creates the folder at `path`, accessible only to this user. Returns INVALID_ARGUMENT if that
-  // fails. Files are written by `write_file`.
+  // Opens the folder at `path`. If it does not exist, creates it, accessible only to this user.
+  // Returns INVALID_ARGUMENT if that fails. Files are written by `write_file`.
   static absl::StatusOr<ResultFolder> Open(const std::string& path,
                                            std::chrono::milliseconds patience,
                                            const base::TimeSource& time,
                                            WriteFile write_file = &base::WriteWholeFile);
 
   // Writes the picture with index `place` of a job, and its description. Returns the errors of
-  // base::WriteWholeFile, and DEADLINE_EXCEEDED while the storage hangs. In the latter case, the
-  // files may still be written later.
+  // base::WriteProblem, and FAILED_PRECONDITION if the job's folder is a link. Returns
+  // DEADLINE_EXCEEDED while the storage hangs. In the latter case, the files may still be written
+  // later.
   absl::Status Write(const std::string& job_id, std::size_t place,
                      std::shared_ptr<const DrawnPicture> picture) const;
 

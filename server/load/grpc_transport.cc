@@ -172,7 +172,7 @@ class GrpcLink final : public Link,
   const bool reads_;
   grpc::ByteBuffer received_;
   grpc::ByteBuffer sent_;
-  const std::shared_ptr<net::steady_timer> delay_;  // used only by its own thread
+  const std::shared_ptr<net::steady_timer> delay_;  // used only on the thread of its io_context
 
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -34,7 +34,7 @@ struct LoadTimes {
 
 struct LoadOptions {
   int viewers = 10;   // number of viewers that read everything; 0 if all are throttled
-  int looking = 0;    // number of these viewers who look around
+  int looking = 0;    // number of these viewers who look around (in an own view)
   int throttled = 0;  // number of throttled viewers, in addition to `viewers`
   int stalled = 0;    // number of stalled viewers, in addition to `viewers`
   int passing = 0;    // number of passing viewers, in addition to `viewers`
@@ -58,11 +58,11 @@ void Throttle(double kbit_per_s, std::optional<int> throttled, LoadOptions& opti
 struct Progress {
   double share = 0.0;  // passed share of the measured time, 0 to 1
   int joined = 0;      // number of viewers that have received a frame
-  // The mean frame rate of healthy viewers since the last report. Without healthy viewers, it is
-  // the rate of the viewers who look around, or of the throttled ones.
+  // The mean frame rate of healthy viewers (ViewerKind) since the last report. Without healthy
+  // viewers, it is the rate of the viewers who look around, or else of the throttled viewers.
   double frames_per_s = 0.0;
-  // The number of frames that the slowest viewer received within the measured period. Healthy
-  // viewers (or the kind that stands for them) and viewers who look around count.
+  // The number of frames that the slowest viewer received within the measured period. It considers
+  // viewers of the kind that frames_per_s counts, and viewers who look around.
   std::uint64_t least_frames = 0;
   std::size_t visits = 0;  // completed visits of passing viewers
   int errors = 0;

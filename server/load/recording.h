@@ -19,7 +19,7 @@ inline double Now_s() {
 }
 
 enum class ViewerKind {
-  kHealthy,
+  kHealthy,    // reads everything at once, and follows the session's view
   kLooking,    // looks around: reads everything in its own view, whose camera it turns
   kThrottled,  // reads at a limited rate
   kStalled,    // joins and never reads

@@ -24,7 +24,7 @@ class Listener {
 
 struct LinkOptions {
   bool reads = true;        // false for a link that never reads
-  double kbit_per_s = 0.0;  // the rate at which it reads; 0 means no limit
+  double kbit_per_s = 0.0;  // the rate at which the link reads; 0 means no limit
 };
 
 // A call of Interact on a separate connection. Destroying the object closes the call.
@@ -53,8 +53,8 @@ class Transport {
   // Starts to connect. The listener must outlive the link, and the transport must outlive both.
   virtual std::unique_ptr<Link> Interact(Listener& listener, const LinkOptions& options) = 0;
   // Calls a unary method of the service with a serialized request and returns the serialized
-  // response. Returns DEADLINE_EXCEEDED after the timeout, and CANCELLED if `patience.stop` is
-  // requested. Safe to call from any thread.
+  // response. After the timeout, returns DEADLINE_EXCEEDED (gRPC) or UNAVAILABLE (gRPC-Web).
+  // Returns CANCELLED if `patience.stop` is requested. Safe to call from any thread.
   virtual absl::StatusOr<std::string> Call(const std::string& method, const std::string& request,
                                            const CallPatience& patience) = 0;
 };

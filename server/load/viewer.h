@@ -31,7 +31,8 @@ class Viewer final : public Listener {
   void Turn(double angle_deg);
   // Aborts the call and joins again.
   void ComeAgain(Transport& transport, const std::string& key);
-  // Asks the server to end the call. A viewer that does not read aborts it.
+  // A healthy viewer, or a viewer who looks around, asks the server to end the call. Other viewers
+  // abort it.
   void Leave();
   // Aborts the call and ends the recording.
   void Stop() { link_->Close(); }

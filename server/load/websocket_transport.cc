@@ -191,7 +191,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
   }
 
   const Host host_;
-  Listener* listener_;  // null after Abandon
+  Listener* listener_;  // null after Abandon or End
   const LinkOptions options_;
   Pace pace_;
   tcp::resolver resolver_;
@@ -230,8 +230,8 @@ class WebSocketLink final : public Link {
 
  private:
   void Post(std::string message) {
-    // If the listener sends an answer, it is already on that thread and the message is sent at
-    // once.
+    // If the listener sends an answer, this code already runs on the transport's thread and the
+    // message is sent at once.
     net::dispatch(io_, [call = call_, message = std::move(message)]() mutable {
       call->Send(std::move(message));
     });

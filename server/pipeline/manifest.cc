@@ -26,7 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// A manifest of this size has more than a million products.
+// Maximum size of a manifest that is read. A manifest of this size has more than a million
+// products.
 constexpr off_t kMaxBytes = off_t{1} << 30;
 
 template <typename Value>
@@ -62,8 +63,8 @@ absl::StatusOr<std::vector<ManifestEntry>> ParseLines(const std::string& path,
   return entries;
 }
 
-// Describes what other than a manifest is at `path`. Empty if it is a file with one name, or
-// nothing.
+// If something other than a regular file with one name is at `path`, describes what it is.
+// Otherwise returns an empty text.
 std::string WhatIsAt(const std::string& path) {
   struct stat found {};
   if (lstat(path.c_str(), &found) != 0) return "";
@@ -86,7 +87,8 @@ absl::Status NotUsable(const std::string& path) {
 }
 
 // Opens a regular file with one name, and nothing else. Another user of the folder could otherwise
-// plant a link to a file or device, or a FIFO. Negative with errno set on failure.
+// plant a link to a file or device, or a FIFO. On failure, returns a descriptor that is not open,
+// and sets errno.
 base::FileDescriptor OpenOwn(const std::string& path, int flags) {
   base::FileDescriptor file(
       open(path.c_str(), flags | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666));

@@ -59,14 +59,15 @@ struct OtherManifests {
   std::vector<std::string> take_over;
 };
 
-// The manifest of one process. The process holds the file's lock until it ends, also if it is
-// killed.
+// The manifest of one process. The file is locked as long as this object exists. The lock also ends
+// if the process is killed.
 class Manifest {
  public:
-  // Opens the manifest, and creates it if it does not exist. Drops an incomplete last line.
-  // DATA_LOSS if any other line is not an entry; UNAVAILABLE if another process holds the
-  // manifest's lock; FAILED_PRECONDITION for anything but a regular file with one name, such as a
-  // link, and for a file of more than 1 GiB.
+  // Opens the manifest, and creates it if it does not exist. Drops an incomplete last line. Returns
+  // DATA_LOSS if any other line is not an entry, and UNAVAILABLE if another process holds the
+  // manifest's lock. Returns FAILED_PRECONDITION for anything but a regular file with one name,
+  // such as a link, and for a file of more than 1 GiB. Otherwise returns the errors of
+  // base::WriteProblem.
   static absl::StatusOr<Manifest> Open(const std::string& path, const OtherManifests& others);
   Manifest(Manifest&& other) noexcept;
   Manifest& operator=(Manifest&&) = delete;

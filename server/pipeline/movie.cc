@@ -115,7 +115,8 @@ absl::Status Failed(const std::string& path, const std::string& what, int code) 
 }
 
 // Makes an empty partial file. Another user of the folder may have put a link or a FIFO in its
-// place, which is removed and never opened. Negative with errno set if the file cannot be made.
+// place, which is removed and never opened. On failure, returns a descriptor that is not open, and
+// sets errno.
 base::FileDescriptor NewPartial(const std::string& path) {
   const std::string partial = base::PartialPath(path);
   unlink(partial.c_str());
@@ -160,7 +161,7 @@ class MovieWriter {
     codec_->colorspace = AVCOL_SPC_BT709;
     codec_->color_primaries = AVCOL_PRI_BT709;
     codec_->color_trc = AVCOL_TRC_IEC61966_2_1;
-    codec_->bit_rate = 0;  // 0, because the quality setting decides
+    codec_->bit_rate = 0;  // 0, because the quality setting determines the bit rate
     if ((format->oformat->flags & AVFMT_GLOBALHEADER) != 0) {
       codec_->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
     }

@@ -33,8 +33,8 @@ class ReadinessPolicy {
   //   next[,age:SECONDS]           the folder has a file with a later name, or age:SECONDS holds
   //
   //   marker:GLOB                  the folder has a marker file whose name matches GLOB. GLOB has
-  //                                one star. It stands for the end of this file's name, with or
-  //                                without its extension.
+  //                                one star, which stands for the end of the data file's name,
+  //                                with or without its extension.
   //
   // INVALID_ARGUMENT for anything else.
   static absl::StatusOr<ReadinessPolicy> Parse(std::string_view text);

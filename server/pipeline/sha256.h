@@ -11,7 +11,7 @@ namespace thunderhead::pipeline {
 
 std::string Sha256(std::string_view bytes);
 
-// UNAVAILABLE if the file cannot be read. CANCELLED if `stop` is requested meanwhile.
+// Returns UNAVAILABLE if the file cannot be read, and CANCELLED if `stop` is requested meanwhile.
 absl::StatusOr<std::string> Sha256OfFile(const std::string& path, const std::stop_token& stop = {});
 
 }  // namespace thunderhead::pipeline

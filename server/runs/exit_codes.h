@@ -18,10 +18,11 @@ enum class ExitCode {
   kConfiguration = 78,
 };
 
-// Returns the exit code for a status. INVALID_ARGUMENT gives kBadRequest, DATA_LOSS and a permanent
-// RESOURCE_EXHAUSTED kBadInput, FAILED_PRECONDITION and PERMISSION_DENIED kConfiguration. Errors
-// that may pass by themselves give kTryAgain. NOT_FOUND is one of these, because a file may not
-// exist yet.
+// Returns the exit code for a status. INVALID_ARGUMENT, OUT_OF_RANGE and ALREADY_EXISTS give
+// kBadRequest. DATA_LOSS and a permanent RESOURCE_EXHAUSTED give kBadInput. FAILED_PRECONDITION,
+// PERMISSION_DENIED, UNAUTHENTICATED and UNIMPLEMENTED give kConfiguration. Errors that may pass by
+// themselves give kTryAgain. NOT_FOUND is one of these, because a file may not exist yet. Other
+// errors give kProgramError.
 ExitCode ExitCodeOf(const absl::Status& status);
 
 // Returns the table of exit codes for --help.

@@ -79,8 +79,8 @@ v1::RenderJobPicture RequestOf(const PictureRunOptions& options, const PlannedPi
   return request;
 }
 
-// Returns a label for the jobs of these products. Every run of them has the same label, on any
-// machine that uses the same folder.
+// Returns a label for the jobs that make the products of a manifest. All runs with this manifest
+// have the same label, on any machine that uses the same folder.
 std::string LabelOf(const std::string& manifest) {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::absolute(manifest, error);
@@ -113,7 +113,7 @@ class JobRun {
   // Returns the jobs for the missing pictures. Existing jobs for these products that contain no
   // missing picture are deleted from the server.
   absl::StatusOr<std::vector<JobShare>> SharesOf(const std::vector<PlannedPicture*>& missing);
-  // Returns when each picture of the share has its outcome.
+  // Returns when each picture of the share has its outcome, or with an error that ends the run.
   absl::Status Make(JobShare& share, const std::stop_token& stop);
 
  private:

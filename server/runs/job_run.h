@@ -27,7 +27,7 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanOfServer(
     std::size_t number, const std::vector<int>& times, bool assume_run);
 
 // Makes the pictures, as PictureRun::Make does. If the connection to the server is lost, it retries
-// for a minute and then returns UNAVAILABLE.
+// for a minute and then returns the error, such as UNAVAILABLE.
 absl::Status MakeByJobs(ServerLink& server, PictureRun& run, std::vector<PlannedPicture>& pictures,
                         RunProgress& progress, const std::stop_token& stop);
 

@@ -17,7 +17,8 @@
 namespace thunderhead::runs {
 
 // Returns how long a read may make no progress before its storage counts as hanging. It is longer
-// than a reader may be silent, so that a reader that hangs is ended first, and the error names it.
+// than a reader process may be silent (sandbox::ReaderLimits), so that a reader that hangs is ended
+// first. The error then says that the reader hung, and not the storage.
 std::chrono::milliseconds LocalReadDeadline();
 
 // Opens the file or folder at `path`, which must contain exactly one storm. If `stop` is requested,
@@ -30,16 +31,17 @@ absl::StatusOr<std::shared_ptr<storm_store::StormStore>> OpenStorm(
 absl::StatusOr<int> TimeOf(const storm_store::StormStore& store, const std::string& path,
                            std::optional<int> wanted);
 
-// Returns whether the error means that a whole storm file can never be read as it is. It must be
-// converted first, or needs more memory than there is. A file of another kind (INVALID_ARGUMENT) is
-// no such file.
+// Returns true if the error means that a complete storm file can never be read as it is. It must be
+// converted first, or needs more memory than is available. Returns false for a file that is no
+// storm file (INVALID_ARGUMENT).
 bool IsLastingRefusal(const absl::Status& status);
 
-// Converts an error about a storm's file to DATA_LOSS, whatever its code, so that a bad file is not
-// reported as a wrong request.
+// Converts INVALID_ARGUMENT and the errors of IsLastingRefusal about a storm's file to DATA_LOSS,
+// so that a bad file is not reported as a wrong request. Returns other errors unchanged.
 absl::Status AsFileProblem(const absl::Status& status);
-// Converts an error about the file at `path`. A damaged file that has changed within the last two
-// minutes gives UNAVAILABLE, because a model may still be writing it.
+// Converts an error about the file at `path` in the same way. DATA_LOSS, which means a damaged
+// file, becomes UNAVAILABLE if the file has changed within the last two minutes, because a model
+// may still be writing it.
 absl::Status AsFileProblem(const std::string& path, const absl::Status& status);
 
 // Reads one time of the store's storm into its cache, with a progress bar.
@@ -50,7 +52,8 @@ absl::Status ReadWithProgress(storm_store::StormStore& store, int time_index);
 absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadStorm(
     const std::string& path, std::optional<int> wanted);
 
-// Starts the service for `store`, drawing on `device`, without a listening port.
+// Starts the service for `store`, drawing on `device`, without a listening port. Returns
+// FAILED_PRECONDITION if that fails, or INVALID_ARGUMENT for a wrong device.
 absl::StatusOr<std::unique_ptr<service::Server>> StartLocalService(
     std::shared_ptr<storm_store::StormStore> store, const std::string& device);
 

@@ -27,7 +27,7 @@ absl::StatusOr<v1::RenderImageResponse> CallForPicture(
     if (event.has_chunk()) bytes += event.chunk();
     if (event.has_image()) picture = std::move(*event.mutable_image());
   }
-  // An older server sends the picture without chunks, in the response itself.
+  // An older server sends the picture without chunks, in the last event.
   if (picture.image().empty()) picture.set_image(std::move(bytes));
   const grpc::Status status = reader->Finish();
   if (stop.stop_requested()) return absl::CancelledError("interrupted: no picture was written");

@@ -35,7 +35,8 @@ struct PlannedPicture {
   // without its hash.
   std::string server_storm = {};
   std::optional<pipeline::InputFile> server_input = {};
-  absl::Status outcome;  // OK once the picture is made; UNAVAILABLE before
+  // OK once the picture is made. Before, UNAVAILABLE or the error of an attempt.
+  absl::Status outcome;
 };
 
 // Returns a plan with a picture for each time in `times` of the storm number `storm`, in each view.
@@ -49,8 +50,8 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanOf(
 absl::Status CheckNames(const PictureRunOptions& options,
                         const std::vector<PlannedPicture>& pictures);
 
-// Returns the size and the modification time of a file, without its hash. UNAVAILABLE if the file
-// does not exist.
+// Returns the size and the modification time of a file, without its hash. Returns NOT_FOUND if the
+// file does not exist.
 absl::StatusOr<pipeline::InputFile> StampOf(const std::string& path);
 
 // Returns the manifest entry that describes the contents of a product.
@@ -104,8 +105,8 @@ class PictureRun {
                        double& milliseconds, PictureTimes& times);
   absl::Status PublishFile(const std::string& path, const std::string& bytes,
                            pipeline::ManifestEntry entry);
-  // Returns the hash of the file. It is empty, which equals no other, if the file cannot be read,
-  // or if `stop` is requested meanwhile.
+  // Returns the hash of the file. If the file cannot be read, or if `stop` is requested meanwhile,
+  // returns an empty text, which equals no recorded hash.
   std::string HashOf(const pipeline::InputFile& input, const std::stop_token& stop);
   // Returns false if the file has changed since its first picture was begun. The fields that the
   // storm store keeps for the following views then belong to the old file.

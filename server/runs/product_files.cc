@@ -98,7 +98,8 @@ absl::Status Annotate(const ProductFormat& format, const std::string& storm,
   return product::Annotate(annotation, image);
 }
 
-// Returns the map's position. INVALID_ARGUMENT if a projection is needed and the storm has none.
+// Returns the map's position. Its projection is empty if that of the storm is unknown. Returns
+// INVALID_ARGUMENT if the picture is not seen from above.
 absl::StatusOr<product::MapPlace> PlaceOf(const v1::RenderImageResponse& picture,
                                           const Texts& texts) {
   const v1::View& view = picture.view();

@@ -19,7 +19,7 @@ enum class ProductKind { kPng, kJpeg, kExr, kGeoTiff, kNetcdf };
 struct ProductFormat {
   ProductKind kind = ProductKind::kPng;
   bool annotate = false;
-  std::string title;  // if empty, the storm's title
+  std::string title;  // if empty, MakeProduct chooses the title
   std::shared_ptr<const product::Logo> logo;
   bool world_file = false;
   // A hash of all settings except the scene that affect the file; empty if there are none.
@@ -47,9 +47,10 @@ struct ProductFile {
   std::optional<std::string> world_file;  // the text of the world file
 };
 
-// Makes the file from a picture that was requested as `format.Drawn()`. `storm` is the title if
-// neither the flags nor the picture give one. INVALID_ARGUMENT for a map of a storm without a place
-// on Earth.
+// Makes the file from a picture that was requested as `format.Drawn()`. The title of an annotation
+// is `format.title`. If that is empty, it is `storm`, or else the title in the picture. Returns
+// INVALID_ARGUMENT for a map that is not seen from above, and for a GeoTIFF of a storm whose map
+// projection is unknown.
 absl::StatusOr<ProductFile> MakeProduct(const ProductFormat& format, const std::string& storm,
                                         v1::RenderImageResponse picture);
 

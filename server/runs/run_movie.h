@@ -17,7 +17,7 @@ struct MovieOptions {
 };
 
 // Makes each storm's movies from its finished pictures, unless an existing movie shows the same
-// pictures.
+// pictures. If the movies' name has no {view}, only the first view gets a movie.
 absl::Status MakeMovies(const MovieOptions& options, const std::vector<PlannedPicture>& pictures,
                         PictureRun& run, RunProgress& progress, const std::stop_token& stop);
 

@@ -50,8 +50,9 @@ class RunProgress {
 
   mutable std::mutex mutex_;
   ProgressStyle style_;
-  std::unique_ptr<ProgressBar> bar_;        // null if standard error is not a terminal
-  std::unique_ptr<EcflowReporter> ecflow_;  // null outside an ecFlow task
+  // Null unless kAuto was given and standard error is a terminal.
+  std::unique_ptr<ProgressBar> bar_;
+  std::unique_ptr<EcflowReporter> ecflow_;  // null unless kEcflow was given in an ecFlow task
   int planned_ = 0;
   int drawn_ = 0;
   int kept_ = 0;

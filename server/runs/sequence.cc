@@ -29,7 +29,7 @@ struct Found {
   // The position of each storm file among all files in the order of their names, including
   // unreadable files.
   std::map<std::string, std::size_t> places;
-  // Files that do not exist or are not readable yet, by path.
+  // The errors of files that do not exist or cannot be read, by path.
   std::map<std::string, absl::Status> problems;
 };
 
@@ -62,7 +62,8 @@ absl::Status WorstOf(const std::map<std::string, absl::Status>& problems) {
 absl::StatusOr<Found> Find(const std::vector<std::string>& paths, const std::stop_token& stop) {
   Found found;
   const storm_files::StormFormats formats = sandbox::ConfinedFormats({.limits = {.stop = stop}});
-  // Keeps the place of a file and, if it cannot be read, the reason, which is told at the end.
+  // Keeps the place of a file and, if the file cannot be read, the reason. The reasons are reported
+  // when all files have been searched.
   const auto note = [&](const std::string& path, absl::StatusOr<storm_files::StormFile>& file) {
     // A folder may also contain files that are not storms.
     const bool other = absl::IsInvalidArgument(file.status());
@@ -114,8 +115,9 @@ absl::StatusOr<Found> Find(const std::vector<std::string>& paths, const std::sto
   return found;
 }
 
-// Returns an error if some of the storms' times are unknown although the request counts times, or
-// begins with the first time.
+// Returns an error if some files cannot be read, but the request needs the times of all files. It
+// needs them if it selects times by index, if a name contains {time}, or if the first time is taken
+// as the start of the run.
 absl::Status CheckCounts(const Found& found, const std::string& times,
                          const PictureRunOptions& options, const MovieOptions& movie) {
   if (found.problems.empty()) return absl::OkStatus();

@@ -25,8 +25,8 @@ struct SequenceOptions {
 };
 
 // Makes the missing pictures, in this process or, if `server` is not null, by render jobs there.
-// Returns the worst error of all pictures that were not made and of all files that could not be
-// read. Returns CANCELLED if `stop` is requested.
+// Returns the worst error of all pictures that were not made, of all files that could not be read,
+// and of the movies. Returns CANCELLED if `stop` is requested.
 absl::Status RunSequence(SequenceOptions options, ServerLink* server, const std::stop_token& stop);
 
 }  // namespace thunderhead::runs

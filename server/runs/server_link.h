@@ -33,12 +33,12 @@ class ServerLink {
   const std::string& Token() const { return token_; }
   const std::string& Address() const { return address_; }
 
-  // Cancels calls in progress, and later ones, when `stop` is requested.
+  // If `stop` is requested, the calls that begin after StopOn are cancelled.
   void StopOn(std::stop_token stop) { stop_ = std::move(stop); }
 
   // Calls a unary rpc with the token, for example Call(Service(), &Stub::ListStorms, ...). Returns
-  // UNAVAILABLE after a timeout if the server does not respond, and CANCELLED if a stop is
-  // requested.
+  // UNAVAILABLE if the server cannot be reached, DEADLINE_EXCEEDED if it does not respond within
+  // kPatience, and CANCELLED if a stop is requested.
   template <typename Stub, typename Method, typename Request, typename Response>
   absl::Status Call(Stub& stub, Method method, const Request& request, Response* response) {
     grpc::ClientContext context;
@@ -51,8 +51,10 @@ class ServerLink {
   // Adds the access token to the call.
   void Prepare(grpc::ClientContext& context) const;
 
-  // Converts a gRPC status to one with the same code and message. If the connection was lost, the
-  // message also names the server.
+  // Converts a gRPC status to one with the same code and message. For UNAVAILABLE and
+  // DEADLINE_EXCEEDED, the message also says that the server cannot be reached. For UNIMPLEMENTED,
+  // the message says that the server is older than this program. Any error becomes CANCELLED once a
+  // stop is requested.
   absl::Status StatusOf(const grpc::Status& status) const;
 
  private:

@@ -48,7 +48,7 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanWatched(
   return all;
 }
 
-// Settles files. A file is done if all its pictures are made, and bad if it cannot be drawn. If the
+// Marks files as done if all their pictures are made, and as bad if they cannot be drawn. If the
 // error of a picture names another file, the picture is retried without that file.
 void Settle(const std::vector<PlannedPicture>& pictures, WatchedFolder& folder) {
   for (const std::string& path : folder.Unsettled()) {
@@ -104,8 +104,8 @@ void RememberDone(const PictureRun& run, WatchedFolder& folder) {
 }
 
 // Returns pictures that are not in `planned`, and that earlier runs made in the same way as this
-// run would. Their files are gone or are not ready again. Movies include these pictures too, so
-// that a movie does not become shorter when `watch` is restarted.
+// run would. Their input files no longer exist, or have changed and are not ready again. Movies
+// include these pictures too, so that a movie does not become shorter when `watch` is restarted.
 std::vector<PlannedPicture> MadeBefore(const PictureRun& run,
                                        const std::vector<PlannedPicture>& planned) {
   const pipeline::Manifest& records = run.Records();

@@ -15,8 +15,8 @@
 
 namespace thunderhead::runs {
 
-// The conditions for ending the watch: after a number of files, or at a time. Whichever comes first
-// applies. Without both, the watch never ends.
+// The conditions for ending the watch: after a number of files (or of times, if a server draws), or
+// at a time. Whichever comes first applies. Without both, the watch never ends.
 struct WatchEnd {
   std::optional<int> files;
   absl::Time at = absl::InfiniteFuture();
@@ -33,8 +33,8 @@ struct WatchOptions {
 };
 
 // Draws the folder's files in this process until the watch ends. NOT_FOUND if the folder does not
-// exist. UNAVAILABLE if the watch ended before every file was drawn, and DATA_LOSS if some files
-// could not be drawn. Returns CANCELLED if `stop` is requested.
+// exist. UNAVAILABLE if the time `end.at` came before every file was drawn, and DATA_LOSS if some
+// files could not be drawn. Returns CANCELLED if `stop` is requested.
 absl::Status RunWatch(WatchOptions options, const std::stop_token& stop);
 
 // Draws the times of a server's storm by render jobs there, as WatchServer does. The server decides

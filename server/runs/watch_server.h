@@ -22,8 +22,9 @@ struct ServerWatch {
   std::function<absl::Status(const std::vector<PlannedPicture>&)> after_new;
 };
 
-// Watches until the watch is over, and returns the worst error of any picture. Returns CANCELLED if
-// `stop` is requested, and UNAVAILABLE if the server cannot be reached for a minute.
+// Watches until the watch is over. Then returns OK, or DATA_LOSS if some pictures can never be
+// made. Returns CANCELLED if `stop` is requested, and UNAVAILABLE if the server cannot be reached
+// for a minute. Any other error of a call ends the watch at once.
 absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRun& run,
                          RunProgress& progress, const std::stop_token& stop);
 

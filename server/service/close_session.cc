@@ -8,7 +8,7 @@
 namespace thunderhead::service {
 namespace {
 
-// Returns UNAVAILABLE if the session's end could not be saved for any reason.
+// Returns UNAVAILABLE if saving the end of the session failed, whatever the cause.
 absl::Status EndSaved(const absl::Status& removed) {
   if (removed.ok()) return removed;
   const absl::Status unsaved = base::WithDetails(

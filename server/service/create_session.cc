@@ -24,10 +24,10 @@ absl::Status Open(Engine& engine, const std::string& owner, const session::Rules
   return absl::OkStatus();
 }
 
-// Handles the result of saving the session. If the disk is full, the session is opened
-// nevertheless, so that for example a lesson can begin. The response then says that the session is
-// not saved (`durable`). If the storage hangs, the session is refused, because the response could
-// not say whether it is saved.
+// Handles the result of saving the session. If the storage hangs, the session is refused, because
+// the response could not say whether it is saved. After any other error, such as a full disk, the
+// session is opened nevertheless, so that for example a lesson can begin. The response then says
+// that the session is not saved (`durable`).
 absl::Status Saved(Engine& engine, const absl::Status& saved, v1::CreateSessionResponse& response) {
   if (base::DetailsOf(saved).reason == base::kStorageHangs) {
     // The session can be closed because its keys were not sent to any client.

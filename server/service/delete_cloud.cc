@@ -8,8 +8,8 @@
 namespace thunderhead::service {
 namespace {
 
-// Reports the deletion to all people who see the cloud, including people who look around. They keep
-// the last frame.
+// Reports the deletion to all people who see the cloud, in the session's view or in an own view.
+// They keep the last frame.
 void TellSessions(session::Sessions& sessions, const std::string& storm_id) {
   for (const std::shared_ptr<session::Session>& session : sessions.AllDrawn()) {
     const std::optional<session::NewestScene> newest = session->Newest();

@@ -1,6 +1,7 @@
-// Declares one handler for each rpc of ThunderheadService. Each is defined in the file that is
-// named after the rpc. All handlers get the caller, for refusals and for work that runs in the
-// caller's turn.
+// Declares one handler for each rpc of ThunderheadService except Interact (interact/interact.h).
+// Each is defined in the file that is named after the rpc; RenderImageWithProgress is in
+// render_image.cc. A handler uses the caller to report refusals, and to queue work in the caller's
+// name.
 #pragma once
 
 #include <grpcpp/support/server_callback.h>

@@ -40,7 +40,8 @@ class PictureReactor final : public grpc::ServerUnaryReactor, private ImageListe
   RequestedImage requested_;
 };
 
-// Sends a picture as the last event of a stream. There is at most one pending write. Progress that
+// Sends a picture as the last event of a stream. If the request has `in_chunks`, the bytes of the
+// picture are sent in chunks before that event. There is at most one pending write. Progress that
 // arrives during a write, or too soon after the last progress, is dropped because newer progress
 // will follow.
 class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent>,
@@ -64,7 +65,8 @@ class PictureStream final : public grpc::ServerWriteReactor<v1::RenderImageEvent
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
-      // If the client has disconnected, the drawing is cancelled too.
+      // If the picture is not finished, Ended will be called later. If the client has disconnected,
+      // gRPC also calls OnCancel, which cancels the drawing.
       if (!end_.has_value()) return;
       if (!ok) end_ = grpc::Status(grpc::StatusCode::CANCELLED, "the client is gone");
     }

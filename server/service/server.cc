@@ -34,7 +34,8 @@
 namespace thunderhead::service {
 namespace {
 
-// Size of the largest uncompressed picture that CheckScene allows, with a margin.
+// Maximum size of a response: that of the largest uncompressed RGB picture that CheckScene allows,
+// with a margin.
 constexpr int kMaxResponseBytes = 128 << 20;
 
 std::shared_ptr<access::Door> OpenDoor() {

@@ -42,8 +42,8 @@ struct ServerOptions {
   drawing::RenderLoopOptions render_loop;
   jobs::JobsOptions jobs;
   JobFiles job_files;
-  // Threads for blocking work, such as reading fields and generating clouds. The storm store reads
-  // only one time of a storm at once, so a few threads are enough.
+  // Threads for blocking work, such as reading fields and generating clouds. The storm store
+  // normally reads only one time of a storm at once, so a few threads are enough.
   base::Executor::Limits executor;
   // When the server shuts down, the time for calls to end on their own before they are cancelled.
   std::chrono::seconds shutdown_grace{2};
@@ -55,12 +55,14 @@ struct ServerLoad {
   int viewers = 0;  // viewers of sessions and of own views
   int storms = 0;
   double cached_bytes = 0.0;  // size of the storms' fields in memory
-  int pictures = 0;           // single pictures that were started and not yet delivered
+  int pictures = 0;           // single pictures that were requested and not yet delivered
   int waiting_pictures = 0;   // pictures among these that wait for a worker
-  // Seconds since a blocked storage last responded; 0 if none is blocked.
+  // Seconds for which a read of a storm file has made no progress, because its storage hangs; 0 if
+  // no read hangs.
   double reading_stuck_s = 0.0;
   bool recovering = false;  // true from the loss of the device until it is open again
-  // Seconds since a busy worker last drew a piece; 0 while all workers are idle.
+  // The longest time in seconds that a worker has now worked without drawing a piece or waiting for
+  // a turn on the device; 0 if no worker works.
   double stalled_s = 0.0;
   // Seconds since the render loop's current turn began; 0 while the loop waits for work.
   double turn_s = 0.0;
@@ -90,14 +92,15 @@ class Server {
   virtual void ResultFetched(std::string_view path) = 0;
   // Starts draining the server, without waiting. All people in sessions are told when to reconnect,
   // to the next server. New sessions, viewers and pictures are refused, and the health checks
-  // report it. Sessions continue for the people who stay, and started pictures are completed.
+  // report that the server does not serve. Sessions continue for the people who stay, and started
+  // pictures are completed.
   virtual void BeginDrain() = 0;
 
   // Replaces ServerOptions::sessions.roster_timeouts, also for timeouts that are already running.
   virtual void SetRosterTimeouts(const session::RosterTimeouts& timeouts) = 0;
 
-  // Sets the status that gRPC's health service reports. The status is "serving" from the start, and
-  // never again once the server drains.
+  // Sets the status that gRPC's health service reports. After Start it is "serving". Once the
+  // server drains, it stays "not serving".
   virtual void SetServing(bool serving) = 0;
   // Ends every stream with UNAVAILABLE, refuses queued work and waits for running work. The
   // destructor calls this too.

@@ -12,9 +12,10 @@
 
 namespace thunderhead::service {
 
-// Checks the scene like a scene from a client, and fills in the defaults of fields that the writing
-// version did not know. The scene's storm may no longer exist; the session's viewers are then
-// informed by a Problem.
+// Checks the scene like a scene from a client, and fills in the defaults of fields that did not
+// exist yet in the version that stored the scene. Returns DATA_LOSS if the bytes are damaged, and
+// INVALID_ARGUMENT if this version does not allow the scene. The scene's storm may no longer exist;
+// the session's viewers are then informed by a Problem.
 absl::StatusOr<session::DecodedScene> DecodeStoredScene(
     const storm_store::StormStore& store, const std::vector<scene::TechniqueInfo>& techniques,
     const std::string& serialized);

@@ -25,7 +25,7 @@ class FrameStream : public FramesReactor,
                     public delivery::Viewer,
                     public std::enable_shared_from_this<FrameStream> {
  public:
-  // Starts a stream. The session must already count its onlooker.
+  // Starts a stream. The caller must have added the viewer to the session (Audience::AddOnlooker).
   static FramesReactor* Start(const Limits& limits, grpc::CallbackServerContext* context,
                               std::shared_ptr<session::Session> session, CallerRef caller) {
     auto stream =
@@ -137,8 +137,8 @@ class FrameStream : public FramesReactor,
   const CallerRef caller_;  // holds the place of the stream in its quota
   std::shared_ptr<FrameStream> held_by_grpc_;
   v1::WatchFramesResponse response_;
-  // The revision of the scene that was sent last. It is used under the same conditions as
-  // `response_`.
+  // The revision of the scene that was sent last. Like `response_`, it is used only while
+  // `writing_` is set.
   std::uint64_t sent_revision_ = 0;
   std::mutex mutex_;
   std::uint64_t viewer_id_ = 0;
@@ -149,7 +149,7 @@ class FrameStream : public FramesReactor,
   std::optional<rpc_port::DeliveryDeadline> delivery_;
 };
 
-// Returns the session, after adding an onlooker to it.
+// Returns the session, after adding the viewer to it (Audience::AddOnlooker).
 absl::StatusOr<std::shared_ptr<session::Session>> FindToWatch(
     Engine& engine, const v1::WatchFramesRequest& request) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(request));

@@ -1,8 +1,8 @@
 // The people of a session and their connections. An Audience changes the roster (who is present and
 // the person in control) and the board (pointers and marks) under a lock, and sends the new state
-// to all people. Each update is serialized once for all people and sent at most a few times a
-// second; older states are skipped. Any thread may call it. It does not use protobuf
-// messages.
+// to all people. Each update is serialized once for all people. The constants such as
+// kPresencePause limit how often the updates of a kind are sent; older states are skipped. Any
+// thread may call it. It does not use protobuf messages.
 #pragma once
 
 #include <chrono>
@@ -98,12 +98,13 @@ class Audience {
   using BoardChange = std::function<absl::Status(Board&)>;
   absl::Status Change(const RosterChange& change, Time now);
   absl::Status Draw(std::uint64_t id, const BoardChange& change, Time now);
-  // Erases the marks with those ids, or all of them if there are no ids. Presenters may erase any
-  // marks, viewers only their own. If a viewer names another person's mark, the result is
-  // PERMISSION_DENIED and nothing is erased.
+  // Erases those of the shown marks that have the given ids, or all shown marks if there are no
+  // ids. Presenters may erase any marks, viewers only their own. If a viewer names another person's
+  // mark, the result is PERMISSION_DENIED and nothing is erased.
   absl::Status Erase(std::uint64_t id, const std::vector<std::uint64_t>& mark_ids, Time now);
-  // Moves the person's pointer to the point where the ray meets the storm or the ground. The next
-  // Tick computes that point. Without a ray, the pointer is removed.
+  // Moves the person's pointer to the point where the ray meets the storm or the ground. A later
+  // Tick computes that point. Without a ray, the pointer is removed. Returns PERMISSION_DENIED for
+  // a ray if the person may not mark.
   absl::Status Point(std::uint64_t id, const std::optional<Ray>& ray, Time now);
 
   // Restores who had control in the previous server run. Must be called before the first person
@@ -116,7 +117,7 @@ class Audience {
   // Sets the times in memory of the storm that the session shows. Sends them to all people if they
   // changed.
   void Hold(const HeldTimes& held, Time now);
-  // Wakes all people when the session has ended.
+  // Wakes the connections of all people, for example when the session has ended.
   void WakeAll();
 
   // The following functions return copies of the state.
@@ -140,15 +141,16 @@ class Audience {
   Told Presence(std::uint64_t id) const;
   Told Pointers() const;
   // Returns the marks update for a person who has received `count` marks updates: the next change,
-  // or all marks if `count` is 0 or that change is no longer kept. All marks may include changes
-  // that follow later as updates; applying a change twice is harmless.
+  // or all marks if `count` is 0 or that change is no longer kept. The bytes of all marks may
+  // already include changes that are also sent later; applying a change twice is harmless.
   Told Marks(std::uint64_t count);
   Told TimesHeld() const;
   // Returns an update without bytes. A new count tells a connection to send the newest scene.
   Told Scene() const;
 
-  // Ends states whose time is over, computes the positions of pointers, and sends the updates that
-  // are due. Returns when it must be called next if nothing happens earlier.
+  // Ends the states of the roster that have timed out (Roster::Advance), computes the positions of
+  // pointers, and sends the updates that are due. Returns when it must be called next if nothing
+  // happens earlier.
   std::optional<Time> Tick(Time now, const Place& place);
 
  private:

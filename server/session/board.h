@@ -37,7 +37,8 @@ struct Mark {
 };
 
 struct MarksChange {
-  std::vector<Mark> drawn;  // new marks, and marks that now belong to another person
+  std::vector<Mark> drawn;  // new marks, marks that are shown again, and
+                            // marks that now belong to another person
   std::vector<std::uint64_t> erased;
 };
 
@@ -53,8 +54,8 @@ class Board {
   void ShowDomain(const std::string& domain);
 
   // Adds a mark and returns its id. Without a colour, the mark gets the person's own colour. If the
-  // board is full, it erases the oldest hidden mark. FAILED_PRECONDITION if the board is full and
-  // all its marks are shown.
+  // board is full, it erases the oldest hidden mark. Returns FAILED_PRECONDITION if the board is
+  // full and all its marks are shown.
   absl::StatusOr<std::uint64_t> Add(std::uint64_t person_id, std::vector<glm::dvec3> positions_m,
                                     const std::optional<glm::vec3>& color,
                                     const std::string& owner_key = "");
@@ -72,7 +73,8 @@ class Board {
   // Returns all marks, including those of other domains.
   const std::vector<Mark>& marks() const { return marks_; }
   std::vector<Mark> MarksShown() const;
-  // Returns the shown marks that were drawn or erased since the last call.
+  // Returns the changes of the shown marks since the last call. Marks that were hidden since then
+  // count as erased.
   MarksChange TakeMarksChange();
   // Returns the largest id of the people who drew the marks; 0 without marks.
   std::uint64_t LastPerson() const;

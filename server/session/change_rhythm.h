@@ -1,7 +1,7 @@
 // Predicts the time from one change of a scene to the next change of the same gesture, such as a
-// drag of the camera. Clients send changes thirty times a second, but over a slow or distant link
-// the changes arrive at larger and uneven intervals. A scene that changes in a gesture counts as at
-// rest only after a longer pause. A plain value; the time is an argument.
+// drag of the camera. Clients send changes at short intervals, for example thirty times a second.
+// Over a slow or distant link they arrive at larger and uneven intervals. A scene that changes in a
+// gesture counts as at rest only after a longer pause. A plain value; the time is an argument.
 #pragma once
 
 #include <chrono>

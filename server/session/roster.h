@@ -64,8 +64,8 @@ struct Person {
 // Who has control, as it is saved across restarts: a viewer, the presenters, or no one.
 struct KeptControl {
   bool is_free = false;
-  // The viewer who is in control, or for whom control waits. An empty key means that no viewer
-  // does.
+  // The viewer who is in control, or for whom control waits. The key is empty if there is no such
+  // viewer.
   std::string viewer_key;
   std::string viewer_name;
   std::uint64_t viewer_id = 0;
@@ -77,7 +77,7 @@ struct KeptControl {
 struct RosterTimeouts {
   // Time to answer a request for control.
   std::chrono::milliseconds answer = std::chrono::seconds(20);
-  // Minimum time between two requests of a person.
+  // Minimum time between two requests for control by one person.
   std::chrono::milliseconds ask_again = std::chrono::seconds(5);
   // Control becomes free when no presenter has been present for this long.
   std::chrono::milliseconds away = std::chrono::seconds(60);
@@ -115,7 +115,8 @@ class Roster {
   std::uint64_t Join(Role role, std::string name, Time now, std::string key = "",
                      bool answers = true);
   // Removes the person. Their control, or their request for control, goes to another connection
-  // with the same key and role. If there is none, it waits for such a connection.
+  // with the same key and role. If there is none, it waits for such a connection. If the key is
+  // empty, control goes to the presenters.
   void Leave(std::uint64_t id, Time now);
   // Records that a message came from the person.
   void Heard(std::uint64_t id);
@@ -126,20 +127,22 @@ class Roster {
   void Rename(std::uint64_t id, std::string name);
   void SetHidden(std::uint64_t id, bool hidden);
 
-  // PERMISSION_DENIED unless the person steers.
+  // Returns PERMISSION_DENIED unless the person steers.
   absl::Status MaySteer(std::uint64_t id) const;
-  // Checks the same for a presenter who has the presenter's key but is not in the roster.
+  // Checks the same for a presenter who has the presenter's key but is not in the roster. Returns
   // PERMISSION_DENIED while a viewer steers.
   absl::Status PresenterMaySteer() const;
 
   // Gives control at once to a presenter. Gives it at once to a viewer if it is free and the rules
   // allow viewers to steer. Otherwise the request goes to the person in control, or to a presenter.
-  // Returns PERMISSION_DENIED while control is locked, and RESOURCE_EXHAUSTED for asking too often.
+  // Returns PERMISSION_DENIED to a viewer while control is locked, RESOURCE_EXHAUSTED for asking
+  // too often, and NOT_FOUND for an unknown id.
   absl::Status AskControl(std::uint64_t id, Time now);
   // Gives control to a person, or gives it up if `to` is 0. The person in control and presenters
-  // may do so. Control that a presenter gives up becomes free and goes to the viewer who asked
-  // first, if any. Control that a viewer gives up goes back to the presenters. PERMISSION_DENIED if
-  // a viewer gives it to a viewer while control is locked.
+  // may do so. Control that a presenter gives up becomes free. It then goes to the viewer who asked
+  // first, if the rules allow viewers to steer. Control that a viewer gives up goes back to the
+  // presenters. Returns PERMISSION_DENIED to other people, and to a viewer who gives it to a viewer
+  // while control is locked. Returns NOT_FOUND for an unknown id.
   absl::Status GiveControl(std::uint64_t from, std::uint64_t to, Time now);
   // Refuses a request for control. The person in control and presenters may do so.
   absl::Status RefuseControl(std::uint64_t from, std::uint64_t to);
@@ -151,9 +154,10 @@ class Roster {
   // Replaces the timeouts, also for people who are already waiting.
   void SetTimeouts(const RosterTimeouts& timeouts) { timeouts_ = timeouts; }
 
-  // Makes the person leave the session's view. PERMISSION_DENIED for a viewer while following is
-  // locked. Returns false, without an effect, if Person::returns differs from `returns`: the person
-  // has returned to the session's view since the request, and the return takes effect.
+  // Makes the person leave the session's view. Returns PERMISSION_DENIED to a viewer while
+  // following is locked. Returns false, without an effect, if Person::returns differs from
+  // `returns`: the person has returned to the session's view since the request, and the return
+  // takes effect.
   absl::StatusOr<bool> Detach(std::uint64_t id, std::uint64_t returns);
   absl::Status Follow(std::uint64_t id);
 

@@ -1,6 +1,6 @@
-// Keeps sessions in a store, on its own thread, so that the disk never delays a frame or a request.
-// Restores them when the server starts, saves changed sessions twice a second, and removes those
-// that were closed or have expired.
+// Keeps sessions in a store, on its own thread, so that the disk never delays a frame. It delays
+// only the requests that wait for SaveThen. Restores the sessions when the server starts, saves
+// changed sessions twice a second, and removes those that were closed or have expired.
 #pragma once
 
 #include <chrono>
@@ -39,7 +39,7 @@ class SessionKeeper {
 
   // Restores the store's sessions into `sessions`, except sessions that are too old. If a scene
   // cannot be decoded, the error is logged, and its session stays in the store until it is too old.
-  // `store` and `sessions` must outlive the keeper.
+  // Returns the errors of `store`. `store` and `sessions` must outlive the keeper.
   static absl::StatusOr<std::unique_ptr<SessionKeeper>> Start(SessionStore& store,
                                                               Sessions& sessions,
                                                               const DecodeScene& decode);

@@ -18,13 +18,13 @@ namespace {
 constexpr int kKeyWords = 4;  // number of words of 32 bits
 constexpr int kIdWords = 2;
 
-// The revisions that a restored session skips. The number is larger than the number of revisions by
-// which a session can be ahead of its record. So a restored session never gives two scenes the same
-// revision.
+// The number of revisions that a restored session skips. It is larger than the number of revisions
+// by which a session can be ahead of its record. So a restored session never gives two scenes the
+// same revision.
 constexpr std::uint64_t kUnsavedRevisions = 1'000'000;
 
-// Sessions that are no longer used expire one after another, so that there may soon be place for a
-// new one.
+// Sessions that are no longer used expire one after another, so there may soon be room for a new
+// one.
 constexpr std::chrono::seconds kSessionRetryAfter{30};
 
 absl::Status Gone(const std::string& message, const std::string& reason = "SESSION_NOT_FOUND") {

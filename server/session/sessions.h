@@ -97,7 +97,8 @@ class Session {
   // Drop must follow.
   std::uint64_t TakeRevision(IncompleteUpdate update = {});
   // Takes a revision for an update that was based on revision `expected`. First drops pending
-  // revisions that are no longer valid. ABORTED if a newer revision was taken or shown.
+  // revisions that are no longer valid. Returns ABORTED if `expected` is not the newest revision
+  // that was taken or shown.
   absl::StatusOr<std::uint64_t> TakeRevisionAfter(std::uint64_t expected,
                                                   IncompleteUpdate update = {});
   // Drops a revision whose scene will not be shown.
@@ -149,7 +150,7 @@ class Session {
   Audience audience_;
   mutable std::mutex mutex_;
   std::uint64_t revision_count_ = 0;
-  // By revision; taken, but neither shown nor dropped yet.
+  // The updates whose revisions were taken, but neither shown nor dropped yet, by revision.
   std::map<std::uint64_t, IncompleteUpdate> taken_;
   std::optional<NewestScene> newest_;
   ChangeRhythm rhythm_;
@@ -186,7 +187,7 @@ class OwnView {
 struct SessionsOptions {
   std::size_t max_sessions = 64;
   std::size_t max_sessions_per_owner = 32;
-  // Expires without viewers after this time.
+  // A session without viewers expires after this time.
   Clock::duration idle_timeout = std::chrono::minutes(15);
   // A session with viewers expires after this time if none of them acknowledges or sends anything.
   Clock::duration watched_idle_timeout = std::chrono::hours(1);
@@ -208,9 +209,9 @@ class Sessions {
  public:
   Sessions(const SessionsOptions& options, const SessionSignals& signals);
 
-  // Creates a session. RESOURCE_EXHAUSTED if there are too many sessions in all, or too many of
-  // that owner. UNAVAILABLE after RefuseNew or CloseAll. The limit per owner does not apply to an
-  // empty owner.
+  // Creates a session. Returns RESOURCE_EXHAUSTED if there are too many sessions in all, or too
+  // many of that owner. Returns the reason given to RefuseNew or CloseAll after these calls. The
+  // limit per owner does not apply to an empty owner.
   absl::StatusOr<std::shared_ptr<Session>> Create(const Rules& rules = {},
                                                   const std::string& owner = "");
   // Restores the session of a record that another server run saved, as if all its people had just
@@ -221,11 +222,11 @@ class Sessions {
                                    const std::optional<std::string>& domain = std::nullopt);
   // Returns true if a record was last used too long ago to be restored.
   bool IsTooOld(std::chrono::system_clock::time_point last_used) const;
-  // Finds a session by either key, which counts as use. NOT_FOUND if it never existed, was closed
-  // or has expired; UNAVAILABLE after CloseAll.
+  // Finds a session by either key, which counts as a use of the session. Returns NOT_FOUND if it
+  // never existed, was closed or has expired, and UNAVAILABLE after CloseAll.
   absl::StatusOr<FoundSession> Find(const std::string& key);
-  // Ends the session and its viewers' streams. NOT_FOUND as in Find; PERMISSION_DENIED for the
-  // viewers' key.
+  // Ends the session and its viewers' streams. Returns the errors of Find, and PERMISSION_DENIED
+  // for the viewers' key.
   absl::Status Close(const std::string& presenter_key);
   // Refuses to create sessions from now on, with this reason. Existing sessions continue, and their
   // viewers are woken.

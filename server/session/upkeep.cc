@@ -14,8 +14,8 @@ namespace {
 // Maximum pause of the thread. Expiring sessions do not wake it, so it must wake at least this
 // often.
 constexpr std::chrono::seconds kLongestPause{1};
-// Interval of checks which times are in memory. The store's own threads load and evict times and do
-// not wake this thread.
+// Interval between two checks of which times are in memory. The store's own threads load and evict
+// times and do not wake this thread.
 constexpr std::chrono::seconds kHeldTimesPause{1};
 // Minimum pause of the thread, so that sessions that are due at about the same time are handled
 // together.

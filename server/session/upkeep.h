@@ -1,6 +1,6 @@
 // A thread that does periodic work for the people of all sessions. It computes the positions of
-// pointers, ends states whose time is over, sends due updates, and reports which times are in
-// memory. It also wakes viewers with a limited frame rate.
+// pointers, ends requests for control and absences that have timed out, sends due updates, and
+// reports which times are in memory. It also wakes viewers with a limited frame rate.
 #pragma once
 
 #include <atomic>

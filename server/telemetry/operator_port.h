@@ -1,5 +1,5 @@
 // The HTTP port for operators: for Prometheus, and for supervisors that restart servers. One
-// separate thread serves all clients concurrently, and disconnects a client after a few seconds. A
+// separate thread serves all clients concurrently, and disconnects a client that takes too long. A
 // client that sends nothing does not block others.
 #pragma once
 

@@ -19,8 +19,8 @@ namespace {
 constexpr int kAttempts = 40;
 constexpr std::chrono::milliseconds kBetweenAttempts{50};
 
-// Returns true if the time at that index now comes from a different file than before the change, or
-// if the storm has come back.
+// Returns true if the file of the time at that index was replaced or rewritten, or if the storm has
+// come back.
 bool IsReplaced(const storm_store::StormChange& change, std::size_t time) {
   if (change.before == nullptr) return true;
   const std::vector<storm_store::StormTime>& before = change.before->times;

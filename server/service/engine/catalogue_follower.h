@@ -27,8 +27,9 @@ struct StormPlace {
 
 // Returns the time that a scene should show after `change`, if it showed `time_index` before. The
 // last time becomes the new last time. Another time stays the same time; if it no longer exists,
-// the preceding time is returned. If the storm had disappeared and is back, the index stays the
-// same, up to the last index. Returns nothing if the storm is gone.
+// the preceding time is returned, or the first time if none precedes it. If the storm had
+// disappeared and is back, the index stays the same, up to the last index. Returns nothing if the
+// storm is gone.
 std::optional<StormPlace> PlaceAfter(const storm_store::StormChange& change,
                                      std::uint32_t time_index);
 

@@ -1,6 +1,7 @@
 // Limits of the service that an operator can set. A request beyond a limit is refused with
-// RESOURCE_EXHAUSTED and the time after which to retry. The ranges of numbers in messages are not
-// here but in the schema (limits.proto).
+// RESOURCE_EXHAUSTED and the time after which to retry, except that a late Join is refused with
+// DEADLINE_EXCEEDED. The ranges of numbers in messages are not here but in the schema
+// (limits.proto).
 #pragma once
 
 #include <chrono>
@@ -18,7 +19,7 @@ struct Limits : rpc_port::PortLimits {
   // Presenters are admitted beyond it.
   std::size_t max_viewers_per_session = 256;
   // Maximum number of pixels (width times height), and of samples (pixels times the technique's
-  // slices). The defaults are the maxima that the schema allows.
+  // slices). The defaults are the maxima that CheckScene and the schema allow in any case.
   std::uint64_t max_pixels = std::uint64_t{1} << 25;
   std::uint64_t max_samples = std::uint64_t{1} << 37;
   // Maximum time to make one picture outside sessions, from reading its fields on. Time spent

@@ -23,8 +23,8 @@ namespace {
 
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 
-// Encodes the picture as linear radiance in OpenEXR, without its estimated error, which is not
-// known yet.
+// Encodes the picture as linear radiance and optical depths in OpenEXR. The estimated error is not
+// known yet, so its attribute is NaN.
 absl::StatusOr<std::string> EncodeLight(drawing::DisplayFrame& picture,
                                         const volume::HydrometeorFields& fields,
                                         const storm_store::StormInfo* storm,
@@ -58,7 +58,8 @@ void Describe(const drawing::DisplayFrame& picture, double encode_ms,
 }
 
 // Adds the description to the picture's file. A PNG file gets all texts. An OpenEXR file gets only
-// the values that were unknown when it was encoded. `storm` is null if the storm no longer exists.
+// the estimated error, which was unknown when the file was encoded. `storm` is null if the storm no
+// longer exists.
 void AddTexts(const storm_store::StormInfo* storm, v1::RenderImageResponse& response) {
   if (response.format() == v1::IMAGE_FORMAT_EXR && response.has_accuracy()) {
     picture::SetExrNumber(kErrorText, response.accuracy().estimated_error(),

@@ -64,9 +64,9 @@ class RequestedImage {
   const Awaited awaited_;
   const std::string owner_;
   double encode_ms_ = 0.0;
-  // The memory of the picture, held until the picture is delivered.
+  // The reservation of the picture's memory, held until the picture is delivered.
   std::shared_ptr<const base::MemoryReservation> memory_;
-  // The fields of a picture with linear radiance, kept until the picture is delivered.
+  // The fields of a picture with linear radiance, kept until the picture is encoded.
   std::shared_ptr<const volume::HydrometeorFields> fields_;
   const std::shared_ptr<std::atomic<bool>> cancelled_ = std::make_shared<std::atomic<bool>>(false);
 };

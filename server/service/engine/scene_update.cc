@@ -112,7 +112,7 @@ absl::StatusOr<Changed> Take(Engine& engine, session::Session& session, const Sc
   THUNDERHEAD_RETURN_IF_ERROR(PrepareScene(engine.store, engine.loop.Techniques(), *changed.scene));
   THUNDERHEAD_RETURN_IF_ERROR(CheckSize(engine.limits, *changed.scene));
   // Framing the scene (placing its camera) may wait for a read of the storm. The update takes its
-  // revision before, so that of several updates the last one to arrive wins.
+  // revision before that read, so that of several updates the last one to arrive wins.
   session::IncompleteUpdate update{.still_counts = std::move(still_counts)};
   if (NeedsFraming(*changed.scene)) update.serialized = changed.scene->SerializeAsString();
   if (!expected.has_value()) {

@@ -45,8 +45,9 @@ bool ShowScene(const storm_store::StormStore& store, session::Session& session,
 // not block the other change.
 //
 // The change's limits must have been checked before. `owner` is the caller's identity. The errors
-// passed to `done` are INVALID_ARGUMENT and NOT_FOUND as by PrepareScene, and ABORTED if the scene
-// is not at the expected revision.
+// passed to `done` are those of `may`, PrepareScene, CheckSize and of reading the storm. The error
+// is ABORTED if the scene is not at the expected revision, or if another person has changed it
+// meanwhile.
 void ChangeScene(Engine& engine, const std::string& owner,
                  const std::shared_ptr<session::Session>& session, const SceneChange& change,
                  std::function<absl::Status()> may,

@@ -78,7 +78,7 @@ std::string NameOfRequest(const v1::InteractRequest& request) {
   return absl::StrCat("Interact/", field == nullptr ? "unknown" : field->name());
 }
 
-// One client's call. It lives until gRPC, the session and the pending updates have released it.
+// One client's call. It lives until gRPC, the session and the pending requests have released it.
 // There is at most one pending read and one pending write. Finish is called once, while nothing is
 // being written. The thread that completes a read handles the request, so requests are handled one
 // after another. The next message is chosen only when the last write is done, so that the newest
@@ -185,14 +185,14 @@ class InteractCall : public InteractReactor,
       }
       session_->audience().Leave(person_id_, session_->Now());
     }
-    // Ends the deadline here, because the session and pending updates may keep the call alive for
+    // Ends the deadline here, because the session and pending requests may keep the call alive for
     // longer.
     delivery_.reset();
     held_by_grpc_.reset();
   }
 
  private:
-  // Sets the alarm for the next look at the client. The caller must hold mutex_.
+  // Sets the alarm for the next check of the client (Look). The caller must hold mutex_.
   void SetAlarm(Clock::time_point due) {
     alarm_.emplace().Set(rpc_port::AlarmTime(*engine_.limits.time, due),
                          [weak = weak_from_this()](bool rang) {
@@ -202,7 +202,8 @@ class InteractCall : public InteractReactor,
   }
 
   // Ends the call if its client has not joined in time, or if the token of a client that has joined
-  // has expired or was removed. A client that only receives is thus found too.
+  // has expired or was removed. The alarm checks even clients that only receive and send no
+  // requests.
   void Look() {
     bool has_joined = false;
     {
@@ -492,7 +493,7 @@ class InteractCall : public InteractReactor,
   bool end_told_ = false;
   std::optional<grpc::Status> end_;
   std::deque<grpc::ByteBuffer> answers_;
-  std::size_t updates_ = 0;  // number of updates of the scene whose answer is pending
+  std::size_t updates_ = 0;  // number of requests whose answer is pending (Await)
 
   // Join sets these members before anything else can use them.
   std::shared_ptr<session::Session> session_;
@@ -508,13 +509,14 @@ class InteractCall : public InteractReactor,
   std::shared_ptr<session::Session> watched_;  // the session whose frames are sent
   std::uint64_t watcher_id_ = 0;               // the viewer's id in the hub of watched_
   std::uint64_t told_doubts_ = 0;
-  // The number of the doubt about which the message being written asks the client (CheckAlive).
+  // Set while a CheckAlive message is being written: the number of the doubt that it asks about
+  // (session::Person::doubts).
   std::optional<std::uint64_t> asking_for_;
 };
 
 }  // namespace
 
-// gRPC releases the call in OnDone. The session and pending updates may keep it alive for longer.
+// gRPC releases the call in OnDone. The session and pending requests may keep it alive for longer.
 InteractReactor* Interact(Engine& engine, grpc::CallbackServerContext* context,
                           std::shared_ptr<const access::Caller> caller,
                           double requests_per_second) {

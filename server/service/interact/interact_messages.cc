@@ -14,8 +14,8 @@
 namespace thunderhead::service {
 namespace {
 
-// The delay after which clients should reconnect. They add a random delay, so that they do not all
-// reconnect at once.
+// The delay after which clients should reconnect if the status states none. They add a random
+// delay, so that they do not all reconnect at once.
 constexpr std::chrono::milliseconds kComeBackAfter{1000};
 
 void SetPerson(const session::Person& person, v1::Person& message) {

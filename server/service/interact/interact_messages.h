@@ -16,7 +16,8 @@ namespace thunderhead::service {
 
 // Returns the functions with which session::Audience serializes its updates as whole responses.
 session::AudienceFormat InteractFormat();
-// Serializes a frame without its sequence number, for drawing::FrameEncoder.
+// Serializes a frame for drawing::FrameEncoder, without the sequence number, which the hub assigns
+// later.
 std::string SerializedFrame(const delivery::EncodedFrame& frame);
 
 // Serialize responses. Responses with a frame or a scene share the bytes of that part.

@@ -25,8 +25,8 @@ class LookingAround {
   bool Looks() const;
 
   // Moves the view to the camera of the newest request that has arrived here, which may be newer
-  // than `camera`. If there is no view, `open` opens one. If `open` is null too, the camera is kept
-  // for the pending view.
+  // than `camera`. If there is no view, `open` opens one. If there is no view and `open` is null,
+  // the camera is kept for the pending view.
   void LookFrom(std::uint64_t look, const scene::Camera& camera, const Open& open);
   // Returns the session that draws the view, or null if there is no view. First closes the view if
   // `follows` returns true: the person sees the session's view again.

@@ -160,8 +160,8 @@ absl::Status PersonRequests::Detach(const std::shared_ptr<Asker>& asker, std::ui
   return asked;
 }
 
-// The person leaves the session's view only when the other view exists. A person whose camera is
-// refused therefore keeps following the session's view.
+// The person leaves the session's view only when the camera of the own view is known. A person
+// whose camera is refused therefore keeps following the session's view.
 absl::Status PersonRequests::DetachTo(Asker& asker, std::uint64_t look, std::uint64_t returns,
                                       const absl::StatusOr<scene::Camera>& camera) {
   THUNDERHEAD_RETURN_IF_ERROR(camera.status());

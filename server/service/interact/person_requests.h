@@ -20,7 +20,8 @@
 
 namespace thunderhead::service {
 
-// The Interact call that sent the requests. Every pending request keeps a reference to it.
+// The Interact call through which the requests arrived. Every pending request keeps a reference to
+// it.
 class Asker : public delivery::Viewer {
  public:
   // Announces that the answer to a request will follow by a call of Settle.
@@ -44,7 +45,7 @@ class PersonRequests {
         participant_key_(std::move(participant_key)) {}
 
   // Carries out a request immediately, or calls Await on `asker` and carries it out later. Returns
-  // an error if the request is refused.
+  // an error if the request is refused immediately. A later refusal is passed to Settle.
   absl::Status Obey(const std::shared_ptr<Asker>& asker, const v1::InteractRequest& request);
   // Returns the session that draws the person's own view. Returns null while the person sees the
   // session's view. Safe to call from any thread.

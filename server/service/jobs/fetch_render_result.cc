@@ -34,11 +34,11 @@ namespace {
 using ResultReactor = grpc::ServerWriteReactor<v1::FetchRenderResultResponse>;
 
 constexpr std::uint64_t kChunkBytes = std::uint64_t{1} << 20;
-// A description has a few kilobytes.
+// Maximum size of a picture's description, which usually has a few kilobytes.
 constexpr off_t kMostAboutBytes = 4 << 20;
 
-// Returns the error for a missing file. Either it was just dropped, or an operator removed it from
-// the folder.
+// Returns the error for a missing file. Either the server has just evicted the result, or an
+// operator removed the file from the folder.
 absl::Status Gone() {
   return base::WithDetails(
       absl::NotFoundError("the picture's file no longer exists; request the picture in a new job"),
@@ -73,7 +73,7 @@ class ResultFile {
 
   // Reads the next piece. Returns the next chunk, or nothing if the piece is before the offset. The
   // first chunk also has the description of the picture. The last chunk is returned only if the
-  // whole file is as it was written.
+  // digest of the whole file is correct.
   absl::StatusOr<std::optional<v1::FetchRenderResultResponse>> Read() {
     v1::FetchRenderResultResponse response;
     if (!file_.IsOpen()) THUNDERHEAD_RETURN_IF_ERROR(Open());

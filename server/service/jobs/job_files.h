@@ -19,8 +19,8 @@ using OpenResult = std::function<absl::StatusOr<base::FileDescriptor>(const std:
 struct JobFiles {
   std::function<std::optional<base::FileStamp>(const std::string& path)> stamp = base::StampOf;
   OpenResult open_result = &base::OpenOwnFile;
-  // The timeout of this check, and of reading a piece of a result. If it expires, the file's
-  // storage counts as blocked, and the pictures of the file are retried later.
+  // The timeout of `stamp`, and of reading a piece of a result. If it expires, the file's storage
+  // counts as blocked, and the pictures of the file are retried later.
   std::chrono::milliseconds patience = std::chrono::seconds(5);
 };
 

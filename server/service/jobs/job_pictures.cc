@@ -27,8 +27,9 @@ std::string ExtensionOf(v1::ImageFormat format) {
   return absl::AsciiStrToLower(absl::StripPrefix(name, "IMAGE_FORMAT_"));
 }
 
-// Checks the storm files of all render jobs, on one thread. A hanging storage delays that thread
-// only once, for a limited time, and after that does not delay other pictures.
+// Reads the stamps (size and times) of the storm files of all render jobs, on the jobs' thread. A
+// hanging storage delays that thread only once, by JobFiles::patience. Later calls for the same
+// storage then fail at once.
 class StormFiles {
  public:
   StormFiles(const JobFiles& files, const base::TimeSource& time)
@@ -83,8 +84,8 @@ class JobPicture final : public jobs::PictureInHand, private ImageListener {
   }
 
  private:
-  // Finds the time that the order means, because its index or the storm's id may have changed since
-  // the order was made.
+  // Finds the storm and the time index that the order means now. Both the storm's id and the index
+  // may have changed since the order was made.
   absl::Status Place(const jobs::PictureOrder& order) {
     if (!request_.ParseFromString(order.request)) {
       return absl::DataLossError("the server's record of this picture is damaged");
@@ -94,7 +95,8 @@ class JobPicture final : public jobs::PictureInHand, private ImageListener {
     input_.set_storm_id(scene.storm_id());
     input_.set_valid_time(order.valid_time);
     input_.set_device(engine_.loop.Device().device);
-    // If the order has no time, the error is found later, as for any other picture.
+    // If the order has no valid time, its scene names no existing time. RequestedImage reports that
+    // error.
     if (order.valid_time.empty()) return absl::OkStatus();
     THUNDERHEAD_ASSIGN_OR_RETURN(const storm_store::StormInfoPtr storm,
                                  FindStorm(engine_.store, scene.storm_id()));

@@ -7,9 +7,9 @@
 
 namespace thunderhead::service {
 
-// Returns the function that begins a picture of a job. The picture's order was made by OrderOf, and
-// its description is a FetchRenderResultResponse. `engine` must outlive the function and its
-// pictures.
+// Returns the function that begins a picture of a job. The function takes an order made by OrderOf.
+// It describes the drawn picture by a serialized FetchRenderResultResponse. `engine` must outlive
+// the function and its pictures.
 jobs::BeginPicture JobPictures(Engine& engine, const JobFiles& files);
 
 }  // namespace thunderhead::service

@@ -24,8 +24,8 @@ RenderJobService::RenderJobService(Engine& engine, access::Door& door,
       jobs_(jobs),
       entrance_(door, calls, jobs != nullptr ? absl::OkStatus() : NoJobs()),
       open_(files.open_result),
-      // The executor refuses no read: each stream waits for at most one read at a time, and the
-      // access control limits the number of streams.
+      // The executor's queue has room for every read: each stream waits for at most one read at a
+      // time, and the access control limits the number of streams.
       reading_({.threads = kReadingThreads,
                 .max_waiting = door.limits().max_streams,
                 .max_waiting_each = door.limits().max_streams_per_identity}),

@@ -53,7 +53,8 @@ void Frame(v1::OrbitCamera& camera, const volume::WorldBox& box, double aspect_r
   camera.set_distance_m(WithinLimits(*camera.GetDescriptor(), "distance_m", framing.distance_m));
 }
 
-// Returns the default position and direction of a spotter camera whose message gives no position.
+// Returns the default position and direction of a spotter camera whose message lacks one or both of
+// its coordinates.
 scene::SpotterCamera Placed(const v1::SpotterCamera& message,
                             const volume::HydrometeorFields& fields, const volume::StormCore& core,
                             physics::SizeSource sizes, const v1::Sun& sun, double aspect_ratio) {

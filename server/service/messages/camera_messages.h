@@ -10,11 +10,12 @@
 
 namespace thunderhead::service {
 
-// Returns true if the camera's defaults depend on the storm's position.
+// Returns true if the camera lacks a setting whose default depends on the storm's fields.
 bool NeedsFraming(const v1::Scene& scene);
 
-// Fills in absent positions and directions of the camera so that the picture frames the visible
-// part of `fields` (volume::VisibleBox).
+// Fills in absent positions, distances and directions of the camera, so that the picture frames the
+// visible part of `fields` (volume::VisibleBox). A spotter camera looks at the strongest core of
+// the storm instead, if there is one (volume::StrongestCore).
 void FrameCondensate(v1::Scene& scene, const volume::HydrometeorFields& fields);
 
 // Converts a camera message whose defaults are filled in.

@@ -27,8 +27,8 @@ PictureTexts TextsOf(const v1::RenderImageResponse& picture, const storm_store::
   (void)google::protobuf::util::MessageToJsonString(picture.view(), &view);
   texts[kViewText] = view;
   if (!picture.view().parallel()) {
-    // The focal length in pixels is half the picture's width divided by the length of the vector
-    // `right`, which is measured at distance 1.
+    // The length of the vector `right` is half the width of the view at distance 1. The focal
+    // length in pixels is therefore half the picture's width in pixels divided by this length.
     const v1::Vector& right = picture.view().right();
     const double half_width = std::hypot(right.x(), right.y(), right.z());
     texts["thunderhead.focal_length_px"] =

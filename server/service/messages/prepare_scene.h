@@ -17,7 +17,8 @@ namespace thunderhead::service {
 inline constexpr char kStormNotFound[] = "STORM_NOT_FOUND";
 
 // Returns the storm with that id, or the first storm if the id is empty. The error NOT_FOUND lists
-// the available storms.
+// some of the available storms. Returns UNAVAILABLE instead while the server still searches its
+// folders for storms.
 absl::StatusOr<storm_store::StormInfoPtr> FindStorm(const storm_store::StormStore& store,
                                                     const std::string& id);
 
@@ -27,7 +28,8 @@ absl::Status CheckTime(const storm_store::StormInfo& storm, std::uint32_t time_i
                        const std::string& path);
 
 // Checks a scene, and fills in every default that does not depend on the storm's fields. The
-// scene's limits must have been checked before. `techniques` are the available techniques.
+// scene's limits must have been checked before. `techniques` are the available techniques. Returns
+// INVALID_ARGUMENT, or an error of FindStorm.
 absl::Status PrepareScene(const storm_store::StormStore& store,
                           const std::vector<scene::TechniqueInfo>& techniques, v1::Scene& scene);
 

@@ -14,9 +14,10 @@
 namespace thunderhead::service {
 namespace {
 
-// The table of places has this many nodes along each side, and reaches this many times the length
-// of the domain's longer side. It then contains the page's map, which also shows a camera outside
-// the domain. For a domain of 500 km, coordinates between nodes are accurate to 20 m.
+// The table of places has kNodes nodes along each side. From the middle of the domain, it reaches
+// kReach times the length of the domain's longer side, but not farther than kFarthest_deg. It then
+// contains the page's map, which also shows a camera outside the domain. For a domain of 500 km,
+// coordinates between nodes are accurate to 20 m.
 constexpr int kNodes = 65;
 constexpr double kReach = 1.9;
 constexpr double kFarthest_deg = 175.0;

@@ -24,16 +24,17 @@ class StormPlaces {
   StormPlaces(const storm_store::StormInfo& storm, int time_index,
               const volume::HydrometeorFields& fields);
 
-  // Returns the place on Earth, or nothing if the storm has no projection.
+  // Returns the place on Earth. Returns nothing if the storm has no projection, or the projection
+  // does not cover the place.
   std::optional<v1::EarthPlace> OnEarth(const glm::dvec2& place_m) const;
   // Returns the middle of the domain on Earth, or nothing for an idealised run.
   std::optional<v1::EarthPlace> Middle() const;
   // Returns the table of places around the domain, or nothing if the storm has no projection.
   std::optional<v1::PlaceTable> Table() const;
-  // Returns a place in the air.
+  // Returns the point of the ray at the distance `along_m` from its origin.
   v1::RayPlace Of(const scene::StormRay& ray, double along_m) const;
-  // Returns a place where the ray meets the ground. Its height is the terrain's, unaffected by the
-  // Earth's curvature.
+  // Does the same for the point where the ray meets the ground. Its height is that of the terrain,
+  // unaffected by the Earth's curvature.
   v1::RayPlace OnGround(const scene::StormRay& ray, double along_m) const;
 
   const volume::HydrometeorFields& fields() const { return fields_; }
@@ -44,12 +45,13 @@ class StormPlaces {
   std::optional<volume::MapProjection> projection_;
 };
 
-// Sets all fields except the storm, its time and the scene's revision.
+// Sets all fields except the storm, its time, the scene's revision and first_cloud_depth.
 void ToMessage(const scene::ViewRay& ray, const scene::StormRay& storm_ray,
                const scene::RayProbe& probe, const StormPlaces& places,
                v1::ProbeRayResponse& message);
 
-// Sets all fields except the storm, its time and the list of added fields.
+// Sets all fields except the storm, its time, the list of added fields, their unit, the projection
+// and the table of places.
 void ToMessage(const volume::StormMap& map, const StormPlaces& places,
                v1::GetStormMapResponse& message);
 

@@ -47,17 +47,19 @@ class TrackedText {
   pointer* reached_;
 };
 
-// Returns the place of the last of the text's first `count` bytes.
+// Returns the line and column of byte number `count` of the text, counted from 1.
 std::string PlaceOf(std::string_view text, std::size_t count) {
   const std::string_view before = text.substr(0, std::max<std::size_t>(count, 1) - 1);
   const auto line = 1 + std::ranges::count(before, '\n');
-  // The column counts from 1. rfind() returns the largest number, which is -1, in the first line.
+  // The column counts from 1. This also holds in the first line, in which rfind() returns npos,
+  // because subtracting npos adds 1.
   const std::size_t column = before.size() - before.rfind('\n');
   return absl::StrCat("line ", line, ", column ", column, ": ");
 }
 
 // Returns the reason in a message of the JSON parser, such as "unexpected '}'; expected string
-// literal". The message also has a place, and can quote much of the text.
+// literal". The rest of the message is dropped: it states the place, and can quote much of the
+// text.
 std::string ReasonIn(std::string_view message) {
   constexpr std::string_view kBefore = " - ";
   const std::size_t start = message.find(kBefore);
@@ -110,7 +112,7 @@ class SceneJsonCheck final : public nlohmann::json_sax<json> {
   }
 
  private:
-  // An object, or an array, whose objects all have the type `message`.
+  // An object that has the type `message`, or an array of such objects, which is being parsed.
   struct Level {
     const Descriptor* message = nullptr;  // null for unknown objects
     std::set<std::string> names;

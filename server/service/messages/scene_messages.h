@@ -13,13 +13,14 @@
 
 namespace thunderhead::service {
 
-// Checks the rules that limits cannot express: each hydrometeor occurs at most once, the sun's date
-// is valid, and the number of pixels is allowed.
+// Returns INVALID_ARGUMENT if the scene breaks a rule that limits cannot express. The sun's date
+// must be valid, and the number of pixels must be allowed. Each entry of `fields` must name a
+// hydrometeor that no other entry names. `particle_sizes` must not be PARTICLE_SIZES_GIVEN.
 absl::Status CheckScene(const v1::Scene& scene);
 
-// Fills in the source of the particle sizes. For a preset of the papers it is
-// PARTICLE_SIZES_PAPERS. Must be called before the technique's defaults are filled in, because
-// these replace the preset.
+// Fills in the source of the particle sizes. It is PARTICLE_SIZES_PAPERS for a preset of the papers
+// (IsOfThePapers), otherwise PARTICLE_SIZES_MODEL. Must be called before the technique's defaults
+// are filled in, because these replace the preset.
 void FillSizesDefault(v1::Scene& scene);
 
 // Fills in every default except those that depend on the storm's fields.

@@ -11,16 +11,18 @@
 
 namespace thunderhead::service {
 
-// Returns INVALID_ARGUMENT if the technique does not support the requested transport or is not in
-// `known`. The settings of extension techniques are not checked here, but when they draw.
+// Returns INVALID_ARGUMENT if the technique does not support the requested transport, or if it is
+// an extension technique (`other`) that is not in `known`. The settings of extension techniques are
+// not checked here, but when they draw.
 absl::Status CheckRendering(const v1::Rendering& rendering,
                             const std::vector<scene::TechniqueInfo>& known);
 
-// Replaces a preset by its technique. Without a technique, uses the default preset's. Then fills in
-// the technique's defaults.
+// Replaces a preset by its technique. If no technique is given, uses that of the default preset.
+// Then fills in the technique's defaults.
 void FillTechniqueDefaults(v1::Rendering& rendering);
 
-// Returns true if the rendering names a preset of the papers.
+// Returns true if the rendering names a preset that reproduces a mode of the papers
+// (accuracy::IsOfThePapers).
 bool IsOfThePapers(const v1::Rendering& rendering);
 
 // Converts a technique whose defaults are filled in.
