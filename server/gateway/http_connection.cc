@@ -119,8 +119,9 @@ net::awaitable<bool> HttpConnection::ServeOne() {
   co_return keep && !answers_.HasUnreadInput();
 }
 
-// Beast joins folded lines without a trace, so they are searched for before Beast parses them.
-// Beast consumes only whole lines, and none before it has the first byte of the next.
+// Beast joins folded lines without reporting it, so they are searched for before Beast parses them.
+// The search sees every line whole, because Beast consumes a line only when the first byte of the
+// next line has arrived.
 net::awaitable<error_code> HttpConnection::ReadHeader(Parser& parser) {
   error_code error;
   while (!parser.is_header_done()) {
