@@ -44,7 +44,8 @@
 namespace thunderhead::app {
 namespace {
 
-// The time within which the audit log must be written before a second signal ends the process.
+// The longest wait for the audit log to be written when the process ends early: after a second
+// signal, or because calls hang.
 constexpr std::chrono::seconds kLastLines{1};
 
 // The time for calls to end after the grace period, and for the last saves. The service manager's

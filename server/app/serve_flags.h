@@ -77,10 +77,13 @@ Budgets BudgetsOf(const ServeFlags& flags);
 
 void AddServeFlags(CLI::App& serve, ServeFlags& flags);
 
-// Creates the access control from --auth and the related flags.
+// Creates the access control from --auth and the related flags. Returns INVALID_ARGUMENT for a
+// wrong flag, and errors of files name the file.
 absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags);
 
 // Fills in settings that depend on others: limits in the units of the code, allowed hosts, and TLS.
+// Returns INVALID_ARGUMENT for a wrong flag, and FAILED_PRECONDITION for a TLS key that other users
+// may read.
 absl::Status CompleteFlags(ServeFlags& flags);
 
 // Returns INVALID_ARGUMENT if another machine could reach a port without access control or without
