@@ -38,7 +38,7 @@ class Caller {
   // process itself.
   absl::StatusOr<std::shared_ptr<const void>> TakeAnswer() const;
   // Checks the caller's token again, at most once a second. Returns UNAUTHENTICATED, and writes
-  // this to the audit log, if the token has expired or was removed.
+  // this to the audit log, if the token has expired, was removed, or now has another name or role.
   absl::Status StillKnown(
       std::optional<std::chrono::steady_clock::time_point> at = std::nullopt) const;
 
