@@ -1,6 +1,6 @@
 // Access control: every call passes through Door::Admit. Admit identifies the caller, and checks
 // whether the caller's role may make the call and whether the caller has reached a limit. Each
-// refusal is written to the audit log. It does not depend on HTTP or on the API's messages.
+// refusal is written to the audit log. This code does not depend on HTTP or on the API's messages.
 #pragma once
 
 #include <atomic>

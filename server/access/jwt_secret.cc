@@ -20,7 +20,8 @@ namespace {
 
 // The minimum length of a secret (RFC 7518, 3.2).
 constexpr std::size_t kMinSecretBytes = 32;
-// The modulus alone of an RSA key of 2048 bits has 342 characters in base64url.
+// The maximum length of a secret. A public RSA key of 2048 bits is longer: its modulus alone has
+// 342 characters in base64url.
 constexpr std::size_t kMaxSecretBytes = 256;
 
 // Reads the header of the ASN.1 element at the start of `bytes`. Returns its tag, or -1 if it is

@@ -34,8 +34,8 @@ struct ServeFlags {
   std::string clouds;
   std::string state;
   std::string roster_timeouts;         // file with roster timeouts, for tests
-  std::uint64_t memory_bytes = 0;      // 0 means a share of the machine's memory
-  std::uint64_t gpu_memory_bytes = 0;  // 0 means the value that the driver reports
+  std::uint64_t memory_bytes = 0;      // 0 means half of the machine's memory
+  std::uint64_t gpu_memory_bytes = 0;  // 0 means 4 GiB
   double read_deadline_s = 60.0;
   CatalogueFlags catalogue;
   ReaderFlags reader;
