@@ -29,8 +29,8 @@ ENV PATH=/opt/thunderhead/bin:$PATH \
     STATE_DIRECTORY=/var/lib/thunderhead
 USER thunderhead
 EXPOSE 8080 50051
-# Inside the container all addresses are local, and the published ports decide who can reach the server. This is why
-# --insecure is given. To publish it to other machines, give --auth, --tls-cert and --tls-key instead:
-# docs/operating.md.
+# The server must listen on all addresses of the container, and --insecure allows this without tokens and TLS. The
+# published ports decide who can reach the server. To publish it to other machines, give --auth, --tls-cert and
+# --tls-key instead: docs/operating.md.
 ENTRYPOINT ["thunderhead"]
 CMD ["serve", "--data", "/data", "--http", "0.0.0.0:8080", "--grpc", "0.0.0.0:50051", "--insecure"]

@@ -14,7 +14,7 @@ pkg_check_modules(PROJ REQUIRED IMPORTED_TARGET proj)
 pkg_check_modules(UDUNITS REQUIRED IMPORTED_TARGET udunits)
 pkg_check_modules(OPENEXR REQUIRED IMPORTED_TARGET OpenEXR)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
-# The pkg-config file of ecCodes adds a path of libraries to the program.
+# The pkg-config file of ecCodes is not used, because it adds a library path (rpath) to the program.
 find_path(ECCODES_INCLUDE_DIR eccodes.h REQUIRED)
 find_library(ECCODES_LIBRARY eccodes REQUIRED)
 add_library(thunderhead_eccodes INTERFACE)

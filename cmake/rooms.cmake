@@ -1,7 +1,8 @@
-# A room is one folder of server/ that is built as one static library, `thunderhead::NAME`. thunderhead_room(NAME
-# [HEADERS set] [FILES files...] [DEPENDS rooms and libraries...]) makes this library from FILES. Without FILES it takes
-# every .cc file of the folder that is not yet in another library. HEADERS is the set of precompiled headers
-# (cmake/headers.cmake), by default `headers`.
+# A room is one folder of server/ that is built as one static library, `thunderhead::NAME`. The function
+# thunderhead_room(NAME [HEADERS set] [FILES files...] [SOURCES paths...] [DEPENDS rooms and libraries...]) makes this
+# library from FILES. Without FILES it takes every .cc file of the folder that is not yet in another library. SOURCES
+# are further files, for example in subfolders. HEADERS is the set of precompiled headers (cmake/headers.cmake), by
+# default `headers`.
 function(thunderhead_room name)
   cmake_parse_arguments(ROOM "" "HEADERS" "DEPENDS;SOURCES;FILES" ${ARGN})
   if(NOT ROOM_HEADERS)
@@ -36,8 +37,9 @@ set(THUNDERHEAD_GL_ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 
 # thunderhead_test(NAME DEPENDS libraries...) builds the .cc files of the current folder, or SOURCES, into one
 # GoogleTest program. It registers each of the suites with ctest under LABEL. The suites of a program with the option GL
-# get the GL environment and strict shader programs. A program with the option WAITS, and the suites in WAITING, mostly
-# wait, so they occupy only one place of ctest. HEADERS is the set of precompiled headers, by default `test_headers`.
+# get the GL environment and the checks of gl/strict_programs.h. A program with the option WAITS, and the suites in
+# WAITING, mostly wait, so they occupy only one place of ctest. HEADERS is the set of precompiled headers, by default
+# `test_headers`.
 function(thunderhead_test name)
   cmake_parse_arguments(TEST "GL;WAITS" "LABEL;HEADERS" "DEPENDS;SOURCES;WAITING;PROPERTIES" ${ARGN})
   if(NOT TEST_SOURCES)

@@ -31,8 +31,8 @@ class Case:
     camera: str
     scatterings: int
     asymmetry: float = 0.85
-    only: str = ""  # the only visible field, with its own asymmetry
-    step: float = 0.125  # step of Cycles, in edges of the smallest voxel
+    only: str = ""  # the only visible field; if empty, all fields are visible
+    step: float = 0.125  # step of Cycles along a ray, in edge lengths of the smallest voxel
     picture: bool = False
 
 
@@ -151,7 +151,8 @@ HEADER = ("| case | camera | scatterings | g | step | samples | mean, Cycles ove
 def write_picture(path, halves, reference):
     """Writes three pictures side by side: Cycles, the reference, and their difference.
 
-    The difference is shown as half grey plus a quarter of it, relative to the reference's mean.
+    In the difference, mid-grey means that both are equal. Where Cycles exceeds the reference by the reference's mean,
+    the grey is brighter by a quarter of the full range.
     """
     cycles = 0.5 * (halves[0] + halves[1])
     white = np.percentile(reference, 99.5)

@@ -43,8 +43,8 @@ def _channels(value):
 def _unzip(packed, size):
     if len(packed) == size:
         return packed
-    # Each byte is the difference from the previous byte. The first half has the bytes at even positions, the second
-    # half those at odd positions.
+    # Each byte is the difference from the previous byte, plus 128. The first half has the bytes at even positions, the
+    # second half those at odd positions.
     deltas = np.frombuffer(zlib.decompress(packed), np.uint8).astype(np.int64)
     deltas[1:] -= 128
     shuffled = np.cumsum(deltas).astype(np.uint8)

@@ -24,12 +24,12 @@ std::unique_ptr<Authenticator> TrustEverybody();
 
 // Identifies callers by the tokens in the file at `path` (token_list.h). The file is read again
 // when it changes. `time` measures the timeout for reading the file, and must outlive the
-// authenticator.
+// authenticator. Returns the errors of ReadSecretFile, and INVALID_ARGUMENT for malformed contents.
 absl::StatusOr<std::unique_ptr<Authenticator>> TrustTokens(
     const std::string& path, const base::TimeSource& time = base::SteadyTime());
 
 // Identifies callers by JWTs that the key in the file at `path` verifies (jwt_key.h). The file is
-// read again when it changes.
+// read again when it changes. Returns the same errors as TrustTokens.
 absl::StatusOr<std::unique_ptr<Authenticator>> TrustJwt(const std::string& path,
                                                         const JwtClaims& wanted);
 

@@ -1,6 +1,6 @@
 // Access control: every call passes through Door::Admit. Admit identifies the caller, and checks
 // whether the caller's role may make the call and whether the caller has reached a limit. Each
-// refusal is written to the audit log. It does not depend on HTTP or on the API's messages.
+// refusal is written to the audit log. This code does not depend on HTTP or on the API's messages.
 #pragma once
 
 #include <atomic>
@@ -38,7 +38,7 @@ class Caller {
   // process itself.
   absl::StatusOr<std::shared_ptr<const void>> TakeAnswer() const;
   // Checks the caller's token again, at most once a second. Returns UNAUTHENTICATED, and writes
-  // this to the audit log, if the token has expired or was removed.
+  // this to the audit log, if the token has expired, was removed, or now has another name or role.
   absl::Status StillKnown(
       std::optional<std::chrono::steady_clock::time_point> at = std::nullopt) const;
 

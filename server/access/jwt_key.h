@@ -25,7 +25,8 @@ class JwtKey {
   // of less than 32 bytes or a key in another form.
   static absl::StatusOr<JwtKey> Parse(const std::string& text);
 
-  // Returns UNAUTHENTICATED if the token is forged, expired, not yet valid, or lacks a claim.
+  // Returns UNAUTHENTICATED if the token is malformed, forged, expired or not yet valid, or if a
+  // claim is missing or has another value than required.
   absl::StatusOr<Identity> Verify(const std::string& token, const JwtClaims& wanted,
                                   std::chrono::system_clock::time_point now) const;
 

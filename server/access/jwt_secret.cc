@@ -18,9 +18,10 @@
 namespace thunderhead::access {
 namespace {
 
-// RFC 7518, 3.2.
+// The minimum length of a secret (RFC 7518, 3.2).
 constexpr std::size_t kMinSecretBytes = 32;
-// The modulus alone of an RSA key of 2048 bits has 342 characters in base64url.
+// The maximum length of a secret. A public RSA key of 2048 bits is longer: its modulus alone has
+// 342 characters in base64url.
 constexpr std::size_t kMaxSecretBytes = 256;
 
 // Reads the header of the ASN.1 element at the start of `bytes`. Returns its tag, or -1 if it is
@@ -60,8 +61,8 @@ bool IsJson(const std::string& text) {
          nlohmann::json::parse(text, nullptr, kThrows).is_structured();
 }
 
-// Returns whether the text is or contains a public key of OpenSSH. The names of its kinds are also
-// the beginning of its base64.
+// Returns whether the text is or contains a public key of OpenSSH. The base64 text of such a key
+// begins with the encoded name of its kind.
 bool IsOfOpenSsh(std::string_view text) {
   constexpr std::array<std::string_view, 4> kKinds = {"ssh-", "ecdsa-", "sk-ssh-", "sk-ecdsa-"};
   constexpr std::array<std::string_view, 5> kInBase64 = {"AAAAB3NzaC", "AAAAC3NzaC", "AAAAE2VjZHNh",

@@ -1,5 +1,5 @@
-// Tells the secret of HS256 from a key in another form. A public key that were taken for the secret
-// would let everyone who knows it sign tokens.
+// Distinguishes a secret for HS256 from a key in another form. If a public key were taken for the
+// secret, everyone who knows that key could sign tokens.
 #pragma once
 
 #include <string>

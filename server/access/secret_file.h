@@ -16,8 +16,10 @@
 
 namespace thunderhead::access {
 
-// Reads the file. Returns FAILED_PRECONDITION, with the command that repairs it, for a file that
-// belongs to another user, that its group may write, or that other users may read or write.
+// Reads the file. Returns FAILED_PRECONDITION if it cannot be read, is not a regular file or is
+// larger than 4 MiB. Returns the same error, with the command that repairs the file, in three
+// cases. The file belongs neither to root nor to the server's user, its group may write it, or
+// other users may read or write it.
 absl::StatusOr<std::string> ReadSecretFile(const std::string& path);
 
 // Holds the parsed contents of a file, and reads the file again when it has changed. If a changed
@@ -34,6 +36,8 @@ class KeptFile {
   static absl::StatusOr<std::unique_ptr<KeptFile>> Open(
       const std::string& path, Parse parse, const base::TimeSource& time = base::SteadyTime());
 
+  // Returns the newest valid contents, after checking whether the file has changed. Waits at most
+  // base::Looks::kPatience for this check.
   std::shared_ptr<const Value> Current();
 
  private:

@@ -1,6 +1,6 @@
 // The tokens in a file. Each line has a name, a role and the SHA-256 of the token. The tokens
 // themselves are not stored on the server. They must be random, for example from `openssl rand -hex
-// 32`, because a chosen word could be found by trial.
+// 32`, because a chosen word could be guessed.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // The program's subcommands. Each function adds a subcommand with its flags to `app`, and returns
 // the function to run after the flags are parsed. That function returns OK, or the error to print.
-// The error's code decides the program's exit code (exit_codes.h).
+// The error's code decides the program's exit code (runs/exit_codes.h).
 #pragma once
 
 #include <functional>

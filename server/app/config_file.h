@@ -11,8 +11,9 @@
 namespace thunderhead::app {
 
 // Applies the settings of the file at `path` to those options of `command` that the command line
-// does not set. Returns INVALID_ARGUMENT, which names the file and the setting, if the file does
-// not exist, or a setting does not exist or has a wrong value.
+// does not set. Returns INVALID_ARGUMENT, which names the file and the setting, if the file cannot
+// be read, or a setting does not exist or has a wrong value. Returns FAILED_PRECONDITION if the
+// path is not a regular file.
 absl::Status ReadConfigFile(CLI::App& command, const std::string& path);
 
 // Returns the text of a settings file with every option of `command` that such a file can set. Each

@@ -38,7 +38,8 @@ constexpr char kUpHelp[] = "the axis of the file that is up: x, y or z";
 constexpr char kMetresHelp[] = "length in m of a unit of the file's coordinates";
 constexpr char kExtinctionHelp[] = "extinction in 1/m of a voxel with the value 1";
 
-// Returns one error for all flags that are missing, because a file does not say what they say.
+// Returns one error that names all missing flags. The OpenVDB file does not contain the values that
+// these flags give.
 absl::Status CheckGiven(const ImportVdbFlags& flags) {
   std::vector<std::string> missing;
   const auto need = [&missing](bool given, const char* flag, const char* help) {

@@ -1,5 +1,5 @@
-// Pictures by the Monte Carlo reference with which others are compared. They are stored between
-// runs.
+// Pictures by the Monte Carlo reference, with which drawn pictures are compared. They are stored
+// between runs.
 #pragma once
 
 #include <string>

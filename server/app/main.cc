@@ -1,5 +1,5 @@
 // thunderhead: storms from weather models as they would look in the sky. The exit codes are in
-// exit_codes.h.
+// runs/exit_codes.h.
 #include <algorithm>
 #include <array>
 #include <csignal>

@@ -66,9 +66,9 @@ absl::StatusOr<picture::LinearPicture> ReferenceOf(const LightFlags& flags, cons
   return KeptReference(request, *local.fields, path, interruption);
 }
 
-// Writes three pictures side by side: by the reference, as drawn, and their difference. Grey (1/2)
-// means no difference; the brightness changes by a quarter for a difference of the reference's
-// mean.
+// Writes three pictures side by side: by the reference, as drawn, and their difference. In the
+// difference, mid-grey means that both are equal. A pixel that exceeds the reference by the
+// reference's mean radiance is brighter than mid-grey by a quarter of the full range.
 absl::Status WriteComparison(const picture::LinearPicture& reference,
                              const picture::LinearPicture& drawn, scene::Scene scene,
                              const std::string& path) {
@@ -101,8 +101,8 @@ absl::Status WriteComparison(const picture::LinearPicture& reference,
   return base::WriteWholeFile(path, png);
 }
 
-// A picture drawn for comparison with the reference. It prints its row of the table and writes the
-// comparison.
+// Compares drawn pictures of one part of the light with the reference. Print draws a picture,
+// prints its row of the table, and writes the picture and the comparison.
 struct Compared {
   const LightFlags& flags;
   const LocalScene& local;

@@ -38,7 +38,7 @@ constexpr double kWorkerFactor = 5.0;
 // Interval between checks of the health that is reported to gRPC's clients.
 constexpr std::chrono::seconds kHealthPause{1};
 
-// Returns one of these signals, or 0 after a short wait.
+// Waits up to 20 ms for one of `signals`. Returns the signal that came, or 0.
 int Taken(const sigset_t& signals) {
   const timespec wait{0, std::chrono::nanoseconds(milliseconds(20)).count()};
   return std::max(0, sigtimedwait(&signals, nullptr, &wait));

@@ -35,8 +35,8 @@ void AddOperationFlags(CLI::App& command, OperationFlags& flags);
 // Sets the format of the log on standard error: text, or JSON with one object per line.
 void SetLogFormat(const std::string& format);
 
-// Starts a thread that ends the process with exit code 0 when one of `signals` arrives. All threads
-// must block these signals.
+// Starts a thread that ends the process with exit code 0 when one of `signals` arrives, unless the
+// thread is told to stop before. All threads must block these signals.
 std::jthread EndIfToldWhileStarting(const sigset_t& signals);
 
 // Starts a thread that ends the process after `patience`, unless the thread is told to stop before.
@@ -49,7 +49,8 @@ std::jthread EndAnywayAfter(std::chrono::seconds patience, const std::function<i
 // once. Until SetServer is called, it reports that the server is starting.
 class Operation {
  public:
-  // Starts the operation. If `allowed_hosts` is not empty, the port answers only requests for these
+  // Sets the format of the log, opens the operator port if the flags ask for one, and starts the
+  // messages to systemd. If `allowed_hosts` is not empty, the port answers only requests for these
   // names and for the names that the page accepts. Otherwise it answers requests for any name.
   static absl::StatusOr<std::unique_ptr<Operation>> Start(
       const OperationFlags& flags, const std::vector<std::string>& allowed_hosts = {});
@@ -71,8 +72,9 @@ class Operation {
   void SetServer(std::nullptr_t) { SetServer(nullptr, {}); }
 
   // Waits for one of `signals`, which this thread must block, and then tells the clients that the
-  // server stops. Returns when the started pictures are delivered, or after the grace period. If a
-  // second signal arrives, it calls `last`, which must be fast, and ends the process.
+  // server stops. Returns when the started pictures are delivered and all viewers have left, or
+  // after the grace period. If a second signal arrives, it calls `last`, which must be fast, and
+  // ends the process.
   void WaitAndDrain(
       const sigset_t& signals, service::Server& server, const std::function<void()>& last = [] {});
 

@@ -20,12 +20,12 @@
 namespace thunderhead::app {
 namespace {
 
-// Bytes of a file that are read. The scene of a picture is in front of its pixels, so large
-// pictures need not be read to their end.
+// The number of bytes that are read from the start of a file. The scene of a picture is in front of
+// its pixels, so large pictures need not be read to their end.
 constexpr std::size_t kFileStart_bytes = 4 << 20;
 
-// Returns the scene that is stored in a picture made by the service. The storm is left out, so that
-// the scene can be used with another storm.
+// Returns the JSON of the scene that is stored in a picture made by the service. `what` names the
+// picture in errors.
 absl::StatusOr<std::string> SceneJsonIn(const std::string& what, const std::string& png) {
   auto texts = frame::TextsOf(png);
   if (!texts.ok()) return base::Annotate(texts.status(), what);
@@ -35,6 +35,8 @@ absl::StatusOr<std::string> SceneJsonIn(const std::string& what, const std::stri
       what, " is a PNG without a scene in it; give one that thunderhead made, or a scene's JSON"));
 }
 
+// Returns the scene in a file of JSON or in a PNG. The storm of a PNG is left out, so that its
+// scene can be used with another storm.
 absl::StatusOr<v1::Scene> ReadFile(const std::string& flag, const std::string& path) {
   const absl::StatusOr<std::string> start = base::ReadFileStart(path, kFileStart_bytes);
   if (!start.ok()) return base::Annotate(start.status(), flag);

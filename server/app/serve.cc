@@ -44,7 +44,8 @@
 namespace thunderhead::app {
 namespace {
 
-// The time within which the audit log must be written before a second signal ends the process.
+// The longest wait for the audit log to be written when the process ends early: after a second
+// signal, or because calls hang.
 constexpr std::chrono::seconds kLastLines{1};
 
 // The time for calls to end after the grace period, and for the last saves. The service manager's
@@ -178,7 +179,8 @@ absl::Status Serve(ServeFlags flags) {
   std::jthread starting = EndIfToldWhileStarting(signals);
   THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::Door> door, MakeDoor(flags));
-  // The certificates are checked before any port is opened, because these errors name the files.
+  // The certificates are checked before any port is opened, because the errors of this check name
+  // the files.
   if (!flags.tls.certificate.empty()) {
     THUNDERHEAD_RETURN_IF_ERROR(
         gateway::TlsContexts::Open(flags.tls.certificate, flags.tls.key).status());

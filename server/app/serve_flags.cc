@@ -309,7 +309,7 @@ absl::Status CompleteFlags(ServeFlags& flags) {
     THUNDERHEAD_RETURN_IF_ERROR(access::ReadSecretFile(flags.tls.key).status());
   }
   flags.limits.max_render_time = std::chrono::milliseconds(std::lround(1e3 * flags.max_render_s));
-  // The flag's maximum stands for the schema's limit, which is not a round number of megapixels.
+  // The flag's largest value means the API's own limit, which is not a round number of megapixels.
   flags.limits.max_pixels =
       std::min(flags.limits.max_pixels, static_cast<std::uint64_t>(1e6 * flags.max_megapixels));
   flags.limits.max_samples = static_cast<std::uint64_t>(1e6 * flags.max_megasamples);

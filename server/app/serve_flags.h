@@ -34,8 +34,8 @@ struct ServeFlags {
   std::string clouds;
   std::string state;
   std::string roster_timeouts;         // file with roster timeouts, for tests
-  std::uint64_t memory_bytes = 0;      // 0 means a share of the machine's memory
-  std::uint64_t gpu_memory_bytes = 0;  // 0 means the value that the driver reports
+  std::uint64_t memory_bytes = 0;      // 0 means half of the machine's memory
+  std::uint64_t gpu_memory_bytes = 0;  // 0 means 4 GiB
   double read_deadline_s = 60.0;
   CatalogueFlags catalogue;
   ReaderFlags reader;
@@ -77,10 +77,13 @@ Budgets BudgetsOf(const ServeFlags& flags);
 
 void AddServeFlags(CLI::App& serve, ServeFlags& flags);
 
-// Creates the access control from --auth and the related flags.
+// Creates the access control from --auth and the related flags. Returns INVALID_ARGUMENT for a
+// wrong flag, and errors of files name the file.
 absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags);
 
 // Fills in settings that depend on others: limits in the units of the code, allowed hosts, and TLS.
+// Returns INVALID_ARGUMENT for a wrong flag, and FAILED_PRECONDITION for a TLS key that other users
+// may read.
 absl::Status CompleteFlags(ServeFlags& flags);
 
 // Returns INVALID_ARGUMENT if another machine could reach a port without access control or without

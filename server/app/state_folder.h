@@ -25,8 +25,9 @@ struct State {
 // Opens the state in the folder, which is created for this user only. If `folder` is "none", no
 // state is kept. If it is empty, the folder of the service manager ($STATE_DIRECTORY) or of the
 // user is used. If such a default folder cannot be created, no state is kept, and a warning is
-// logged. Returns FAILED_PRECONDITION, with the remedy, if other users may change the folder or if
-// a file in it is no regular file.
+// logged. Returns INVALID_ARGUMENT if a named folder cannot be created. Returns
+// FAILED_PRECONDITION, with the remedy, if other users may change the folder or if a file in it is
+// no regular file. Also returns the errors of store::StateFile::Open.
 absl::StatusOr<State> OpenState(const std::string& folder);
 
 // Makes the catalogue of storms read their ids from the state, and keep them there. If the folder's

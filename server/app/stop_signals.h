@@ -5,7 +5,7 @@
 
 namespace thunderhead::app {
 
-// Returns SIGINT, SIGTERM and SIGHUP, which a terminal sends when it is closed. SIGHUP is left out
+// Returns SIGINT, SIGTERM and SIGHUP. A terminal sends SIGHUP when it is closed. SIGHUP is left out
 // if the caller of the program ignores it, as nohup does.
 sigset_t StopSignals();
 

@@ -98,7 +98,7 @@ class Executor {
   static std::optional<Task> WaitFor(Shared& shared, Worker& worker,
                                      std::unique_lock<std::mutex>& lock);
   static void Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr<Worker>& worker);
-  // The functions below require the mutex.
+  // The functions below, except Watch, require the mutex.
   //
   // Takes the next task for the worker, from the owner that has used the least time. Returns
   // nothing if no task may start. Every owner must leave one thread free for others.

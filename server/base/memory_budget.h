@@ -133,7 +133,7 @@ class MemoryBudget : public std::enable_shared_from_this<MemoryBudget> {
   std::size_t Used(MemoryUse use) const;
   // Returns how many awaited reservations have been refused for lack of memory so far. When the
   // number grows, a thread frees memory that only this thread can free, such as GL objects of its
-  // context. It then calls Answer.
+  // context. It then calls Answer with the number that it has read.
   std::uint64_t Refusals() const { return refusals_; }
   void Answer(std::uint64_t refusals);
   // Sets the listener that is called each time Refusals() grows, on the thread whose reservation

@@ -35,8 +35,9 @@ class PatientCalls {
   // Runs `call`, which must own everything it uses, because it may outlive this object. If `call`
   // does not return within the timeout, returns DEADLINE_EXCEEDED with the reason STORAGE_HANGS and
   // a retry delay. While an earlier call for the same storage hangs, returns that error at once.
-  // `storage` identifies the storage, for example by a folder, and appears in the error message.
-  // Rethrows what `call` throws. Safe from any thread.
+  // Returns RESOURCE_EXHAUSTED if the system cannot start a thread for the call. `storage`
+  // identifies the storage, for example by a folder, and appears in the error message. Rethrows
+  // what `call` throws. Safe from any thread.
   absl::Status Run(const std::string& storage, const std::function<void()>& call);
 
   // Does the same for a call that returns a Status or a StatusOr. Returns the call's result, or the

@@ -36,7 +36,7 @@ absl::Status TooSmall(const std::string& limit) {
       "--memory-budget or by the service manager (MemoryMax= of systemd)"));
 }
 
-// Made before an exception ends the process, because there may be no memory then.
+// The text is made before an exception ends the process, because there may be no memory then.
 std::string& KnownLimits() {
   static std::string text;
   return text;

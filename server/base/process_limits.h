@@ -18,8 +18,8 @@ struct ProcessLimits {
 
 ProcessLimits ReadProcessLimits();
 
-// Returns a text that names the limits, such as "its limits are: an address space of 600 MiB
-// (RLIMIT_AS, ulimit -v)", or an empty text if there are none.
+// Returns a text that names the limits, such as "the limits of this process are an address space of
+// 600 MiB (RLIMIT_AS, ulimit -v)". Returns an empty text if there are none.
 std::string TextOf(const ProcessLimits& limits);
 
 // Returns FAILED_PRECONDITION if a server cannot start within the limits on memory. The libraries

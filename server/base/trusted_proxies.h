@@ -26,8 +26,8 @@ class TrustedProxies {
   bool Holds(std::string_view peer) const;
   // Returns the address of the client on whose behalf `peer` calls, in the same form as `peer` and
   // with port 0. This is the last address in `forwarded_for`, the value of the header, that is not
-  // a trusted proxy. Returns `peer` if it is not a trusted proxy, or if `forwarded_for` contains no
-  // valid client address.
+  // a trusted proxy, or the first address if all are trusted. Entries before one that is no address
+  // are ignored. Returns `peer` if it is not a trusted proxy, or if the last entry is no address.
   std::string ClientOf(const std::string& peer, std::string_view forwarded_for) const;
 
  private:

@@ -55,7 +55,7 @@ constexpr std::uint32_t kEmojiStyle = 0xfe0f;
 constexpr std::uint32_t kFirstJoined = 0x590;
 
 bool IsHidden(std::uint32_t code) {
-  if ((code & 0xfffeU) == 0xfffeU) return true;  // the last two of each plane
+  if ((code & 0xfffeU) == 0xfffeU) return true;  // the last two of each plane are never characters
   const auto range = std::ranges::lower_bound(kHidden, code, {}, &Range::last);
   return range != kHidden.end() && range->first <= code;
 }

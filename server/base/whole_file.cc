@@ -67,8 +67,9 @@ bool IsFileWithOneName(const struct stat& found) {
   return S_ISREG(found.st_mode) && found.st_nlink == 1;
 }
 
-// Returns whether something other than a file with one name is at `path`, for example a link or a
-// FIFO. Another user of the folder may have planted it. A folder does not count.
+// Returns whether something other than a regular file with one hard link is at `path`, for example
+// a symbolic link or a FIFO. Another user of the folder may have planted it. A folder does not
+// count.
 bool IsPlanted(const std::string& path) {
   struct stat found {};
   return lstat(path.c_str(), &found) == 0 && !S_ISDIR(found.st_mode) && !IsFileWithOneName(found);

@@ -11,14 +11,16 @@
 
 namespace thunderhead::base {
 
+// Returns the bytes of the file, or NOT_FOUND if it cannot be opened.
 absl::StatusOr<std::string> ReadWholeFile(const std::string& path);
 
 // Returns the temporary path under which the file at `path` is written until it is complete. The
 // path is in the same folder, so that the complete file can be renamed.
 std::string PartialPath(std::string_view path);
 
-// Makes an empty file at PartialPath(path) and returns that path. Replaces whatever is not a file
-// with one name, such as a planted link or FIFO. Errors are those of WriteProblem.
+// Makes an empty file at PartialPath(path) and returns that path. Replaces anything there that is
+// not a regular file with one hard link, such as a planted link or FIFO. Errors are those of
+// WriteProblem.
 absl::StatusOr<std::string> StartPartial(const std::string& path);
 
 // Writes the whole file. Returns FAILED_PRECONDITION if its folder is missing or not writable.

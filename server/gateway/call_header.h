@@ -20,7 +20,8 @@ std::string ClientOf(const boost::beast::http::request<boost::beast::http::strin
                      const std::string& peer, const base::TrustedProxies& proxies);
 
 // Returns the method, metadata and deadline of the call that `request` asks for, without a message.
-// The metadata x-forwarded-for holds the client's address for the service.
+// The metadata x-forwarded-for holds the client's address for the service. Returns INVALID_ARGUMENT
+// for a malformed timeout, or for a header that cannot be gRPC metadata.
 absl::StatusOr<UpstreamRequest> TranslateHeader(
     const boost::beast::http::request<boost::beast::http::string_body>& request,
     const std::string& peer, const base::TrustedProxies& proxies);

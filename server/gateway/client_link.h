@@ -22,8 +22,8 @@
 
 namespace thunderhead::gateway {
 
-// What a connection is used for. To make place for a new connection, connections are closed in this
-// order.
+// The uses of a connection. At the maximum number of connections, OpenLinks closes one for a new
+// connection: first one that waits or receives, then one that sends, never one with a call.
 enum class LinkUse {
   kWaiting,    // waits for the first byte of a request
   kReceiving,  // receives the rest of a request

@@ -31,8 +31,8 @@ namespace http = boost::beast::http;
 using FileOr = absl::StatusOr<std::shared_ptr<const OpenFile>>;
 
 constexpr size_t kFilePart = 64 << 10;
-// The number of bytes whose digest is computed by one call of a file thread, for which the timeout
-// applies.
+// The number of bytes whose digest one call of a file thread computes. Each call has the timeout of
+// FileThreads.
 constexpr std::uint64_t kCheckedAtOnce = 4 << 20;
 
 const char* PictureTypeOf(const std::string& path) {

@@ -46,9 +46,9 @@ class FileAnswers {
  private:
   struct FilePart;
 
-  // Checks the digest of a file that must have given contents, unless the file is large. Returns
-  // DATA_LOSS for other contents, UNAVAILABLE for a failed read, and the errors of
-  // FileThreads::Run.
+  // Checks the digest of a file if `file.contents` gives one and the file has at most
+  // KeptFile::kCheckedFirst_bytes. Returns DATA_LOSS for other contents, UNAVAILABLE for a failed
+  // read, and the errors of FileThreads::Run.
   Awaitable<absl::Status> CheckContents(const Request& request, const KeptFile& file,
                                         std::shared_ptr<const OpenFile> opened);
   // Sends an error because a kept file cannot be sent.
@@ -58,8 +58,9 @@ class FileAnswers {
                                std::shared_ptr<const OpenFile> opened);
   // Sends `header`, which must contain the part's length, and then the part of the file.
   Awaitable<bool> SendPart(const Request& request, HttpAnswers::Header& header, FilePart part);
-  // Ends a response whose file cannot be read on. Sends an error if `unsent_header` shows that
-  // nothing was sent yet, and otherwise returns false.
+  // Ends a response because the rest of its file cannot be read. If `unsent_header` is not empty,
+  // nothing was sent yet, and an error is sent. Otherwise returns false, so that the connection is
+  // closed.
   Awaitable<bool> EndFailedPart(const Request& request, const std::string& path,
                                 const absl::Status& why, const std::string& unsent_header);
   // Returns the name of the client for the threads' quota. All connections of a client share one

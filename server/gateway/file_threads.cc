@@ -44,7 +44,8 @@ struct FileThreads::Wait {
     wait->outcome = status;
     if (wait->timer == nullptr) return;
     net::post(wait->timer->get_executor(), [wait] {
-      // Only this thread ends the wait, so that the check needs no lock.
+      // Only the executor's thread, which runs this code, ends the wait, so the check needs no
+      // lock.
       if (wait->timer != nullptr) wait->timer->cancel();
     });
   }

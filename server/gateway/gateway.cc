@@ -71,8 +71,8 @@ absl::Status CannotListen(const tcp::endpoint& endpoint, const error_code& error
 
 }  // namespace
 
-// The listener and its connections. Everything except construction and Stop() runs on `thread_`, so
-// that no lock is needed.
+// The listener and its connections. Everything except construction, Listen() and destruction runs
+// on `thread_`, so no lock is needed.
 class Gateway::Listener {
  public:
   Listener(const GatewayOptions& options, StaticFiles files, HttpPolicy policy,

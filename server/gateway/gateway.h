@@ -125,7 +125,7 @@ struct GatewayOptions {
   // The time source of all timeouts above. It must outlive the gateway.
   const base::TimeSource* time = &base::SteadyTime();
 
-  // Timeout of a request's body, of a text and of the first bytes of a file, as a multiple of
+  // The timeout of a request's body, and the fixed part of DeliveryTime(), as a multiple of
   // header_timeout.
   static constexpr int kHeaderTimeouts = 3;
   // Returns the time that a client has to receive `bytes` bytes.

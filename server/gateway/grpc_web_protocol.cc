@@ -55,8 +55,8 @@ bool IsLegalText(std::string_view value) {
 }
 
 // Returns true for headers that belong to HTTP or to the browser. Cookies are among them, because a
-// browser shares cookies between all ports of a host. It would send the cookies of any program on
-// localhost.
+// browser shares cookies between all ports of a host. It would also send the cookies of other
+// programs on localhost.
 bool IsNotMetadata(std::string_view name) {
   static constexpr std::string_view kNames[] = {"accept",
                                                 "cache-control",

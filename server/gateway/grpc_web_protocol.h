@@ -29,7 +29,8 @@ bool IsBinaryGrpcWeb(std::string_view content_type);
 // Returns true if `path` has the form "/package.Service/Method".
 bool IsMethodPath(std::string_view path);
 
-// Returns the message of a request body, which must contain exactly one message.
+// Returns the message of a request body. Returns INVALID_ARGUMENT unless the body contains exactly
+// one message, and UNIMPLEMENTED for a compressed message.
 absl::StatusOr<std::string_view> TakeSingleMessage(std::string_view body);
 
 // Returns the frame header of a message of `size` bytes.
@@ -48,11 +49,11 @@ Metadata Trailers(absl::StatusCode code, std::string_view message, const Metadat
 // Returns `message` in the encoding of grpc-message.
 std::string PercentEncode(std::string_view message);
 
-// Parses a grpc-timeout such as "250m".
+// Parses a grpc-timeout such as "250m". Returns INVALID_ARGUMENT for malformed text.
 absl::StatusOr<absl::Duration> ParseTimeout(std::string_view text);
 
 // Adds a header of the request to `metadata`, unless the header belongs to HTTP, the browser or
-// gRPC itself.
+// gRPC itself. Returns INVALID_ARGUMENT for a name or a value that gRPC metadata cannot have.
 absl::Status AddRequestHeader(std::string_view name, std::string_view value, Metadata& metadata);
 
 // Returns true if response metadata of that name is forwarded to the browser.

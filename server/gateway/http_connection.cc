@@ -119,8 +119,9 @@ net::awaitable<bool> HttpConnection::ServeOne() {
   co_return keep && !answers_.HasUnreadInput();
 }
 
-// Beast joins folded lines without a trace, so they are searched for before Beast parses them.
-// Beast consumes only whole lines, and none before it has the first byte of the next.
+// Beast joins folded lines without reporting it, so they are searched for before Beast parses them.
+// The search sees every line whole, because Beast consumes a line only when the first byte of the
+// next line has arrived.
 net::awaitable<error_code> HttpConnection::ReadHeader(Parser& parser) {
   error_code error;
   while (!parser.is_header_done()) {
@@ -352,8 +353,8 @@ net::awaitable<error_code> HttpConnection::ReadBody(Parser& parser) {
   link_.Begin(LinkUse::kReceiving);
   link_.Stream().expires_after(GatewayOptions::kHeaderTimeouts * site_.options.header_timeout);
   // Beast adds the fields behind the last chunk (trailers, RFC 9112 section 7.1.2) to the header,
-  // which was checked before. They are dropped. Otherwise a client behind a trusted proxy could add
-  // an X-Forwarded-For that the proxy has not seen, and be taken for another client.
+  // which was checked before. These fields are dropped. Otherwise a client behind a trusted proxy
+  // could add an X-Forwarded-For that the proxy has not seen, and be taken for another client.
   std::optional<http::request_header<>> header;
   if (parser.chunked()) header = parser.get().base();
   co_await http::async_read(link_.Stream(), link_.Received(), parser,

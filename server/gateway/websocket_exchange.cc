@@ -248,7 +248,8 @@ net::awaitable<void> WebSocketExchange::Watch() {
 void WebSocketExchange::Judge(PeerLiveness& liveness) {
   const auto now = site_.Now();
   // Beast's reader itself answers a close frame, and closes a connection that breaks the protocol.
-  // It returns only after the TCP connection has ended too. So the closed socket is noticed here.
+  // The reader returns only after the TCP connection has ended too. So the closed socket is noticed
+  // here.
   if (!socket_.is_open()) BeginClosing();
   const PeerLiveness::Verdict verdict =
       liveness.Judge({link_->ReceivedBytes(), link_->SentBytes(), link_->DeliveredBytes(),

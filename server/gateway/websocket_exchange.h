@@ -3,8 +3,9 @@
 // read from the client only when the server's flow control allows it. Both directions run
 // concurrently. The exchange is independent of message types.
 //
-// Two coroutines and a timer use one connection. Only Run() sends messages and closes, only
-// ForwardRequests() receives, and Watch() disconnects a client that no longer responds.
+// Three coroutines use one connection. Only Run() sends messages and close frames, only
+// ForwardRequests() receives, and Watch() pings the client and disconnects one that no longer
+// responds.
 #pragma once
 
 #include <boost/asio/steady_timer.hpp>

@@ -20,8 +20,8 @@ class AcceptLoop {
   // thread.
   using Take = std::function<void(base::FileDescriptor connection)>;
 
-  // An additional task of the loop's thread. It runs at least once every `pause`. `time` measures
-  // the pause and must outlive the loop.
+  // An additional task of the loop's thread. It runs once every `pause`. `time` measures the pause
+  // and must outlive the loop.
   struct Chore {
     std::chrono::milliseconds pause;
     std::function<void()> run;
@@ -29,6 +29,7 @@ class AcceptLoop {
   };
 
   // Starts a loop that accepts until it is destroyed. `sockets` must be listening and non-blocking.
+  // Returns UNAVAILABLE without a free file descriptor.
   static absl::StatusOr<std::unique_ptr<AcceptLoop>> Start(
       std::vector<base::FileDescriptor> sockets, Take take,
       std::optional<Chore> chore = std::nullopt);

@@ -27,8 +27,8 @@ CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, c
 // exception, the call ends with INTERNAL.
 class Entrance {
  public:
-  // If `closed` is not OK, all calls are refused with it, even admitted ones. `calls` counts the
-  // admitted calls of each connection.
+  // If `closed` is not OK, it is the error of every call that the access control admits. `calls`
+  // counts the admitted calls of each connection.
   Entrance(access::Door& door, ConnectionCalls& calls, absl::Status closed = absl::OkStatus())
       : door_(door), calls_(calls), closed_(std::move(closed)) {}
 

@@ -10,7 +10,7 @@ namespace thunderhead::rpc_port {
 
 class Drain {
  public:
-  // Starts to refuse new pictures.
+  // Starts to refuse new work: pictures, and viewers who join.
   void Begin() { begun_ = true; }
   bool HasBegun() const { return begun_; }
 

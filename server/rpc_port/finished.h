@@ -44,9 +44,9 @@ inline grpc::ServerUnaryReactor* Finished(const PortLimits& limits,
   return answer;
 }
 
-// Finishes with the result of `work`, which runs on a thread of the executor in the caller's turn.
-// If the caller has cancelled the call by then, `work` is skipped. gRPC keeps the call's objects
-// alive until the call finishes.
+// Finishes with the result of `work`. The executor runs it on one of its threads, and shares them
+// fairly between callers. If the caller has cancelled the call by then, `work` is skipped. gRPC
+// keeps the call's objects alive until the call finishes.
 template <typename Work>
 grpc::ServerUnaryReactor* FinishedBy(base::Executor& executor, const PortLimits& limits,
                                      grpc::CallbackServerContext* context,

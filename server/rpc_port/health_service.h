@@ -1,6 +1,6 @@
 // Answers gRPC's health checks. Unlike gRPC's own health service, it does not offer the streaming
-// method Watch. Health checks need no token and are not counted, so anyone could keep such streams
-// open. Clients that call Watch interpret UNIMPLEMENTED as "serving".
+// method Watch. Health checks need no token and count towards no quota, so anyone could keep such
+// streams open. Clients that call Watch interpret UNIMPLEMENTED as "serving".
 #pragma once
 
 #include <grpcpp/grpcpp.h>

@@ -1,5 +1,5 @@
 // The TCP port of the gRPC server. gRPC's own listener does not limit the number of connections, so
-// that idle connections could use up the process's file descriptors. This listener does.
+// idle connections could use up the process's file descriptors. This listener limits the number.
 #pragma once
 
 #include <grpcpp/server_builder.h>

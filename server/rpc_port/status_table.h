@@ -1,7 +1,7 @@
 // Converts an absl::Status to a gRPC status by one table, so that all rpcs report errors in the
 // same way. Details attached by base/error_details.h become google.rpc's ErrorInfo, RetryInfo and
-// BadRequest. Every error has ErrorInfo. RESOURCE_EXHAUSTED and UNAVAILABLE also have RetryInfo,
-// and INVALID_ARGUMENT has BadRequest.
+// BadRequest. Every error except CANCELLED has ErrorInfo. RESOURCE_EXHAUSTED and UNAVAILABLE also
+// have RetryInfo unless a retry does not help, and INVALID_ARGUMENT has BadRequest.
 #pragma once
 
 #include <grpcpp/support/status.h>

@@ -19,7 +19,8 @@ class FileLock {
   static constexpr std::chrono::milliseconds kPatience{2000};
 
   // Creates the file at `path`, accessible only to this user, and locks it. Returns
-  // FAILED_PRECONDITION if another process holds the lock for longer than `patience`.
+  // FAILED_PRECONDITION if another process holds the lock for longer than `patience`, or if the
+  // file cannot be created or written.
   static absl::StatusOr<FileLock> Take(const std::string& path,
                                        std::chrono::milliseconds patience = kPatience);
   // Locks an existing folder of this user without waiting. Returns nothing if the folder belongs to

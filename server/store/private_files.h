@@ -14,9 +14,9 @@
 namespace thunderhead::store {
 
 // Checks who may write the existing folder. It must belong to this user or to root, and neither its
-// group nor others may write it. There is one exception: root may let a group of another user's
-// process write root's folder, as the fsGroup of Kubernetes does. Returns FAILED_PRECONDITION with
-// the remedy.
+// group nor others may write it. There is one exception: if this process does not run as root, a
+// group to which it belongs may write a folder of root. Kubernetes prepares volumes in this way
+// (fsGroup). Returns FAILED_PRECONDITION with the remedy.
 absl::Status CheckFolder(const std::string& folder);
 
 // Checks that the path is a regular file, or that nothing is there. Returns FAILED_PRECONDITION for

@@ -11,6 +11,7 @@ namespace thunderhead::store {
 
 class SqliteJobStore : public jobs::JobStore {
  public:
+  // Returns the store of the jobs in `file`. Errors are those of Connection::Open.
   static absl::StatusOr<std::unique_ptr<SqliteJobStore>> In(std::shared_ptr<StateFile> file);
 };
 

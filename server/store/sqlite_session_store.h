@@ -13,6 +13,7 @@ namespace thunderhead::store {
 
 class SqliteSessionStore : public session::SessionStore {
  public:
+  // Returns the store of the sessions in `file`. Errors are those of Connection::Open.
   static absl::StatusOr<std::unique_ptr<SqliteSessionStore>> In(std::shared_ptr<StateFile> file);
   // Opens the state file at `path`, which this store alone uses. Errors are those of
   // StateFile::Open.

@@ -69,8 +69,8 @@ StateFile::StateFile(std::string path, FileLock lock, Database database, FileIde
       identity_(identity) {}
 
 absl::StatusOr<std::shared_ptr<StateFile>> StateFile::Open(const std::string& path) {
-  // The lock is a separate file because SQLite's own locks would let a second process in between
-  // two transactions.
+  // The lock is a separate file because SQLite's own locks would admit a second process between two
+  // transactions.
   absl::StatusOr<FileLock> lock = FileLock::Take(LockPath(path));
   if (!lock.ok()) {
     return base::Annotate(lock.status(), "each server needs its own state folder");

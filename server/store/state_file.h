@@ -57,6 +57,7 @@ class StateFile {
 // One thread's connection to the state file.
 class Connection {
  public:
+  // Opens a connection. Errors are those of StateFile::Check, or of opening the database.
   static absl::StatusOr<Connection> Open(std::shared_ptr<StateFile> file);
 
   // Returns the database for one transaction, after StateFile::Check, whose errors it returns.

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# The beginning of every task: tells ecFlow that the task runs and, however it ends, that it has ended.
+# The beginning of every task. It tells ecFlow that the task runs, and later that it was aborted, if it was.
 set -euo pipefail
 export ECF_PORT=%ECF_PORT% ECF_HOST=%ECF_HOST% ECF_NAME=%ECF_NAME% ECF_PASS=%ECF_PASS% ECF_TRYNO=%ECF_TRYNO%
 export ECF_RID=$$ ECF_TIMEOUT=300
 export PATH="$PATH:/usr/local/bin"
 
 program=
-# Called once: by a command that failed, by a signal, or by an exit that is not the tail's.
+# Runs once, if a command fails, a signal arrives, or the task exits before tail.h has completed it.
 aborted() {
   local reason=$1
   trap - ERR EXIT TERM INT HUP
