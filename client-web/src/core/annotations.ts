@@ -166,7 +166,7 @@ function legend({ legend: entries, inset, letterPx, widthPx, heightPx }: Annotat
 }
 
 // Returns the metres per pixel in the middle of the picture, at the target's distance. Returns
-// undefined for a spotter, because its scale depends on the distance.
+// undefined without a camera, and for a spotter, because its scale depends on the distance.
 function metresPerPixel({ pose, projection, widthPx }: Annotated): number | undefined {
   if (pose?.kind === "topDown") return pose.widthM / widthPx;
   if (pose?.kind !== "orbit") return undefined;
@@ -224,7 +224,7 @@ function horizon(picture: Annotated): Shape[] {
     if (place === undefined) continue;
     const [x, natural] = at(picture, place);
     if (x < 0 || x > widthPx) continue;
-    // If the horizon is below the picture's edge, the line stays at the edge.
+    // If the horizon is above or below the picture, the line stays at the picture's edge.
     const y = Math.min(lowest, Math.max(inset.top + letterPx, natural));
     ticks.push({ x, y, name: azimuthName(wrapDegrees(deg)) });
   }

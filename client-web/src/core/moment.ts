@@ -15,7 +15,8 @@ export interface Moment {
 
 const VALID_TIME = /^(\d{4,})-(\d\d)-(\d\d)[T_ ](\d\d):(\d\d)(?::(\d\d))?/;
 
-// Returns the instant of a valid time; undefined for idealised runs, whose years have no meaning.
+// Returns the instant of a valid time; undefined if the time cannot be parsed, and for idealised
+// runs, whose years (below 100) have no meaning.
 export function instantOf(validTime: string): Date | undefined {
   const match = VALID_TIME.exec(validTime);
   if (match === null || Number(match[1]) < 100) return undefined;

@@ -146,7 +146,8 @@ export class PageState {
   readonly whyNoVideo = signal<string | undefined>(undefined);
   readonly pace = signal<Pace>({ framesPerSecond: 0, bytesPerSecond: 0, latencyMs: undefined });
   readonly notices = signal<readonly Notice[]>([]);
-  // The picture's width and height relative to the canvas, in device pixels.
+  // The picture's width divided by the canvas's width, both in device pixels. The ratio of the
+  // heights is the same.
   readonly resolution = signal(1);
   // The open tool, and whether it takes the focus because it was opened by a key.
   readonly tool = signal<ToolName | undefined>(undefined);
@@ -325,7 +326,7 @@ export class PageState {
     return hexOfColor(falseColor ?? UNKNOWN_COLOR);
   }
 
-  // Sets the listener, which is called with each edit by the user after the edit was applied.
+  // Sets the listener. It is called with each edit, recorded or not, after the edit was applied.
   onEdit(listener: (edit: Edit) => void): void {
     this.#onEdit = listener;
   }

@@ -69,7 +69,7 @@ export class Keeper {
   readonly #steps: KeeperSteps;
   readonly #remembered: RememberedMovies;
   #working: AbortController | undefined;
-  // True if the file that is being made is not lost when the page is closed.
+  // True if a reload of the page continues the file that is being made.
   #outlivesPage = false;
   // The file that is being made; undefined if no file is being made.
   readonly work = signal<Work | undefined>(undefined);
