@@ -1,6 +1,6 @@
-// The messages that wait to be written to a session's stream. Requests are sent in order. Of
-// camera, pointer, acknowledgement and window only the newest waits. The class has no lock, so its
-// owner must synchronize access.
+// The messages that wait to be written to a session's stream. Requests are sent in order. Only the
+// newest camera, pointer, window and, for each view, acknowledgement waits. The class has no lock,
+// so its owner must synchronize access.
 #pragma once
 
 #include <chrono>
