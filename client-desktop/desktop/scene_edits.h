@@ -19,8 +19,8 @@ void ChooseStorm(v1::Scene& scene, const std::string& storm_id);
 // would choose other settings to reach the goal.
 void ChoosePreset(v1::Scene& scene, v1::Preset preset);
 
-// Sets the source of the particle sizes for all fields, and clears the sources that were set for
-// single fields.
+// Sets the source of the particle sizes for all fields, and clears the sources and radii that were
+// set for single fields.
 void ChooseParticleSizes(v1::Scene& scene, v1::ParticleSizes sizes);
 
 // Sets a goal: an error or a time per frame that the server must keep by choosing the quality
