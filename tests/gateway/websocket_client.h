@@ -40,7 +40,8 @@ class WebSocketClient {
   // which `elsewhere` causes. Returns how many it accepted.
   int SendUntilHeldBack(const std::string& message, int most,
                         const std::function<void()>& elsewhere);
-  // Returns the next message; none if the connection has ended, with CloseCode().
+  // Returns the next message. Returns nothing if the connection has ended; CloseCode() then returns
+  // its close code.
   std::optional<std::string> Receive();
   // Reads all messages until the connection ends.
   std::deque<std::string> ReceiveAll();
