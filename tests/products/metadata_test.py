@@ -63,8 +63,8 @@ class MetadataTest(ProductTest):
         view = json.loads(texts["thunderhead.view"])
         distance_m, up = 90000 * math.cos(math.radians(10)), 90000 * math.sin(math.radians(10))
         for axis, expected in {"xM": 1000 - distance_m, "yM": 2000, "zM": 4000 + up}.items():
-            # The Earth's curvature tilts the pose by the angle 90 km / 7433 km, where 90 km is the camera's distance
-            # and 7433 km the Earth's effective radius (server/physics/atmosphere.h).
+            # The Earth's curvature tilts the pose by the angle 90 km / 7433 km. These are the camera's distance and the
+            # Earth's effective radius (server/physics/atmosphere.h).
             self.assertAlmostEqual(view["eye"][axis], expected, delta=1000)
         forward = [view["forward"].get(axis, 0.0) for axis in "xyz"]
         self.assertAlmostEqual(math.dist(forward, [math.cos(math.radians(10)), 0, -math.sin(math.radians(10))]), 0.0, delta=0.02)
