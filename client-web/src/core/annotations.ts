@@ -96,8 +96,8 @@ const MAX_RINGS = 5;
 // Average width of a letter in a usual font, divided by its height.
 const WIDTH_OF_LETTER = 0.65;
 
-// Returns the shapes of all chosen annotations. Leaves out names of degrees and rings that would
-// overlap another text.
+// Returns the shapes of all chosen annotations. Leaves out a text that would overlap an earlier
+// one, such as an azimuth on the horizon or the distance of a ring.
 export function annotationsOf(picture: Annotated, choice: AnnotationChoice): Shape[] {
   const { inset, letterPx } = picture;
   const left = inset.left + letterPx;

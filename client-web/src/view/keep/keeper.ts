@@ -207,7 +207,7 @@ export class Keeper {
       const drawn = this.#calls.picturesOfJob(jobId, pictures, abort);
       await this.#writeMovie(draft, caption, drawn, pictures, progress);
     } finally {
-      // The movie is finished or cancelled, so no other client fetches its pictures.
+      // The movie is finished or cancelled, or has failed, so no page fetches its pictures again.
       this.#remembered.forget(stormId);
       await this.#calls.forgetJob(jobId);
     }
