@@ -26,8 +26,8 @@ export function instantOf(validTime: string): Date | undefined {
   );
 }
 
-// Returns the seconds between two valid times of the same run, idealised or not; undefined if one
-// of the times cannot be parsed.
+// Returns the seconds between two valid times, of idealised runs too; undefined if one of the times
+// cannot be parsed.
 export function secondsBetween(from: string, to: string): number | undefined {
   const [start, end] = [from, to].map((each) => {
     const match = VALID_TIME.exec(each);
