@@ -1,4 +1,5 @@
-// Formats numbers, times and views as texts for people. The web page shows the same texts.
+// Formats numbers, times and views as texts for people. The web page shows the same or similar
+// texts.
 #pragma once
 
 #include <string>

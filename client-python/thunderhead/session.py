@@ -89,7 +89,7 @@ class Session:
 
     @property
     def scene(self) -> scene_pb2.Scene:
-        """A copy of the newest scene, with all defaults filled in."""
+        """A copy of the newest scene. Its defaults are filled in once the server has sent it."""
         with self._changed:
             copy = scene_pb2.Scene()
             copy.CopyFrom(self._scene)

@@ -1,6 +1,6 @@
 // Camera motions: how a drag in pixels moves and turns each kind of camera. The world axes are
-// those of proto/thunderhead/v1/scene.proto. The x axis points to the grid's east, y to its north and
-// z up; the azimuth is clockwise from the grid's north.
+// those of proto/thunderhead/v1/scene.proto. The x axis points to the grid's east, y to its north
+// and z up; the azimuth is clockwise from the grid's north.
 import { create } from "@bufbuild/protobuf";
 import {
   type Camera,

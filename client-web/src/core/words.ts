@@ -1,6 +1,6 @@
-// Describes a view as text: the position of the camera and of the sun. The azimuths of a scene count
-// from the grid's north, and those of the texts from true north, whose direction in the scene is
-// `trueNorthDeg`.
+// Describes a view as text: the position of the camera and of the sun. The azimuths of a scene
+// count from the grid's north, and those of the texts from true north, whose direction in the scene
+// is `trueNorthDeg`.
 import { type Pose, wrapDegrees } from "./camera";
 import { azimuthTo } from "./map_frame";
 import { compassPoint, type SunDirection, trueAzimuthDeg } from "./sun";
