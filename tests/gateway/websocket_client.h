@@ -1,6 +1,6 @@
 // A WebSocket client for tests. Of grpc-websocket.v1 it knows only the subprotocol's name. It
-// reads, and answers pings and closing, only within Receive() and similar functions. Every wait
-// ends after testing::kHangLimit.
+// reads, and answers pings and closing, only within Receive() and similar functions. A wait that
+// exceeds testing::kHangLimit throws an exception.
 #pragma once
 
 #include <atomic>
