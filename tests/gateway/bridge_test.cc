@@ -34,8 +34,8 @@ std::string Counting(uint32_t count, uint32_t interval_ms = 0, uint32_t payload_
   return request.SerializeAsString();
 }
 
-// Makes a call that counts to that number, but stops after `hold_after` responses until the site
-// releases it.
+// Returns the request of a call that counts to `count`, but stops after `hold_after` responses
+// until the site releases it.
 std::string Held(uint32_t count, uint32_t hold_after) {
   CountRequest request;
   request.set_count(count);
