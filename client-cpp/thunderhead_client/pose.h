@@ -55,7 +55,7 @@ v1::Camera HomeCamera(v1::Camera::KindCase kind);
 // target, a spotter turns its head, and a top-down camera moves.
 Pose Drag(Pose pose, double right_px, double down_px, const PictureSize& picture);
 // Turns an orbit camera around its target, clockwise as seen from above, and up. Turns a spotter's
-// head to the right and up. A map cannot turn.
+// head to the right and up. A top-down camera cannot turn.
 Pose Turn(Pose pose, double azimuth_deg, double elevation_deg);
 // Moves an orbit camera or a top-down camera perpendicular to the line of sight, so that points at
 // the target's distance follow the pointer. A spotter walks instead: to the left for a drag to the

@@ -44,7 +44,7 @@ async function start(...more) {
   return { ...server, get, beginPicture };
 }
 
-// Returns the files of the folder that the process has open.
+// Returns the number of the folder's files that the process has open.
 function openFiles({ pid }, folder) {
   const open = `/proc/${pid}/fd`;
   return readdirSync(open).filter((descriptor) => {
