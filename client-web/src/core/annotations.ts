@@ -42,8 +42,8 @@ export interface Annotated {
   readonly letterPx: number;
   readonly projection: Projection;
   readonly pose: Pose | undefined;
-  // The direction of true north in the scene, clockwise from the grid's north. The horizon's degrees
-  // count from true north.
+  // The direction of true north in the scene, clockwise from the grid's north. The horizon's
+  // degrees count from true north.
   readonly trueNorthDeg: number;
   // Height of the ground above sea level.
   readonly groundM: number;
@@ -259,8 +259,8 @@ function add(a: Vec3, b: Vec3): Vec3 {
   return [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 }
 
-// Returns circles on the ground around the orbit target, the camera's position, or the map's
-// centre.
+// Returns circles on the ground around the target of an orbit camera, the position of a spotter, or
+// the centre of a top-down picture.
 function rings(picture: Annotated): Shape[] {
   const { pose, groundM } = picture;
   if (pose === undefined) return [];

@@ -165,7 +165,7 @@ export class PageState {
   readonly probeProblem = signal<string | undefined>(undefined);
   // The annotations over the picture, such as title, scales and rings, each shown or not.
   readonly annotations = signal<AnnotationChoice>(FIRST_ANNOTATIONS);
-  // The time zone of the storm's place, or a chosen zone; undefined for a storm without a place.
+  // The time zone of the storm's place; undefined for a storm without a place.
   readonly zone = signal<string | undefined>(undefined);
   // The time zone in which the sun's clock is shown.
   readonly sunZone = signal("Etc/GMT");
