@@ -35,8 +35,8 @@ class Catalogue {
   // Requests the list of storms and the server's information again. Refresh() and Describe() return
   // at once.
   void Refresh();
-  // Requests the description of a storm at one of its times. Does nothing if State() already has
-  // this description.
+  // Requests the description of a storm at one of its times. Does nothing if this description was
+  // already requested since the last Refresh() or other description.
   void Describe(const std::string& storm_id, std::uint32_t time_index);
 
   CatalogueState State() const;

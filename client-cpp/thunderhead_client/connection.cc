@@ -143,7 +143,7 @@ void Connection::AwaitReconnection(const std::function<bool()>& gives_up) const 
   while (std::chrono::system_clock::now() < deadline && !gives_up()) {
     const grpc_connectivity_state state = channel_->GetState(true);
     if (state == GRPC_CHANNEL_READY || state == GRPC_CHANNEL_SHUTDOWN) return;
-    // After its first failure a channel stays in this state until it is connected.
+    // After its first failure a channel stays in TRANSIENT_FAILURE until it is connected.
     if (!failed && state == GRPC_CHANNEL_TRANSIENT_FAILURE) return;
     channel_->WaitForStateChange(state, std::chrono::system_clock::now() + kSlice);
   }

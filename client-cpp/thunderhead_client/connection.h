@@ -59,8 +59,9 @@ class Canceller::Running {
 class Connection {
  public:
   // Makes a connection object, which connects to the server at its first call. Returns an error if
-  // the address is invalid, if the certificate file is unreadable or not PEM, or if a token would
-  // be sent unencrypted to another machine without allow_plaintext_token.
+  // the address is invalid, if the certificate file is unreadable or not PEM, or if the token file
+  // is unreadable or empty. Also returns an error if a token would be sent unencrypted to another
+  // machine without allow_plaintext_token.
   static absl::StatusOr<std::shared_ptr<Connection>> Open(ServerAccess access);
 
   v1::ThunderheadService::Stub& stub() const { return *stub_; }
@@ -76,7 +77,8 @@ class Connection {
   // its own message. If no server answered, the text names a likely cause and suggests what to do.
   std::string Explain(const grpc::Status& status) const;
 
-  // Adds the token to the call's metadata. Returns an error if the token file cannot be read.
+  // Adds the token to the call's metadata. Returns an error if the token file is unreadable or
+  // empty.
   absl::Status Authorize(grpc::ClientContext& context) const;
 
   // Makes one unary call with the timeout `patience`, such as Call(&Stub::ListStorms, request,

@@ -1,6 +1,7 @@
 // Restores control to a person who steered when the connection was lost. After the client has
-// joined again, it decides at each presence message (the list of people and the person in control).
-// The server may notice the loss late, so the old connection may appear to steer for some seconds.
+// joined again, this class decides at each presence message (the list of people and the person in
+// control) whether the client takes control again. The server may notice the loss late, so the old
+// connection may appear to steer for some seconds.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,7 @@ class ControlResumption {
   };
 
   // Reports that the client has joined again. The arguments describe the lost connection: the
-  // person's id and its last presence.
+  // person's viewer id and the last presence message.
   void Rejoined(std::uint64_t viewer_id, const v1::Presence& presence);
   // Returns what the client should do after a presence message in which this person does not steer.
   Outcome Of(const v1::Presence& presence, bool presents);

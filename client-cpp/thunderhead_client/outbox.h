@@ -1,6 +1,6 @@
-// The messages that wait to be written to a session's stream. Requests are sent in order. Of
-// camera, pointer, acknowledgement and window only the newest waits. The class has no lock, so its
-// owner must synchronize access.
+// The messages that wait to be written to a session's stream. Requests are sent in order. Only the
+// newest camera, pointer, window and, for each view, acknowledgement waits. The class has no lock,
+// so its owner must synchronize access.
 #pragma once
 
 #include <chrono>
@@ -22,7 +22,8 @@ class Outbox {
   // most 30 times a second.
   void MoveCamera(const v1::Camera& camera) { camera_ = camera; }
   void PointTo(const v1::Point& point) { point_ = point; }
-  // Acknowledge() and Resize() replace the waiting acknowledgement or window.
+  // Acknowledge() and Resize() replace the waiting acknowledgement or window. A waiting report of
+  // lost video is kept.
   void Acknowledge(const v1::Acknowledgement& acknowledgement);
   void Resize(const v1::Window& window) { window_ = window; }
   void DropCamera() { camera_.reset(); }

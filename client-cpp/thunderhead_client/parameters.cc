@@ -49,8 +49,8 @@ std::string OptionName(const google::protobuf::EnumValueDescriptor& value) {
   return words;
 }
 
-// Returns the name of the option that enumerator 0 stands for, if the schema declares a
-// default_choice.
+// Returns the text of enumerator 0, such as "default: filmic". It is only "default" if the schema
+// declares no default_choice.
 std::string DefaultName(const FieldDescriptor& field) {
   const std::string& choice = field.options().GetExtension(v1::default_choice);
   const auto* const value = field.enum_type()->FindValueByName(choice);
@@ -86,7 +86,8 @@ class Walk {
   void Field(const Message& owner, const FieldDescriptor& field, const std::string& prefix) {
     const Reflection& reflection = *owner.GetReflection();
     if (field.is_map()) return;
-    // Lists only the case of a oneof that is set. An optional field is a oneof with one case.
+    // Lists only the case of a oneof that is set. For an optional field, which Protobuf stores as a
+    // oneof with one case, real_containing_oneof() returns null.
     if (field.real_containing_oneof() != nullptr && !reflection.HasField(owner, &field)) return;
     const bool outermost = steps_.empty();
     if (outermost) group_ = field.name();
@@ -135,8 +136,8 @@ class Walk {
   std::string group_;
 };
 
-// Returns the message that contains the parameter's field. Returns null if a message on the path,
-// or the value itself, is absent.
+// Returns the message that contains the parameter's field. Returns null if a message or a list
+// element on the path is absent.
 const Message* Holder(const v1::Scene& scene, const Steps& steps) {
   const Message* at = &scene;
   for (std::size_t i = 0; i + 1 < steps.size(); ++i) {

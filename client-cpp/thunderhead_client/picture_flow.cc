@@ -7,8 +7,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Maximum number of waiting video frames. The server keeps only two frames in flight, so more wait
-// only if the decoder is far too slow.
+// Maximum number of waiting video frames. The server sends at most eight frames before it waits for
+// acknowledgements, so more wait only if the decoder is far too slow.
 constexpr std::size_t kMaxVideo = 30;
 
 bool IsVideo(const v1::Frame& frame) { return !frame.vp9().empty(); }

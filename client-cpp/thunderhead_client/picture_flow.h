@@ -38,7 +38,8 @@ class PictureFlow {
     std::function<void(const std::string&)> failed;  // a picture could not be decoded
   };
 
-  // The decoding thread calls the functions in `steps` and holds no lock meanwhile.
+  // The decoding thread calls the functions in `steps`. Offer() calls video_lost, too, if too many
+  // frames wait. No lock is held meanwhile.
   explicit PictureFlow(Steps steps);
   ~PictureFlow();
   PictureFlow(const PictureFlow&) = delete;
@@ -73,7 +74,8 @@ class PictureFlow {
   PictureDecoder decoder_;  // used only by the decoding thread
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Waiting> waiting_;  // one JPEG or AVIF frame, or several video frames
+  // Video frames, then at most one JPEG or AVIF frame.
+  std::deque<Waiting> waiting_;
   std::unique_ptr<Picture> ready_;
   std::unique_ptr<Picture> spare_;
   std::uint64_t stream_ = 0;

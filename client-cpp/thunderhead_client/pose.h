@@ -52,17 +52,17 @@ v1::Camera CameraOf(const Pose& pose);
 v1::Camera HomeCamera(v1::Camera::KindCase kind);
 
 // Turns or moves the camera so that the scene follows the pointer. An orbit camera turns around its
-// target, a spotter turns its head, and a map moves.
+// target, a spotter turns its head, and a top-down camera moves.
 Pose Drag(Pose pose, double right_px, double down_px, const PictureSize& picture);
 // Turns an orbit camera around its target, clockwise as seen from above, and up. Turns a spotter's
-// head to the right and up. A map cannot turn.
+// head to the right and up. A top-down camera cannot turn.
 Pose Turn(Pose pose, double azimuth_deg, double elevation_deg);
-// Moves an orbit camera or a map perpendicular to the line of sight, so that points at the target's
-// distance follow the pointer. A spotter walks instead: to the left for a drag to the right, and
-// backwards for a drag up.
+// Moves an orbit camera or a top-down camera perpendicular to the line of sight, so that points at
+// the target's distance follow the pointer. A spotter walks instead: to the left for a drag to the
+// right, and backwards for a drag up.
 Pose Pan(Pose pose, double right_px, double down_px, const PictureSize& picture);
 // Zooms in if the factor is below 1. An orbit camera moves nearer, a spotter uses a longer lens,
-// and a map shows a smaller area.
+// and a top-down camera shows a smaller area.
 Pose Zoom(Pose pose, double factor);
 
 // Returns the same azimuth in the range from 0 to below 360 degrees.

@@ -17,12 +17,12 @@ struct PicturePoint {
   double y = 0.0;
 };
 
-// Returns a point's position in the picture; nothing if the point is behind the camera or the view
-// is incomplete.
+// Returns a point's position in the picture. Returns nothing if the view is incomplete, or if the
+// point is behind a perspective camera or less than a metre in front of it.
 std::optional<PicturePoint> Project(const v1::View& view, const v1::Position& position);
 
-// Returns the parts of a line that are in front of the camera. Returns no parts if the view is
-// incomplete.
+// Returns the parts of a line that are in front of the camera. In a parallel view this is the whole
+// line. Returns no parts if the view is incomplete.
 std::vector<std::vector<PicturePoint>> ProjectLine(
     const v1::View& view, const google::protobuf::RepeatedPtrField<v1::Position>& positions);
 

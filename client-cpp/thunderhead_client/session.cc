@@ -85,8 +85,9 @@ void Session::Run() {
   }
 }
 
-// Opens a new session with the same scene if the server has lost the session that this client
-// opened.
+// Forgets a session that no longer exists, so that the next attempt opens a new one with the same
+// scene. Does nothing unless this client opened the session and the server has lost it, or
+// never_gives_up is set.
 void Session::Settle(const Outcome& outcome) {
   std::unique_lock lock(mutex_);
   if (outcome.link != Link::kGone) return;

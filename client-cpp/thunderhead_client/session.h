@@ -1,6 +1,6 @@
-// A long-lived client of one session. It opens or joins the session by Interact, and rejoins the
-// same session after every connection loss. It keeps its scene synchronized with the server's. Any
-// thread may call any method, and every method returns at once.
+// A long-lived client of one session. It opens the session by CreateSession unless it has a key,
+// joins it by Interact, and joins it again after every connection loss. It keeps its scene
+// synchronized with the server's. Any thread may call any method, and every method returns at once.
 #pragma once
 
 #include <chrono>

@@ -3,7 +3,7 @@
 namespace thunderhead::desktop {
 
 bool Choices::Close() {
-  // The drawer stays open while the hand is in use.
+  // A pen or pointer is put down before the drawer is closed.
   const bool drawer_stays = panel == Panel::kDrawer && hand != Hand::kCamera;
   if (panel != Panel::kNone && !drawer_stays) {
     panel = Panel::kNone;

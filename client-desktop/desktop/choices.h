@@ -18,14 +18,15 @@ struct Choices {
   std::string query;           // search text of the drawer
   std::string name;            // person's name that was typed but not sent yet
 
-  // Opens a tool in place of the open tool, or closes it. Closing the marks tool also puts the pen
-  // down.
+  // Opens a tool in place of the open tool, or closes it. If the marks tool is not open afterwards,
+  // also puts the pen or pointer down.
   void Toggle(Tool chosen) {
     tool = tool == chosen ? Tool::kNone : chosen;
     if (tool != Tool::kMarks) hand = Hand::kCamera;
   }
   void Toggle(Panel chosen) { panel = panel == chosen ? Panel::kNone : chosen; }
-  // Closes one panel or tool, in the same order as the web page. Returns false if none was open.
+  // Closes the open panel, puts down the pen or pointer, or closes the open tool, in the same order
+  // as the web page. Returns false if there was nothing to close.
   bool Close();
 };
 

@@ -15,8 +15,8 @@ namespace {
 using client::Limits;
 using client::Parameter;
 
-// Returns true for a number that is typed rather than set by a slider. A slider over the Earth
-// would move by kilometres a pixel.
+// Returns true for a number that is typed rather than set by a slider. A slider for such a large
+// range, such as positions on Earth in metres, would be too coarse.
 bool IsTyped(const Limits& limits) { return limits.maximum > 1e6 && !limits.logarithmic; }
 
 std::string FormatOf(const Limits& limits, const DisplayUnit& unit) {

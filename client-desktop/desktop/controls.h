@@ -1,4 +1,4 @@
-// Controls of the panels. Each is one line with label, value and unit.
+// Controls of the panels. Most have a small label, and below it the value with its unit.
 #pragma once
 
 #include <string>

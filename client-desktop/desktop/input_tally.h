@@ -15,7 +15,7 @@ struct InputTally {
 
   std::int64_t keys = 0;     // keys released, except Shift, Ctrl, Alt and the like
   std::int64_t buttons = 0;  // number of presses and releases of mouse buttons
-  std::int64_t notches = 0;  // number of notches that the mouse wheel was turned
+  std::int64_t notches = 0;  // number of events of the mouse wheel, usually one a notch
   // Pointer position at its last motion, in the window's units; -1 before the first motion.
   int pointer_x = -1;
   int pointer_y = -1;

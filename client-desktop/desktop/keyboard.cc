@@ -15,7 +15,8 @@ constexpr double kPan_px = 5.0;
 constexpr client::PictureSize kPicture{100.0, 100.0};
 constexpr double kZoomFactor = 0.88;
 
-// Turns an orbit camera around the storm or a spotter's head by an arrow key, or moves a map.
+// Turns an orbit camera around the storm or a spotter's head by an arrow key, or moves a top-down
+// camera.
 Pose Look(const Pose& pose, int right, int down) {
   if (std::holds_alternative<client::TopDownPose>(pose)) {
     return client::Pan(pose, -right * kPan_px, -down * kPan_px, kPicture);

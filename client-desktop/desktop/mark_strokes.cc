@@ -8,7 +8,7 @@ namespace {
 
 using Stroke = std::vector<client::PicturePoint>;
 
-// A stroke with more corners than this was drawn by hand.
+// A mark of a single stroke with more corners than this was drawn by hand.
 constexpr std::size_t kMaxStraightCorners = 4;
 
 bool IsSame(const client::PicturePoint& a, const client::PicturePoint& b) {

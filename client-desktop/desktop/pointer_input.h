@@ -39,8 +39,7 @@ class PointerInput {
   // Sets the active tool; null if the left button moves the camera.
   void SetTool(const ToolSteps* tool);
   // Handles an event. Returns true if the event belonged to the picture. Pass `over_picture` as
-  // false if the pointer is over a panel; only a drag or gesture that has already begun then
-  // continues.
+  // false if the pointer is over a panel; only a drag that has already begun then continues.
   bool Take(const SDL_Event& event, bool over_picture);
   bool dragging() const { return held_button_ != 0; }
 

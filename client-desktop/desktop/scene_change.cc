@@ -69,7 +69,8 @@ void ChangeMessage(const Message& from, const Message& to, const FieldDescriptor
   const Reflection& reflection = *present.GetReflection();
   const Message& part_from = reflection.GetMessage(from, &field);
   const Message& part_to = reflection.GetMessage(to, &field);
-  // The message was absent before, so it is removed, unless another viewer has set something in it.
+  // `to` does not have the message, so it is removed, unless another viewer has set something in
+  // it.
   if (!reflection.HasField(to, &field) &&
       MessageDifferencer::Equals(part_from, reflection.GetMessage(present, &field))) {
     return reflection.ClearField(&present, &field);

@@ -19,8 +19,8 @@ void ChooseStorm(v1::Scene& scene, const std::string& storm_id);
 // would choose other settings to reach the goal.
 void ChoosePreset(v1::Scene& scene, v1::Preset preset);
 
-// Sets the source of the particle sizes for all fields, and clears the sources that were set for
-// single fields.
+// Sets the source of the particle sizes for all fields, and clears the sources and radii that were
+// set for single fields.
 void ChooseParticleSizes(v1::Scene& scene, v1::ParticleSizes sizes);
 
 // Sets a goal: an error or a time per frame that the server must keep by choosing the quality
@@ -29,9 +29,9 @@ void ChooseGoal(v1::Scene& scene, v1::Accuracy::LimitCase goal);
 // Returns true for the quality presets, which trade speed for accuracy. The other presets reproduce
 // the settings of papers.
 bool IsQuality(v1::Preset preset);
-// Returns the preset whose settings equal the scene's rendering settings. The scene itself does not
-// name its preset, because the server replaces a preset by its settings. Returns PRESET_UNSPECIFIED
-// if no preset matches, or if the scene has a goal.
+// Returns the preset that the scene names, or else the preset whose settings equal the scene's
+// rendering settings. A scene from the server names no preset, because the server replaces a preset
+// by its settings. Returns PRESET_UNSPECIFIED if no preset matches, or if the scene has a goal.
 v1::Preset PresetOf(const v1::Scene& scene, const v1::GetServerInfoResponse& server);
 
 }  // namespace thunderhead::desktop

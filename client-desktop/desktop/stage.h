@@ -15,7 +15,7 @@ class Stage {
  public:
   explicit Stage(Ui& ui);
 
-  // Draws the picture centred, as large as fits into the area that the panels leave free.
+  // Draws the picture centred in the window, as large as fits. Then draws the marks and pointers.
   void Draw(const PictureTexture& picture);
   // Returns the active tool; null if the pointer moves the camera.
   const ToolSteps* HandTool() const;

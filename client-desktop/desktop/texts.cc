@@ -173,7 +173,8 @@ std::string DescribePose(const client::Pose& pose, double true_north_deg) {
                            whole(spotter->azimuth_deg - true_north_deg), spotter->elevation_deg,
                            FormatNumber(spotter->focal_length_mm));
   }
-  // True north is not exactly up on most maps, so only a clear difference is worth a word.
+  // True north is not exactly up on most maps, so the text mentions only a difference of half a
+  // degree or more.
   const bool turned = std::abs(std::remainder(true_north_deg, 360.0)) >= 0.5;
   return FormatLength(std::get<client::TopDownPose>(pose).width_m) +
          (turned ? " from left to right, the grid's north up" : " from left to right, north up");

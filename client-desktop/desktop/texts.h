@@ -1,4 +1,5 @@
-// Formats numbers, times and views as texts for people. The web page shows the same texts.
+// Formats numbers, times and views as texts for people. The web page shows the same or similar
+// texts.
 #pragma once
 
 #include <string>
@@ -18,8 +19,8 @@ struct DisplayUnit {
 };
 DisplayUnit DisplayUnitOf(const client::Limits& limits);
 
-// Formats a number with three significant digits. Uses no exponent if the number is readable
-// without it.
+// Formats a number with three significant digits, without trailing zeros. Numbers from 100 to a
+// million are rounded to integers. Numbers from a million or below 0.0001 have an exponent.
 std::string FormatNumber(double value);
 std::string FormatQuantity(double value, const client::Limits& limits);
 std::string FormatPercent(double share);        // "8.4 %" for 0.084
@@ -37,8 +38,9 @@ std::string NameOfRun(const v1::StormDescription& storm);
 // from the storm's first time.
 double LeadSeconds(const v1::StormDescription& storm, const v1::StormTime& time);
 std::string CompassPoint(double azimuth_deg);  // "NNE"
-// Describe a camera and the sun. Their azimuths count from the grid's north, and the texts' from
-// true north, which is in the scene's azimuth `true_north_deg`.
+// DescribePose() and DescribeSun() return texts whose azimuths count from true north. The azimuths
+// of `pose` and `sun` count from the grid's north. `true_north_deg` is the azimuth of true north in
+// the scene.
 std::string DescribePose(const client::Pose& pose, double true_north_deg);
 std::string DescribeSun(const v1::Sun& sun, double true_north_deg);
 std::string NameOf(v1::Hydrometeor hydrometeor);  // "Cloud"

@@ -65,8 +65,9 @@ struct Ui {
   void Undo();
   void Redo();
 
-  // Number of times of the storm that is shown, and the index of the time that is shown. Both are 0
-  // until the server has described the storm.
+  // Number of times of the storm that is shown, and the index of the time that is shown. The number
+  // is 0 until the server has described the storm. If the scene has no index, the last time is
+  // shown.
   int time_count() const;
   int time_index() const;
   // The direction of true north in the scene, in degrees clockwise from the grid's north. It is 0

@@ -112,7 +112,7 @@ void Window::Rescale() {
 void Window::Take(const SDL_Event& event) {
   ImGui_ImplSDL2_ProcessEvent(&event);
   if (event.type != SDL_WINDOWEVENT) return;
-  // The window was moved to another monitor, or its monitor has changed.
+  // The window may have moved to another monitor, or its monitor's scale may have changed.
   if (event.window.event == SDL_WINDOWEVENT_DISPLAY_CHANGED ||
       event.window.event == SDL_WINDOWEVENT_SIZE_CHANGED) {
     Rescale();

@@ -19,10 +19,10 @@ struct WindowOptions {
   double scale = 0.0;
 };
 
-// Returns the scale factor of texts and controls in the window's units. `dpi` is the monitor's
-// number of physical pixels per inch. The factor is 1 if `dpi` is implausible, as is common for
-// projectors. It is also 1 if a unit has several pixels, as under Wayland, because the desktop has
-// then already scaled the window.
+// Returns the scale factor of texts and controls in the window's units, a multiple of 0.25. `dpi`
+// is the monitor's number of physical pixels per inch. The factor is 1 if `dpi` is implausible, as
+// is common for projectors. It is also 1 if a unit has several pixels, as under Wayland, because
+// the desktop has then already scaled the window.
 float ScaleOfMonitor(float dpi, float pixels_per_unit);
 
 class Window {
@@ -37,9 +37,9 @@ class Window {
   void Take(const SDL_Event& event);
   // Calls `build`, which makes the interface by ImGui calls, then draws the interface and shows it.
   void Draw(const std::function<void()>& build);
-  // Returns true if a panel of the last drawing covers this point, given in the window's units.
-  // ImGui itself reports this only after the next drawing, which is too late for a press that
-  // follows a quick motion.
+  // Returns true if a panel of the last drawing covers this point, given in the window's units, or
+  // if a list of choices is open. ImGui itself reports this only after the next drawing, which is
+  // too late for a press that follows a quick motion.
   bool IsOverPanel(float x, float y) const;
   void ToggleFullScreen();
   bool full_screen() const;

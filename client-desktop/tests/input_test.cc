@@ -232,7 +232,7 @@ TEST(Choices, AreClosedFromTheUppermostDown) {
   EXPECT_TRUE(choices.Close());
   EXPECT_EQ(choices.panel, Panel::kNone);
   EXPECT_EQ(choices.hand, Hand::kPen);
-  // The drawer stays open next to the picture while the pen is put down.
+  // The first Close() puts the pen down, and the drawer stays open.
   choices.Toggle(Panel::kDrawer);
   EXPECT_TRUE(choices.Close());
   EXPECT_EQ(choices.hand, Hand::kCamera);

@@ -6,7 +6,7 @@ import { HANG_LIMIT_MS } from "./desktop_process.mjs";
 const POLL_MS = 50;
 
 export const brightness = ({ rgb }) => rgb.reduce((sum, value) => sum + value, 0) / rgb.length;
-// Returns the fraction, from 0 to 1, of the pixels that differ clearly between two pictures.
+// Returns the fraction, from 0 to 1, of the pixels whose red differs clearly between two pictures.
 export function difference(a, b) {
   let count = 0;
   for (let i = 0; i < a.rgb.length; i += 3) if (Math.abs(a.rgb[i] - b.rgb[i]) > 12) count += 1;
@@ -19,7 +19,8 @@ export function region({ width, rgb }, { x, y, width: w, height: h }) {
   return { rgb: Buffer.concat(rows) };
 }
 
-// Returns the centre of the pixels in the accent colour: a button that can be pressed.
+// Finds a button that can be pressed by its accent colour. Returns the centre and the right edge of the pixels in this
+// colour.
 export function accentIn(pixels, { x, y, width, height }) {
   const found = [];
   for (let row = y; row < y + height; row += 1) {

@@ -9,7 +9,7 @@ address, folder = sys.argv[1:]
 client = Client(address)
 session = client.session(client.storms()[0].id, {"camera": {"orbit": {}}}, size=(480, 270))
 
-# %% Look from the west, in the evening. A notebook shows the picture as the cell's last line. With sliders:
+# %% Look from the west, in the evening. The cell's last line makes a notebook show the picture. To get sliders too, call:
 # session.display()
 session.set_all({"camera.orbit.azimuth_deg": 270, "sun.elevation_deg": 6})
 session

@@ -22,7 +22,7 @@ class CaseError(Exception):
 
 
 class Arguments:
-    """The arguments of a step, or what is given before the first step. It knows which of them were read."""
+    """The arguments of one step, or the values of `given`, the state before the first step. Records which were read."""
 
     def __init__(self, values: "dict[str, Any]") -> None:
         self._values = values
@@ -41,7 +41,8 @@ class Arguments:
             raise CaseError(f"the runner does not know: {', '.join(sorted(unread))}")
 
 
-# The results of an action by name, the actions of a module by name, and what makes the module in the given state.
+# An Action runs a step and returns its results by name. A Runner makes a module in the given state, and returns its
+# actions by name.
 Action = Callable[[Arguments], "dict[str, Any]"]
 Runner = Callable[[Arguments], "dict[str, Action]"]
 

@@ -22,7 +22,7 @@ from .session import Session
 from .v1 import scene_pb2, storm_pb2, thunderhead_pb2, thunderhead_pb2_grpc
 
 _FORMATS = {"png": thunderhead_pb2.IMAGE_FORMAT_PNG, "jpeg": thunderhead_pb2.IMAGE_FORMAT_JPEG}
-# This is more than an 8192 x 8192 picture needs.
+# Maximum size of a received message. An image of 8192 x 8192 pixels fits into one message.
 _MAX_ANSWER_BYTES = 256 << 20
 
 
@@ -134,7 +134,7 @@ class Client:
 
         storm: the storm's id; by default the storm of the scene, otherwise the server's first storm.
         size: width and height in pixels; by default the scene's, which is 1280 x 720 unless the scene sets it.
-        time_index: the index of the storm's time, from 0; by default the last time.
+        time_index: the index of the storm's time, from 0; by default the scene's, otherwise the last time.
         format: "png" or "jpeg".
         error_seconds: the time in seconds, 0 to 60, in which the server may trace paths to measure the picture's error;
             at 0 the error is taken from a table.
@@ -217,7 +217,7 @@ class Client:
         product: the path at which to save each picture, as in `sequence`.
         until: the number of pictures after which to end; by default never.
         timeout_s: raises TimeoutError if no new time appears for this many seconds; by default never.
-        poll_s: the time in seconds between two questions to the server.
+        poll_s: the time in seconds between two requests to the server.
         """
         message = scene_of(scene, storm, None, size)
         drawn: Dict[str, int] = {}

@@ -16,7 +16,7 @@ class ThunderheadError(Exception):
     code: gRPC's status code in capitals, such as "INVALID_ARGUMENT" or "UNAVAILABLE".
     reason: the server's name for the reason, such as "VALUE_OUT_OF_RANGE"; empty if the server gave none.
     field: the path of the value that is wrong, such as "scene.sun.elevation_deg"; empty if no value is wrong.
-    retry_after_s: the time in seconds after which to try again; None if another try does not help.
+    retry_after_s: the time in seconds after which to try again; None if the server names no time.
     """
 
     def __init__(
@@ -36,7 +36,8 @@ def error_of(error: grpc.RpcError) -> ThunderheadError:
     trailers = {item[0]: item[1] for item in error.trailing_metadata() or ()}
     status = status_pb2.Status.FromString(trailers.get("grpc-status-details-bin", b""))
     for detail in status.details:
-        # The public type names are also the names in the messages.
+        # The server's type names are those of google.rpc, but these classes are in thunderhead.rpc (setup.py). Only the
+        # last part of the name is therefore compared.
         kind = detail.type_url.rpartition(".")[2]
         if kind == "ErrorInfo":
             result.reason = error_details_pb2.ErrorInfo.FromString(detail.value).reason

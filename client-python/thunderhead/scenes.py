@@ -24,6 +24,7 @@ def scene_of(
 ) -> scene_pb2.Scene:
     """Returns a scene in any form as a message.
 
+    scene: a PNG gives its scene without the storm, so that the scene can be used for another storm.
     storm, time_index, size: replace the scene's values if they are given. size is width and height in pixels.
 
     Raises ValueError if `scene` is not a scene, and OSError if its file cannot be read.

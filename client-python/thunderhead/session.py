@@ -89,7 +89,7 @@ class Session:
 
     @property
     def scene(self) -> scene_pb2.Scene:
-        """A copy of the newest scene, with all defaults filled in."""
+        """A copy of the newest scene. Its defaults are filled in once the server has sent it."""
         with self._changed:
             copy = scene_pb2.Scene()
             copy.CopyFrom(self._scene)
@@ -164,7 +164,7 @@ class Session:
 
     @property
     def jpeg(self) -> bytes:
-        """The newest frame as a JPEG file."""
+        """A frame of the newest scene as a JPEG file. Waits for it and raises errors as `wait` does."""
         jpeg: bytes = self.wait().jpeg
         return jpeg
 
@@ -180,8 +180,8 @@ class Session:
     def widget(self, paths: Sequence[str] = _SLIDERS) -> Any:
         """Returns a widget with the session's frames and a slider for each number in `paths`.
 
-        A slider has the range that the server allows. Raises RuntimeError if ipywidgets is not installed; `set` then
-        does the same.
+        A slider has the range that the server allows. Raises RuntimeError if ipywidgets is not installed. Use `set`
+        in this case.
         """
         try:
             import ipywidgets

@@ -162,7 +162,7 @@ describe("systemd", { skip: existsSync("/usr/bin/systemd-analyze") ? false : "ne
     const verify = spawnSync("systemd-analyze", ["verify", unit], { encoding: "utf8" });
     assert.equal(verify.status, 0, verify.stderr);
     assert.equal(verify.stderr.trim(), "");
-    // The measured exposure is 1.7 of 10. The rating "OK" ends at 3.
+    // The measured exposure is 1.7, on a scale from 0 (good) to 10. The threshold is ten times the permitted exposure.
     const security = spawnSync("systemd-analyze", ["security", "--offline=true", "--threshold=20", unit], {
       encoding: "utf8",
     });

@@ -358,7 +358,8 @@ test("fields and cores are a line each on a desktop, and all five fields are see
   await page.context().close();
 });
 
-// Returns the element at the middle of the probe's cross, which lies between the bars and an open tool.
+// Returns the test id or the HTML of the element at the middle of the probe's cross, which must lie between the bars
+// and an open tool.
 const probeCross = (page) =>
   page.evaluate(() => {
     const cross = document.querySelector("[data-testid=probe-marks] .aim").getBoundingClientRect();

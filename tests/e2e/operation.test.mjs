@@ -8,7 +8,7 @@ import { test } from "node:test";
 import { until } from "./driver.mjs";
 import { BINARY, ROOT, freePort, startServer } from "./server_process.mjs";
 
-// Maximum number of log lines per second that libraries may write (server/app/library_log).
+// Maximum number of log lines per second that libraries may write (server/app/library_log.h).
 const LINES_A_SECOND = 10;
 // A drain time that is longer than any picture takes.
 const DRAIN = ["--drain-seconds", "3600"];
@@ -44,7 +44,7 @@ async function start(...more) {
   return { ...server, get, beginPicture };
 }
 
-// Returns the files of the folder that the process has open.
+// Returns the number of the folder's files that the process has open.
 function openFiles({ pid }, folder) {
   const open = `/proc/${pid}/fd`;
   return readdirSync(open).filter((descriptor) => {
@@ -116,7 +116,7 @@ test("SIGTERM ends a server that still reads its storms", async () => {
     const exit = ended(child);
     child.kill("SIGTERM");
     assert.deepEqual(await exit, { code: 0, signal: null });
-    // A start that has ended leaves the search running, and then the search ends early.
+    // If the server had already started, it was still searching the folder. The signal then also ends the search.
     assert.match(said, /stopped by a signal while starting|\bstopping$/m);
     assert.doesNotMatch(said, /hangs/);
   } finally {

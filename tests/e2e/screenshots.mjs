@@ -76,7 +76,8 @@ try {
     page.on("console", (message) => message.type() === "error" && console.log(message.text()));
     await page.goto(server.url);
     await restedAndFits(page);
-    // The documentation's screenshots are small; others are for a closer look.
+    // Without a folder argument the screenshots are small JPEG files. With this argument they are PNG files, for a
+    // closer look.
     const file = process.argv[2] === undefined ? { type: "jpeg", quality: 80 } : { type: "png" };
     const shoot = async (name) => {
       await restedAndFits(page);

@@ -42,8 +42,8 @@ export async function freePort() {
   }
 }
 
-// Starts the server. `state` is the folder in which the server saves its sessions, `data` the folder of storms, and
-// `more` a list of further flags.
+// Starts the server. `state` is the folder in which the server saves its sessions, `data` the file or folder of storms,
+// and `more` a list of further flags.
 export async function startServer({
   httpPort,
   grpcPort,

@@ -47,8 +47,8 @@ function carry(from, to, bytesPerMs, delayMs, link, pair) {
 // Returns the link's port and the functions that control it.
 // - cut: breaks connections and refuses new ones.
 // - silence: keeps connections, but nothing arrives.
-// - lose: like silence, but the bytes in flight and the closing of a connection never arrive.
-// - heal: ends these faults.
+// - lose: like silence, but the present connections never carry bytes or their closing again.
+// - heal: accepts new connections again, and lets silent connections carry bytes again. Lost connections stay lost.
 // - close: closes the link.
 export async function throttledLink({ port, kbitPerS, roundTripMs }) {
   const sockets = new Set();

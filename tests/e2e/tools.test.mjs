@@ -257,7 +257,7 @@ test("keys on the map move a cross, stand there, and turn around that place", as
   await openTool(page, undefined);
   await key("m");
   await tabTo(page, "inset-map");
-  // The cross is first in the middle.
+  // The cross is in the middle at first.
   await changing(() => key("Enter"), page);
   for (let presses = 0; presses < 8; presses += 1) await key("ArrowRight");
   await key("Shift+ArrowDown");

@@ -15,7 +15,7 @@ const [LEFT, RIGHT] = [300, 500].map((x) => ({ x, y: 350 }));
 // A host name other than localhost, which Chromium is told to resolve to this machine.
 const OTHER_HOST = "storms.test";
 // A JPEG frame takes 0.4 s over this link. The server tries smaller frames if one takes more than 0.1 s
-// (session/link_estimate).
+// (server/delivery/link_estimate.h).
 const SLOW_LINK = { kbitPerS: 500, roundTripMs: 150 };
 // The maximum mean difference over all pixels, in levels of 255. JPEG at its own quality differs by 1.2 from the
 // picture.

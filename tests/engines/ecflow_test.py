@@ -102,8 +102,8 @@ class Ecflow(EngineTest):
             draw = f"/thunderhead/shares/{share}/draw"
             self.wait_for("an aborted task", lambda: self.state(draw) == "aborted")
             self.wait_for(f"the reason {code}", lambda: f"thunderhead ended with {code}" in self.node(draw))
-        # Share 3 fails after the others. When its third try ends, the server would have begun any second try of the
-        # others.
+        # Share 3 fails after the others. If the server tried the others a second time, it would have done so before the
+        # third try of share 3 ends.
         later = "/thunderhead/shares/3/draw"
         self.assertEqual(self.state(later), "queued")
         self.client("--resume=/thunderhead/shares/3")

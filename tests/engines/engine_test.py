@@ -41,9 +41,10 @@ HELD_PORTS: list[socket.socket] = []
 def free_port() -> int:
     """Returns a port of 127.0.0.1 that belongs to this process until it ends.
 
-    It lies between 26000 and 32000, because ecFlow accepts only registered ports, and because the kernel gives such
-    ports to nobody who asks for any port. While this process runs, it holds an abstract Unix socket named after the
-    port, which keeps other tests of this folder from taking it. The range below belongs to tests/e2e/server_process.mjs.
+    It lies between 26000 and 32000, because ecFlow accepts only registered ports, and because the kernel does not
+    assign these ports to programs that ask for any free port. While this process runs, it holds an abstract Unix socket
+    named after the port, which keeps other tests of this folder from taking it. The range below belongs to
+    tests/e2e/server_process.mjs.
     """
     while True:
         port = random.randrange(26000, 32000)

@@ -110,8 +110,8 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
         return None
 
     def hold(self, task: int) -> pathlib.Path:
-        """Makes a task of the array block when it begins to write its second product. Returns a file; the task goes on
-        when it is removed (tests/service/hanging_storage.cc).
+        """Makes a task of the array block when it begins to write its second product. Returns a file. The task
+        continues when this file is removed (tests/service/hanging_storage.cc).
         """
         minutes = 10 * (task + 4 + 1)
         mark = self.products / f"run42_{minutes // 60:02d}{minutes % 60:02d}.png.partial.hangs"

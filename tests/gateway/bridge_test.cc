@@ -34,8 +34,8 @@ std::string Counting(uint32_t count, uint32_t interval_ms = 0, uint32_t payload_
   return request.SerializeAsString();
 }
 
-// Makes a call that counts to that number, but stops after `hold_after` responses until the site
-// releases it.
+// Returns the request of a call that counts to `count`, but stops after `hold_after` responses
+// until the site releases it.
 std::string Held(uint32_t count, uint32_t hold_after) {
   CountRequest request;
   request.set_count(count);
@@ -383,7 +383,7 @@ TEST_F(BridgeTest, StoppingTheGatewayEndsCallsAndConnections) {
   waiting.Send(CallRequest("Wait", Frame("")));
   stalled.Send(CallRequest("Count", Frame(Counting(2000, 0, 100'000))));
   ASSERT_TRUE(WaitFor([&] { return Record().started == 3 && Record().written > 0; }));
-  // No timeout has expired, so nothing is waited for.
+  // The manual clock stands still, so no timeout ends these connections before StopGateway() does.
   Site().StopGateway();
   EXPECT_TRUE(idle.IsClosed());
   EXPECT_TRUE(WaitFor([&] { return Record().cancelled == 3 && Record().done == 3; }));

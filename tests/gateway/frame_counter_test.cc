@@ -32,7 +32,8 @@ class FrameCounterTest : public ::testing::Test {
   bool Take(const std::string& bytes) {
     return counter_.Take(std::as_bytes(std::span(bytes)), now_);
   }
-  // Returns the number of frames until the first refused frame; at most 1000.
+  // Returns the number of the first refused frame, counted from 1; -1 if the first 1000 frames are
+  // accepted.
   int FramesUntilRefused(const std::string& frame) {
     for (int i = 1; i <= 1000; ++i) {
       if (!Take(frame)) return i;

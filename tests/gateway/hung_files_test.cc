@@ -98,7 +98,7 @@ TEST_F(HungFilesTest, WhoWantsThemIsToldToTryAgain) {
   DriveTime();
   options_.file_timeout = std::chrono::seconds(10);
   const auto begin = time_.Now();
-  // More requests hang than may at once.
+  // There are more requests than threads that read files.
   const auto hung = AskHung(40);
   for (const auto& client : hung) {
     EXPECT_TRUE(WaitWhileTimePasses([&] { return client->HasInput(); }));

@@ -48,7 +48,8 @@ TEST_F(OpenFileTest, WhoLetsItGoDoesNotWaitForAStorageThatHangs) {
         until.wait();
         close(number);
       });
-  // These are more files than threads. Without the closer's own threads, the first would never end.
+  // There are more files than threads that close them. If this thread closed the files itself, it
+  // would hang at the first one.
   for (int i = 0; i < 40; ++i) Open(closer);
   answers.set_value();
 }

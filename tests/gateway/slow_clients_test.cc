@@ -201,12 +201,14 @@ class LeastRateTest : public SlowClientsTest {
     DriveTime();
     options_.header_timeout = seconds(10);
     options_.min_bytes_per_second = 1e9;
-    // This client waits by the time until the end, which AwaitLooks() needs.
+    // While this client is connected, the gateway waits for one of its timeouts by time_.
+    // AwaitLooks() needs such a waiter.
     waiting_ = std::make_unique<RawClient>(Site().Port());
     EXPECT_EQ(waiting_->Ask("GET", "/healthz").result(), http::status::ok);
   }
 
-  // The client makes progress all the time.
+  // Checks that the gateway disconnects the client, although the client makes progress all the
+  // time.
   void TakesTooLong(RawClient& client) {
     client.ReadHeaders();
     client.ReadBody(1'000'000);
@@ -265,7 +267,7 @@ TEST_F(SlowClientsTest, AnswersThatNobodyTakesHaveALimitInAll) {
   viewer.Send(std::string(1, '\0') + Sized(1, 30'000'000));
   EXPECT_THAT(viewer.Receive().value_or(""), ::testing::HasSubstr("grpc-status:8"));
   EXPECT_EQ(Call(Site().Port(), "Count", Sized(1, 10'000'000)).Trailer("grpc-status"), "0");
-  // The client's time is over.
+  // The time in which the first client must take its response is over.
   time_.Advance(milliseconds(5500));
   const CallResult result = Call(Site().Port(), "Count", Sized(1, 30'000'000));
   EXPECT_EQ(result.Trailer("grpc-status"), "0");

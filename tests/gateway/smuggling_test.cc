@@ -56,7 +56,7 @@ TEST_F(SmugglingTest, TwoLengthsAreRefused) {
                 "\r\n0\r\n\r\n");
 }
 
-// The body says why, also where the lines arrive one by one.
+// The response's body gives the reason, even if the lines of the request arrive one by one.
 TEST_F(SmugglingTest, LinesThatContinueOthersAreRefused) {
   for (const std::string folded :
        {"X: y\r\n Transfer-Encoding: chunked\r\n", "Transfer-Encoding:\r\n chunked\r\n",
@@ -111,7 +111,7 @@ TEST_F(SmugglingTest, APortThatIsNoNumberIsRefused) {
 }
 
 TEST_F(SmugglingTest, APlainRequestIsAnswered) {
-  // If a client ends its side of the connection, its call ends, so this client does not.
+  // The client keeps its side of the connection open, because its call would otherwise end.
   RawClient client(Site().Port());
   client.Send(kPost + "Host: localhost:8080\r\n" + kType +
               "Transfer-Encoding: Chunked\r\n\r\n5\r\n" + Frame("") + "\r\n0\r\n\r\n" + kNext);

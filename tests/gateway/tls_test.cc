@@ -219,7 +219,7 @@ TEST_F(TlsTest, OneAddressHasSoManyHandshakesASecond) {
       // The connection was closed.
     }
   }
-  // Twice as many connections are opened at once.
+  // The limit of 5 handshakes a second permits twice as many at once.
   EXPECT_EQ(shaken, 10);
   EXPECT_EQ(refused, 30);
   time_.Advance(std::chrono::milliseconds(250));

@@ -1,6 +1,6 @@
 // A WebSocket client for tests. Of grpc-websocket.v1 it knows only the subprotocol's name. It
-// reads, and answers pings and closing, only within Receive() and similar functions. Every wait
-// ends after testing::kHangLimit.
+// reads, and answers pings and closing, only within Receive() and similar functions. A wait that
+// exceeds testing::kHangLimit throws an exception.
 #pragma once
 
 #include <atomic>
@@ -40,7 +40,8 @@ class WebSocketClient {
   // which `elsewhere` causes. Returns how many it accepted.
   int SendUntilHeldBack(const std::string& message, int most,
                         const std::function<void()>& elsewhere);
-  // Returns the next message; none if the connection has ended, with CloseCode().
+  // Returns the next message. Returns nothing if the connection has ended; CloseCode() then returns
+  // its close code.
   std::optional<std::string> Receive();
   // Reads all messages until the connection ends.
   std::deque<std::string> ReceiveAll();

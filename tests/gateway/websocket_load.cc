@@ -42,7 +42,8 @@ struct Tally {
   std::vector<double> late_ms;
 };
 
-// A client that reads a message at each interval. A message is late by the time since it was due.
+// A client that reads messages and measures how late each of them is. A message is due one interval
+// after the previous one.
 class Viewer {
  public:
   Viewer(net::io_context& io, uint16_t port, const Load& load, bool is_stopped, Tally& tally)

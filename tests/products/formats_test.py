@@ -242,7 +242,8 @@ def radiance(path: pathlib.Path) -> numpy.ndarray:
         count = min(16, height - (y - low_y))
         raw = data[offset + 8 : offset + 8 + size]
         if size < count * len(channels) * width * 4:
-            # Differences of octets, whose even and odd places are in two halves.
+            # The data are differences of successive octets. The octets at even places are in the first half, those at
+            # odd places in the second.
             sums = numpy.frombuffer(zlib.decompress(raw), "u1").astype("i8")
             sums[1:] -= 128
             sums = (numpy.cumsum(sums) & 255).astype("u1")

@@ -63,7 +63,8 @@ class MetadataTest(ProductTest):
         view = json.loads(texts["thunderhead.view"])
         distance_m, up = 90000 * math.cos(math.radians(10)), 90000 * math.sin(math.radians(10))
         for axis, expected in {"xM": 1000 - distance_m, "yM": 2000, "zM": 4000 + up}.items():
-            # The Earth's curvature tilts the pose by the angle of the eye's distance: 90 km in 8500.
+            # The Earth's curvature tilts the pose by the angle 90 km / 7433 km. These are the camera's distance and the
+            # Earth's effective radius (server/physics/atmosphere.h).
             self.assertAlmostEqual(view["eye"][axis], expected, delta=1000)
         forward = [view["forward"].get(axis, 0.0) for axis in "xyz"]
         self.assertAlmostEqual(math.dist(forward, [math.cos(math.radians(10)), 0, -math.sin(math.radians(10))]), 0.0, delta=0.02)
@@ -111,7 +112,7 @@ class MetadataTest(ProductTest):
             self.assertEqual(told["view"], "west")
             self.assertEqual(told["scene"]["sun"]["azimuthDeg"], 120)
             self.assertLess(told["pose"]["eye"]["xM"], -80000)
-            # The error is the largest of its pictures, as in the manifest.
+            # The movie's error is the largest error of its pictures, as in the manifest.
             lines = [json.loads(line) for line in (self.folder / "manifest.jsonl").read_text().splitlines()]
             errors = [line["estimated_error"] for line in lines if line["file"].endswith(".png")]
             self.assertGreater(min(errors), 0.0)

@@ -28,7 +28,7 @@ if shutil.which("gdaltransform") is None:
 import netCDF4  # noqa: E402
 import numpy  # noqa: E402
 
-# WRF's sphere, in degrees, and the projections of its grids.
+# Longitude and latitude in degrees on WRF's sphere, in PROJ's notation.
 DEGREES = "+proj=longlat +R=6370000 +no_defs"
 # The longest wait before a test counts as hung. It is not a requirement on speed.
 HANG_LIMIT_S = 600.0

@@ -31,8 +31,8 @@ class ManualTime : public base::TimeSource {
   int Looks() const { return looks_; }
 
  private:
-  // The time starts at the real time, so that it can be compared with times that were taken before.
   mutable std::atomic<int> looks_{0};
+  // The time starts at the real time, so that it can be compared with times that were taken before.
   std::atomic<Clock::rep> now_{Clock::now().time_since_epoch().count()};
 };
 

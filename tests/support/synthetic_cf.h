@@ -35,8 +35,8 @@ struct SyntheticCf {
   std::map<std::string, std::string> attributes;
   // Attributes of the bounds variables of all coordinates.
   std::map<std::string, std::string> bounds_attributes;
-  // Numeric attributes, by the variable's name and then by the attribute's name. Those of the file
-  // have an empty variable's name.
+  // Numeric attributes, by the variable's name and then by the attribute's name. Global attributes
+  // have an empty variable name.
   std::map<std::string, std::map<std::string, double>> number_attributes;
 };
 

@@ -75,8 +75,8 @@ struct Case {
   std::vector<google::protobuf::Struct> steps;
 };
 
-// Returns the cases of every file that names `client` as one with the module. Throws a CaseError if
-// a file cannot be read.
+// Returns the cases of every file that lists `client` among the clients that have its module.
+// Throws a CaseError if a file cannot be read.
 std::vector<Case> CasesOf(const std::string& client);
 
 // Throws a CaseError that names the step if the module does not do what the case expects.

@@ -10,8 +10,8 @@ namespace {
 
 using client::LimitsOf;
 
-// Controls of an azimuth. It is shown from true north, and `azimuth_deg` counts from the grid's
-// north.
+// Draws `control` for an azimuth. The control shows the azimuth from true north, but `azimuth_deg`
+// counts from the grid's north. Returns true when the user has changed it.
 bool Azimuth(const Ui& ui, bool (*control)(const char*, const client::Limits&, double&),
              const char* label, const client::Limits& limits, double& azimuth_deg) {
   double shown_deg = client::WrapDegrees(azimuth_deg - ui.true_north_deg());

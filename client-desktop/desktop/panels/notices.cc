@@ -1,5 +1,5 @@
-// Notices at the right, below the top bar and next to an open panel. They show the picture's
-// estimated or measured error, failures and events.
+// Notices at the right, below the top bar and next to an open panel. They show failures and events,
+// and while no panel is open also the picture's estimated or measured error.
 #include <imgui.h>
 
 #include <algorithm>

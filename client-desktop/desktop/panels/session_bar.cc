@@ -1,5 +1,7 @@
-// The bar above the time line. It shows the person in control, with one button to ask for control
-// or to give control. It is hidden if there is nothing to say about control.
+// The bar above the time line. It shows the person in control, the button for control, and the
+// people who ask to steer. If the user has left the session's view, it also has the button that
+// returns to it. It is hidden while the user is alone in the session and steers. After the session
+// has ended, it has only the button that opens a new one.
 #include <imgui.h>
 
 #include <algorithm>
@@ -48,8 +50,9 @@ void ControlButton(Ui& ui) {
   }
 }
 
-// Draws the people who ask to steer, with buttons to answer them. Only people who are in control or
-// present see this. As many as fit are in a line of width `room`. The others are below.
+// Draws at most three of the people who ask to steer, with buttons to answer them. If more ask,
+// draws a button that opens the list of people. Only people who are in control or present see this.
+// What does not fit into a line of width `room` begins a new line.
 void Asking(Ui& ui, float room) {
   if (!ui.state.Steers() && !ui.state.Presents()) return;
   constexpr int kMaxShown = 3;

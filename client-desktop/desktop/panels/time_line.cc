@@ -1,5 +1,5 @@
-// The time line at the bottom. It has a tick for each time, in blue if the time is in the server's
-// memory, and buttons to play and step.
+// The time line at the bottom. It has a tick for each time, a button to play or pause, and a button
+// that opens the tool "Time". The line is blue around the times that are in the server's memory.
 #include <imgui.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct Track {
   }
 };
 
-// Returns a text like "20:00" or "20:00:30".
+// Returns a text like "20:00" or "20:00:30", or the elapsed time if the valid time is unknown.
 std::string ClockOf(const v1::StormTime& time) {
   const std::size_t at = time.valid_time().find('T');
   if (at == std::string::npos) return FormatElapsed(time.elapsed_s());

@@ -1,4 +1,5 @@
-// The storm and the time at the left, the connection at the right.
+// The top bar: the storm and the time at the left, the connection and the buttons of the panels at
+// the right.
 #include <imgui.h>
 
 #include <algorithm>

@@ -6,7 +6,7 @@ const TOKEN_ITEM = "thunderhead.token";
 
 export class AccessToken {
   readonly #store: TextStore | undefined;
-  // The token, used if the browser denies access to its storage.
+  // The token, used if it could not be written to the browser's storage.
   #token: string | undefined;
 
   constructor(store: TextStore | undefined) {

@@ -42,8 +42,8 @@ export interface Annotated {
   readonly letterPx: number;
   readonly projection: Projection;
   readonly pose: Pose | undefined;
-  // The direction of true north in the scene, clockwise from the grid's north. The horizon's degrees
-  // count from true north.
+  // The direction of true north in the scene, clockwise from the grid's north. The horizon's
+  // degrees count from true north.
   readonly trueNorthDeg: number;
   // Height of the ground above sea level.
   readonly groundM: number;
@@ -96,8 +96,8 @@ const MAX_RINGS = 5;
 // Average width of a letter in a usual font, divided by its height.
 const WIDTH_OF_LETTER = 0.65;
 
-// Returns the shapes of all chosen annotations. Leaves out names of degrees and rings that would
-// overlap another text.
+// Returns the shapes of all chosen annotations. Leaves out a text that would overlap an earlier
+// one, such as an azimuth on the horizon or the distance of a ring.
 export function annotationsOf(picture: Annotated, choice: AnnotationChoice): Shape[] {
   const { inset, letterPx } = picture;
   const left = inset.left + letterPx;
@@ -166,7 +166,7 @@ function legend({ legend: entries, inset, letterPx, widthPx, heightPx }: Annotat
 }
 
 // Returns the metres per pixel in the middle of the picture, at the target's distance. Returns
-// undefined for a spotter, because its scale depends on the distance.
+// undefined without a camera, and for a spotter, because its scale depends on the distance.
 function metresPerPixel({ pose, projection, widthPx }: Annotated): number | undefined {
   if (pose?.kind === "topDown") return pose.widthM / widthPx;
   if (pose?.kind !== "orbit") return undefined;
@@ -224,7 +224,7 @@ function horizon(picture: Annotated): Shape[] {
     if (place === undefined) continue;
     const [x, natural] = at(picture, place);
     if (x < 0 || x > widthPx) continue;
-    // If the horizon is below the picture's edge, the line stays at the edge.
+    // If the horizon is above or below the picture, the line stays at the picture's edge.
     const y = Math.min(lowest, Math.max(inset.top + letterPx, natural));
     ticks.push({ x, y, name: azimuthName(wrapDegrees(deg)) });
   }
@@ -259,8 +259,8 @@ function add(a: Vec3, b: Vec3): Vec3 {
   return [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 }
 
-// Returns circles on the ground around the orbit target, the camera's position, or the map's
-// centre.
+// Returns circles on the ground around the target of an orbit camera, the position of a spotter, or
+// the centre of a top-down picture.
 function rings(picture: Annotated): Shape[] {
   const { pose, groundM } = picture;
   if (pose === undefined) return [];

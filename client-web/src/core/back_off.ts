@@ -2,8 +2,6 @@
 // after each attempt. Many clients that lose their server together therefore do not reconnect all
 // at once.
 
-// The random delay is added even to a delay that the server requested, because the server requests
-// the same delay from all clients.
 export const FIRST_BOUND_MS = 1000;
 export const LONGEST_BOUND_MS = 8000;
 
@@ -20,8 +18,9 @@ export class BackOff {
     return this.#attempts;
   }
 
-  // Returns the delay before the next attempt. The delay is at least `leastMs`, the minimum delay
-  // that the server asked for.
+  // Returns the delay before the next attempt: `leastMs`, the minimum delay that the server asked
+  // for, plus a random delay. The random delay is added because the server asks all clients for the
+  // same minimum.
   next(leastMs = 0): number {
     const bound = Math.min(LONGEST_BOUND_MS, FIRST_BOUND_MS * 2 ** Math.min(this.#attempts, 16));
     this.#attempts += 1;

@@ -1,6 +1,6 @@
 // Camera motions: how a drag in pixels moves and turns each kind of camera. The world axes are
-// those of proto/thunderhead/v1/scene.proto. The x axis points to the grid's east, y to its north and
-// z up; the azimuth is clockwise from the grid's north.
+// those of proto/thunderhead/v1/scene.proto. The x axis points to the grid's east, y to its north
+// and z up; the azimuth is clockwise from the grid's north.
 import { create } from "@bufbuild/protobuf";
 import {
   type Camera,
@@ -182,8 +182,8 @@ export function wrapDegrees(degrees: number): number {
 }
 
 // Turns or moves the camera so that the scene follows the pointer. An orbit camera turns around its
-// target, a spotter turns its head, and a map moves. Pixel distances are positive to the right and
-// down.
+// target, a spotter turns its head, and a top-down camera moves. Pixel distances are positive to
+// the right and down.
 export function drag<P extends Pose>(
   pose: P,
   rightPx: number,
@@ -209,7 +209,7 @@ export function drag(pose: Pose, rightPx: number, downPx: number, picture: Pictu
 }
 
 // Turns an orbit camera around its target, clockwise as seen from above, and up. Turns a spotter's
-// head to the right and up. A map cannot turn.
+// head to the right and up. A top-down camera cannot turn.
 export function turn<P extends Pose>(pose: P, azimuthDeg: number, elevationDeg: number): P;
 export function turn(pose: Pose, azimuthDeg: number, elevationDeg: number): Pose {
   if (pose.kind === "topDown") return pose;
@@ -220,9 +220,9 @@ export function turn(pose: Pose, azimuthDeg: number, elevationDeg: number): Pose
   };
 }
 
-// Moves an orbit camera or a map perpendicular to the line of sight, so that points at the target's
-// distance follow the pointer. A spotter walks instead: to the left for a drag to the right, and
-// backwards for a drag up.
+// Moves an orbit camera or a top-down camera perpendicular to the line of sight, so that points at
+// the target's distance follow the pointer. A spotter walks instead: to the left for a drag to the
+// right, and backwards for a drag up.
 export function pan<P extends Pose>(
   pose: P,
   rightPx: number,
@@ -274,7 +274,7 @@ function panOrbit(pose: OrbitPose, rightPx: number, downPx: number, heightPx: nu
 }
 
 // Zooms in if the factor is below 1. An orbit camera moves nearer, a spotter uses a longer lens,
-// and a map shows a smaller area.
+// and a top-down camera shows a smaller area.
 export function zoom<P extends Pose>(pose: P, factor: number): P;
 export function zoom(pose: Pose, factor: number): Pose {
   switch (pose.kind) {

@@ -45,8 +45,9 @@ export function comparedScene(a: Scene, choice: ComparisonChoice, w: ComparedWit
 // B's time as an index into its storm's times, and its difference from A's time.
 export interface TimeOfB {
   readonly index: number;
-  // Positive if B is later. Undefined if the dates cannot be compared, in which case B has A's
-  // index.
+  // Seconds from A's time to B's time, negative if B is earlier. It is 0 if B's time was chosen
+  // explicitly. It is undefined if the dates cannot be compared. B then has A's index, limited to
+  // the indices of B's times.
   readonly awayS: number | undefined;
 }
 

@@ -1,6 +1,7 @@
 // Restores control to a person who steered when the connection was lost. After the page has joined
-// again, it decides at each presence message (the list of people and the person in control). The
-// server may notice the loss late, so the old connection may appear to steer for some seconds.
+// again, this class decides at each presence message (the list of people and the person in control)
+// whether the page takes control again. The server may notice the loss late, so the old connection
+// may appear to steer for some seconds.
 import { type Presence, Role } from "../gen/thunderhead/v1/interact_pb";
 
 export type Resumption =

@@ -14,8 +14,8 @@ export interface PipelineSteps<F, P> {
   release(picture: P): void;
   // Reports that the frame could not be decoded. A later frame may succeed.
   failed(frame: F, reason: unknown): void;
-  // Reports that the frame was replaced by a newer one, or that the stream ended, before it was
-  // decoded.
+  // Reports that the frame was replaced by a newer one, or that its stream ended, while it waited
+  // to be decoded.
   skipped?(frame: F): void;
 }
 

@@ -1,4 +1,4 @@
-// Counts frames and bytes over the last seconds.
+// Counts frames and bytes over the last WINDOW_MS milliseconds.
 
 const WINDOW_MS = 2000;
 
@@ -10,7 +10,8 @@ export class FrameRate {
     this.#forget(nowMs);
   }
 
-  // Returns frames a second; zero when nothing moves.
+  // Returns the number of frames per second; zero if no frame was shown in the last WINDOW_MS
+  // milliseconds.
   framesPerSecond(nowMs: number): number {
     this.#forget(nowMs);
     return (this.#frames.length * 1000) / WINDOW_MS;

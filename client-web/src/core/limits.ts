@@ -77,9 +77,10 @@ export function mostItemsOf(field: DescField): number {
   return most;
 }
 
-// Returns the nearest value that the server accepts. A 32-bit float near a limit can be rounded to
-// a value outside the limits (0.99 becomes 0.9900000095). The limit itself is therefore rounded to
-// the nearest 32-bit float inside the limits.
+// Returns the nearest value that the server accepts. NaN becomes the default, or the minimum if
+// there is no default. A 32-bit float near a limit can be rounded to a value outside the limits
+// (0.99 becomes 0.9900000095). The limit itself is therefore rounded to the nearest 32-bit float
+// inside the limits.
 export function clampToLimits(value: number, limits: Limits): number {
   if (Number.isNaN(value)) return limits.defaultValue ?? limits.minimum;
   const rounded = limits.integer ? Math.round(value) : value;

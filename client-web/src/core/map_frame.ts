@@ -85,7 +85,8 @@ export function placeFrom(
   ];
 }
 
-// Returns the azimuth in degrees clockwise from the grid's north.
+// Returns the azimuth from the first place to the second, in degrees clockwise from the grid's
+// north.
 export function azimuthTo(
   [fromX, fromY]: readonly [number, number],
   [toX, toY]: readonly [number, number],

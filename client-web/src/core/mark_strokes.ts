@@ -12,7 +12,7 @@ export interface MarkStroke {
   readonly points: readonly PicturePoint[];
 }
 
-// A stroke with more corners than this was drawn by hand.
+// A mark of a single stroke with more corners than this was drawn by hand.
 const MAX_STRAIGHT_CORNERS = 4;
 const INK_PX = 6;
 

@@ -15,7 +15,8 @@ export interface Moment {
 
 const VALID_TIME = /^(\d{4,})-(\d\d)-(\d\d)[T_ ](\d\d):(\d\d)(?::(\d\d))?/;
 
-// Returns the instant of a valid time; undefined for idealised runs, whose years have no meaning.
+// Returns the instant of a valid time; undefined if the time cannot be parsed, and for idealised
+// runs, whose years (below 100) have no meaning.
 export function instantOf(validTime: string): Date | undefined {
   const match = VALID_TIME.exec(validTime);
   if (match === null || Number(match[1]) < 100) return undefined;
@@ -25,8 +26,8 @@ export function instantOf(validTime: string): Date | undefined {
   );
 }
 
-// Returns the seconds between two valid times of the same run, idealised or not; undefined if one
-// of the times cannot be parsed.
+// Returns the seconds between two valid times, of idealised runs too; undefined if one of the times
+// cannot be parsed.
 export function secondsBetween(from: string, to: string): number | undefined {
   const [start, end] = [from, to].map((each) => {
     const match = VALID_TIME.exec(each);

@@ -21,7 +21,7 @@ export class RememberedMovies {
     this.#store = store;
   }
 
-  // Remembers the movie. Returns false if the browser denies access to its storage, in which case a
+  // Remembers the movie. Returns false if the browser's storage is full or denied, in which case a
   // reload loses the movie.
   remember(work: MovieWork): boolean {
     return this.#set(work.stormId, JSON.stringify(work));

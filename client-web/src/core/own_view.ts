@@ -49,8 +49,8 @@ export class OwnView {
     this.#steps.detach(camera);
   }
 
-  // Reports the camera of a frame. Its pose is used if the own view's camera has no values, so that
-  // the server has chosen them.
+  // Reports the camera with which a frame was drawn. If the own view's camera has no values, the
+  // server has chosen them, and the view takes its pose from this frame.
   placed(camera: Camera | undefined): void {
     if (this.#pose.peek() === undefined) this.#pose.value = poseOfCamera(camera);
   }

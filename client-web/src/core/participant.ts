@@ -6,7 +6,8 @@ const PARTICIPANT_ITEM = "thunderhead.participant";
 
 export class Participant {
   readonly #store: TextStore | undefined;
-  // The session's key and the participant key, used if the browser denies access to its storage.
+  // The session's key and the participant key, used if they could not be written to the browser's
+  // storage.
   #kept: string | undefined;
 
   constructor(store: TextStore | undefined) {

@@ -11,8 +11,8 @@ export type WorldOfPlace = (
 ) => readonly [number, number] | undefined;
 
 const EARTH_M = 6_371_000;
-// Neighbouring nodes whose distance on the map exceeds this number times their distance on Earth lie
-// on different sides of a cut through the map.
+// Neighbouring nodes whose distance on the map exceeds this number times their distance on Earth
+// lie on different sides of a cut through the map.
 const MOST_STRETCH = 8;
 
 export function worldByTable(

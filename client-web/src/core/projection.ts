@@ -55,14 +55,16 @@ export function pointOnRay({ originM, direction }: WorldRay, times: number): Vec
   return add(originM, scaled(direction, times));
 }
 
-// Returns a point's position in the picture; undefined for a point behind the camera.
+// Returns a point's position in the picture. Returns undefined for a point that is behind a
+// perspective camera, or less than NEAR_M in front of it.
 export function project(projection: Projection, pointM: Vec3): PicturePoint | undefined {
   const depthM = depthOf(projection, pointM);
   if (!projection.parallel && depthM < NEAR_M) return undefined;
   return place(projection, pointM, depthM);
 }
 
-// Returns the parts of a line that are in front of the camera.
+// Returns the parts of a line that are in front of the camera. In a parallel projection this is the
+// whole line.
 export function projectLine(projection: Projection, pointsM: readonly Vec3[]): PicturePoint[][] {
   if (pointsM.length === 0) return [];
   if (projection.parallel) return [pointsM.map((point) => place(projection, point, 1))];

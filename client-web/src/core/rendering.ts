@@ -139,7 +139,8 @@ export function withTransport(rendering: Rendering, transport: Transport): Rende
   return withSettings(rendering, { transport, ...rest });
 }
 
-// Changes the technique. Shared settings are kept, and the server fills in the others.
+// Changes the technique. Keeps the settings listed in KEPT that both techniques have. The server
+// fills in the other settings.
 export function withTechnique(rendering: Rendering, name: string): Rendering {
   const field = TECHNIQUES.find((other) => other.name === name);
   if (field === undefined) return renderingOf(create(OtherTechniqueSchema, { name }));

@@ -1,6 +1,6 @@
-// Matches the scenes that were sent with the frames that were shown, by the scenes' revisions. The
-// result is the latency, from sending a scene to showing a frame of that or a later scene. Another
-// result is the time of the storm that is on the screen.
+// Matches the scenes that were sent with the frames that were shown, by the scenes' revisions. One
+// result is the latency, from sending a scene to showing a frame of that or a later scene. The
+// other result is the index of the storm's time that the picture shows.
 
 interface Sent {
   readonly sentAtMs: number;
@@ -20,7 +20,8 @@ export class RevisionLedger {
   #newestShown = -1n;
   #shownTimeIndex: number | undefined;
 
-  // Returns the time index of the newest recorded revision on the screen.
+  // Returns the time index of the newest recorded revision that is finished, as settled() defines
+  // it.
   get shownTimeIndex(): number | undefined {
     return this.#shownTimeIndex;
   }
@@ -83,8 +84,9 @@ export class RevisionLedger {
     this.#close();
   }
 
-  // Removes the scenes whose frames were shown from the waiting scenes. Both accepted() and shown()
-  // call this, because a frame may arrive before the response that names its revision.
+  // Removes the finished scenes from the waiting scenes. Each new revision calls this, whether a
+  // response or a frame reports it, because a frame may arrive before the response that names its
+  // revision.
   #close(): void {
     const stillOpen: Sent[] = [];
     for (const entry of this.#open) {

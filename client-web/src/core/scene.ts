@@ -260,8 +260,8 @@ function sizesOf(scene: Scene, set: FieldParameters | undefined): ParticleSizes 
   return set?.sizes || scene.particleSizes || ParticleSizes.MODEL;
 }
 
-// Sets the source of the particle sizes for all fields, and clears the sources that were set for
-// single fields.
+// Sets the source of the particle sizes for all fields, and clears the sources and radii that were
+// set for single fields.
 export function withParticleSizes(scene: Scene, particleSizes: ParticleSizes): Scene {
   return changed(scene, {
     particleSizes,
@@ -315,7 +315,8 @@ export function effectiveField(
   });
 }
 
-// Returns the picture size for a canvas in device pixels, scaled by `resolution`.
+// Returns the picture size for a canvas in device pixels, scaled by `resolution` and limited to the
+// sizes that the server accepts.
 export function outputSize(
   widthPx: number,
   heightPx: number,

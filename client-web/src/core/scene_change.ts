@@ -107,7 +107,8 @@ function appliedToMessage(
 ): Members | undefined {
   const { schema, parts } = change;
   const base = present ?? (create(schema) as unknown as Members);
-  // The message was absent before, so it is removed, unless another viewer has set something in it.
+  // The message is absent on this side of the change, so it is removed, unless another viewer has
+  // set something in it.
   const other = change[side === "before" ? "after" : "before"];
   if (change[side] === undefined && isSame(schema, base, other)) return undefined;
   const changed = [...parts].map(([name, part]) => [name, applied(base[name], part, side)]);

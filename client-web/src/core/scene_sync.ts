@@ -54,8 +54,8 @@ export class SceneSync {
   #unsent = false;
   // The revision that the last sent scene will get if the server accepts all scenes in flight.
   #awaited = -1n;
-  // True after a scene was refused, because the scenes in flight will then be refused, too. Nothing
-  // is sent before the server has answered all of them.
+  // True after a scene was refused or got an unexpected revision, because the scenes in flight will
+  // then be refused, too. Nothing is sent before the server has answered all of them.
   #drains = false;
   #revision = -1n;
   // The newest revision whose scene the server has sent with its defaults filled in.

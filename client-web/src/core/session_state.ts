@@ -66,7 +66,7 @@ export class SessionState {
     const free = this.steeringId.value === 0n && !kept;
     return free && viewersMaySteer === true && controlLocked !== true;
   });
-  // True for people who answer requests for control.
+  // True if this person may answer requests for control.
   readonly answersAsking = computed(() => this.steering.value || this.presenting.value);
   readonly mayLookAround = computed(
     () => this.presenting.value || this.rules.value.followingLocked !== true,
@@ -155,7 +155,8 @@ export class SessionState {
     });
   }
 
-  // Takes the marks from the server. Each new mark of this person replaces the oldest pending mark.
+  // Takes the marks from the server. Each new mark of this person replaces the oldest pending mark
+  // that was sent.
   takeMarks(told: Marks): void {
     const before = this.marks.value;
     const known = new Set(before.map((mark) => mark.markId));

@@ -146,7 +146,8 @@ export class PageState {
   readonly whyNoVideo = signal<string | undefined>(undefined);
   readonly pace = signal<Pace>({ framesPerSecond: 0, bytesPerSecond: 0, latencyMs: undefined });
   readonly notices = signal<readonly Notice[]>([]);
-  // The picture's width and height relative to the canvas, in device pixels.
+  // The picture's width divided by the canvas's width, both in device pixels. The ratio of the
+  // heights is the same.
   readonly resolution = signal(1);
   // The open tool, and whether it takes the focus because it was opened by a key.
   readonly tool = signal<ToolName | undefined>(undefined);
@@ -164,7 +165,7 @@ export class PageState {
   readonly probeProblem = signal<string | undefined>(undefined);
   // The annotations over the picture, such as title, scales and rings, each shown or not.
   readonly annotations = signal<AnnotationChoice>(FIRST_ANNOTATIONS);
-  // The time zone of the storm's place, or a chosen zone; undefined for a storm without a place.
+  // The time zone of the storm's place; undefined for a storm without a place.
   readonly zone = signal<string | undefined>(undefined);
   // The time zone in which the sun's clock is shown.
   readonly sunZone = signal("Etc/GMT");
@@ -325,7 +326,7 @@ export class PageState {
     return hexOfColor(falseColor ?? UNKNOWN_COLOR);
   }
 
-  // Sets the listener, which is called with each edit by the user after the edit was applied.
+  // Sets the listener. It is called with each edit, recorded or not, after the edit was applied.
   onEdit(listener: (edit: Edit) => void): void {
     this.#onEdit = listener;
   }

@@ -14,8 +14,8 @@ export interface ClockHere {
   readonly longitudeDeg: number;
 }
 
-// Returns the clock of the picture: the scene's clock if the scene has one, otherwise the storm's.
-// Returns undefined while neither clock is known.
+// Returns the clock of the picture: the scene's clock, in which values that are not set are taken
+// from the storm's clock. Returns undefined while the date or the place is unknown.
 export function clockHere(
   set: SunClock | undefined,
   storm: SunClock | undefined,

@@ -31,7 +31,8 @@ export function formatLength(lengthM: number, kind: LengthKind): string {
   return `${formatNumber(lengthM / metres)} ${symbol}`;
 }
 
-// Returns the nearest smaller length that is 1, 2 or 5 times a power of ten in its display unit.
+// Returns the largest length that is at most `lengthM` and is 1, 2 or 5 times a power of ten in its
+// display unit.
 export function roundLength(lengthM: number): number {
   const { metres } = unitOfLength(lengthM, "distance");
   const value = lengthM / metres;
@@ -49,8 +50,9 @@ export interface DisplayUnit {
 
 const SYMBOLS: Readonly<Record<string, string>> = { "1": "", deg: "°", "kg/m3": "kg/m³", m: "m" };
 
-// Returns the unit in which a number is shown. A length whose maximum is a metre or less is in
-// millimetres. A length whose maximum exceeds the size of any storm is in kilometres.
+// Returns the unit in which a number is shown. A length whose maximum is at most 1 m is shown in
+// millimetres. A length whose maximum is at least 100 km is shown in kilometres or nautical miles,
+// and any other length in metres or feet.
 export function displayUnitOf(limits: Limits): DisplayUnit {
   if (limits.unit === "m" && limits.maximum <= 1) return { factor: 1e3, symbol: "mm" };
   if (limits.unit === "m" && limits.maximum > 1 && lengthUnits.value === "aviation")
@@ -61,8 +63,8 @@ export function displayUnitOf(limits: Limits): DisplayUnit {
   return { factor: 1, symbol: SYMBOLS[limits.unit] ?? limits.unit };
 }
 
-// Formats a number with three significant digits, without trailing zeros. Uses no exponent if the
-// number is readable without it.
+// Formats a number with three significant digits, without trailing zeros. Numbers from 100 to a
+// million are rounded to integers. Numbers from a million or below 0.0001 have an exponent.
 export function formatNumber(value: number): string {
   if (!Number.isFinite(value)) return "–";
   if (value === 0) return "0";
@@ -96,7 +98,7 @@ export function formatBitRate(bytesPerSecond: number): string {
 }
 
 // Returns a text like "2013-05-20 20:00 UTC". For idealised runs, which start in year 1,
-// "0001-01-01T00:20:00Z" becomes "00:20 · day 1".
+// "0001-01-01T00:20:00Z" becomes "day 1, 00:20". Without a valid time, returns the elapsed time.
 export function formatValidTime(validTime: string, elapsedS: number): string {
   const match = /^(\d{4,})-(\d\d)-(\d\d)[T_ ](\d\d):(\d\d)(?::(\d\d))?/.exec(validTime);
   if (!match) return validTime === "" ? formatElapsed(elapsedS) : validTime;
@@ -106,7 +108,7 @@ export function formatValidTime(validTime: string, elapsedS: number): string {
   return `${year}-${month}-${day} ${hour}:${minute}${seconds} UTC`;
 }
 
-// Returns a text like "+1 h 20 min" since the storm's first time.
+// Returns a time since the storm's first time as a text like "+1 h 20 min".
 export function formatElapsed(elapsedS: number): string {
   const minutes = Math.floor(elapsedS / 60);
   const hours = Math.floor(minutes / 60);

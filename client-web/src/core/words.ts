@@ -1,6 +1,6 @@
-// Describes a view as text: the position of the camera and of the sun. The azimuths of a scene count
-// from the grid's north, and those of the texts from true north, whose direction in the scene is
-// `trueNorthDeg`.
+// Describes a view as text: the position of the camera and of the sun. The azimuths of a scene
+// count from the grid's north, and those of the texts from true north, whose direction in the scene
+// is `trueNorthDeg`.
 import { type Pose, wrapDegrees } from "./camera";
 import { azimuthTo } from "./map_frame";
 import { compassPoint, type SunDirection, trueAzimuthDeg } from "./sun";
@@ -52,7 +52,8 @@ function directionInWords(azimuthDeg: number, trueNorthDeg: number): string {
   return `${compassPoint(trueDeg)} (${Math.round(wrapDegrees(trueDeg)) % 360}°)`;
 }
 
-// On most maps true north is not exactly up. Only a clear difference is worth a word.
+// On most maps true north is not exactly up. The text mentions only a difference of half a degree
+// or more.
 function upInWords(trueNorthDeg: number): string {
   return Math.abs(trueNorthDeg) < 0.5 ? "north" : "the grid's north";
 }

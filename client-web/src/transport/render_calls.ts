@@ -74,7 +74,8 @@ export class RenderCalls {
     }
   }
 
-  // Returns the job's pictures in order. A lost connection only delays them.
+  // Returns the job's pictures in order. A lost connection only delays them. Throws a ConnectError
+  // if a picture fails, or after MAX_ATTEMPTS attempts without a new picture.
   async *picturesOfJob(
     jobId: string,
     count: number,

@@ -16,7 +16,8 @@ import {
 } from "../gen/thunderhead/v1/thunderhead_pb";
 
 const CALL_TIMEOUT_MS = 10_000;
-// The server must read the storm before it can choose a camera for a scene without camera values.
+// The server must read the storm before it can compute a map, or choose a camera for a scene
+// without camera values.
 const SCENE_TIMEOUT_MS = 120_000;
 const CLOUD_TIMEOUT_MS = 120_000;
 

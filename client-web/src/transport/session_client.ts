@@ -89,15 +89,16 @@ export const SILENCE_MS = 15_000;
 const FAILED_CHECKS = 2;
 const CHECK_TIMEOUT_MS = 4_000;
 const JOIN_TIMEOUT_MS = 10_000;
-// A call that lasted at least this long resets the back-off. After a shorter call the next delay
-// becomes longer.
+// A call that lasted at least this long after joining resets the back-off. After a shorter call the
+// next delay becomes longer.
 const SOUND_MS = 2_000;
 // Maximum number of sent requests that are remembered, so that a later refusal can be assigned to
 // its request.
 const MAX_REMEMBERED = 256;
 
 type Outcome =
-  // The client joins again, after the server's delay if it gave one.
+  // The client joins again after the back-off's delay, but not before the delay `leastMs` that the
+  // server gave.
   | { readonly kind: "lost"; readonly reason: string; readonly leastMs: number }
   | { readonly kind: "gone"; readonly message: string; readonly forgotten: boolean }
   // The client waits for retryNow().
@@ -220,8 +221,8 @@ export class SessionClient {
     this.#wake?.();
   }
 
-  // Reopens a session at once. If the previous new session could not be joined, the delay grows
-  // with each attempt.
+  // Waits before a new session replaces one that no longer exists. The first time it does not wait.
+  // If the previous new session could not be joined, the delay grows with each attempt.
   async #reopenSlowly(): Promise<void> {
     const { attempts } = this.#backOff;
     const delayMs = this.#backOff.next();
@@ -428,7 +429,8 @@ const UNREACHABLE = "The server cannot be reached";
 const NO_WEBSOCKET =
   "The server answers, but no WebSocket to it opens: a proxy or a filter may block it";
 
-// The server does not accept the token, or its role is not allowed.
+// Status codes of a server that does not accept the token, or does not allow the token's role to
+// make the call.
 const LOCKED_CODES = new Set<Code>([Code.Unauthenticated, Code.PermissionDenied]);
 
 function outcomeOfEnd(end: End): Outcome {
@@ -490,7 +492,8 @@ class SilenceWatch {
   }
 }
 
-// Returns the server's message, if it sent one. Messages of network errors do not help a reader.
+// Returns the server's message. For a network error, whose message does not help a reader, returns
+// UNREACHABLE.
 function reasonOf(failure: ConnectError): string {
   return NETWORK_CODES.has(failure.code) ? UNREACHABLE : failure.rawMessage;
 }

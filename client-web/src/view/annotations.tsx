@@ -128,7 +128,7 @@ function Drawn({ shape }: { shape: Shape }) {
 
 type Content = Omit<Annotated, "widthPx" | "heightPx" | "inset" | "letterPx">;
 
-// The labels that do not depend on the picture's camera and time: title, ground height and legend.
+// The parts of the annotations that do not depend on the picture's camera and time.
 export interface Labels {
   readonly title: string;
   readonly times: readonly StormTime[];

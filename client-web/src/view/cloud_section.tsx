@@ -1,4 +1,4 @@
-// Makes a cloud without a model run.
+// Controls that make a cloud without a model run.
 import { CLOUD_LIMITS, type CloudDraft } from "../core/cloud";
 import {
   GenerateCloudRequest_Interpolation as Interpolation,

@@ -1,5 +1,5 @@
-// Finds the encodings in addition to JPEG that this browser decodes, and the reason if it cannot
-// decode video.
+// Finds the encodings that this browser decodes: always JPEG, and often video (VP9) and AVIF. If it
+// cannot decode video, also finds the reason.
 import { Codec } from "../gen/thunderhead/v1/interact_pb";
 import { VIDEO_CONFIG } from "./video_pictures";
 

@@ -151,7 +151,7 @@ function sizeInWords(field: FieldDescription, shown: ReturnType<typeof effective
 }
 
 // Returns the name of the model's variable or microphysics scheme from which the particle sizes
-// come.
+// come; "as observed" if they come from neither.
 function originOf(field: FieldDescription): string {
   switch (field.sizeOrigin) {
     case SizeOrigin.EFFECTIVE_RADIUS:

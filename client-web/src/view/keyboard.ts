@@ -151,8 +151,9 @@ function undoes(event: KeyboardEvent, actions: KeyActions): boolean {
   return true;
 }
 
-// Returns true if the focused control uses the key itself. A text field uses all keys, a slider or
-// a radio button the arrows, and a button the space bar.
+// Returns true if the focused control uses the key itself. A text field or a list uses all keys. A
+// slider uses the arrows, Home and End, and a radio button the arrows and the space bar. A button
+// or a checkbox uses the space bar and Enter.
 function usesKey(target: EventTarget | null, key: string): boolean {
   if (!(target instanceof Element)) return false;
   const control = target.closest("input, select, textarea, button, summary, [role=slider]");

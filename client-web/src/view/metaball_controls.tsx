@@ -1,4 +1,5 @@
-// The controls of the metaball technique: the number of metaballs and how they scatter light (Man).
+// The controls of the metaball technique: the number of metaballs and how they scatter light (Man,
+// Generating and Real-Time Rendering of Clouds).
 import { transportOf } from "../core/rendering";
 import { DEFAULTS, LIMITS } from "../core/scene";
 import type { PageState } from "../core/state";

@@ -316,7 +316,8 @@ export class Page {
     popover.value = popover.value === name ? undefined : name;
   }
 
-  // Activates a pen or a pointer, or deactivates it.
+  // Activates a tool that draws or points, or deactivates it if it is active. Does nothing if this
+  // person may not mark.
   takeInHand(tool: Exclude<Tool, "camera">): void {
     const { session } = this.state;
     this.marking.withdrawPointer();

@@ -1,7 +1,9 @@
 // Passes frames from the network to the canvas. The frames show either the session's view, or the
-// own view of a person who looks around. Every frame is acknowledged, shown or not, because the
-// server waits for the acknowledgement. Every video frame is decoded on arrival, because later
-// frames depend on it. Of JPEG and AVIF frames only the newest is decoded.
+// own view of a person who looks around. The server waits for acknowledgements, each of which
+// covers all earlier frames of the same view. A frame is acknowledged when it is shown, cannot be
+// decoded or belongs to the other view. The frame that replaces a waiting frame is acknowledged for
+// both. Every video frame is decoded on arrival, because later frames depend on it. Of JPEG and
+// AVIF frames only the newest is decoded.
 
 import { FramePipeline } from "../core/frame_pipeline";
 import type { Frame } from "../gen/thunderhead/v1/frame_pb";

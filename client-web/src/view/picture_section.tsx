@@ -1,4 +1,5 @@
-// Controls for the picture's brightness, the sky and the ground.
+// Controls for the sky, the ground, and the picture's exposure, colours, resolution and
+// compression.
 import { DEFAULTS, LIMITS, withDisplay, withGround, withOutput, withSky } from "../core/scene";
 import type { PageState } from "../core/state";
 import { Ground_Cover, ToneMap } from "../gen/thunderhead/v1/scene_pb";

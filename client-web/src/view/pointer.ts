@@ -144,7 +144,7 @@ function isNear(a: StrokePoint, b: StrokePoint): boolean {
   return Math.hypot(a.left - b.left, a.top - b.top) <= CLICK_PX;
 }
 
-// Returns the event's place. The canvas fills the window, so no offset is needed.
+// Returns the event's place in the window, in CSS pixels.
 function placeOf(event: MouseEvent): StrokePoint {
   return { left: event.clientX, top: event.clientY };
 }

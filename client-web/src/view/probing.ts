@@ -69,7 +69,8 @@ export class Probing {
     }
   }
 
-  // Returns the world position of what is seen at a place of the window; undefined for the sky.
+  // Returns the world position of what is seen at a place of the window. The result is undefined
+  // for the sky and outside the picture.
   async seenAt(place: StrokePoint): Promise<readonly [number, number, number] | undefined> {
     const point = this.#pointAt(place);
     return point === undefined ? undefined : this.seenThrough(point);

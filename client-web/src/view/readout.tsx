@@ -112,7 +112,7 @@ function Costs({ state }: { state: PageState }) {
 }
 
 // Describes how many people look around. All own views together get half of the server's rendering
-// time while the session's view also moves (server/session/turns.h).
+// time while the session's view also moves (server/drawing/turns.h).
 function ownView({ session }: PageState): string {
   const count = session.othersLookingAround.value + 1;
   if (count === 1) return "Your own, drawn for you alone";

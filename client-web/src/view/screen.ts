@@ -146,8 +146,7 @@ export class Screen {
     });
   }
 
-  // Shows a notice. The frame is acknowledged although it is not shown, because the server would
-  // otherwise wait for it.
+  // Shows a notice that the frame could not be decoded.
   #undecodable(frame: Frame): void {
     const text = `Frame ${frame.sequence} is no picture that this browser can read`;
     this.#state.notify({ subject: "decode", text, severity: "problem" });

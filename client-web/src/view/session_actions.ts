@@ -55,7 +55,8 @@ export class SessionActions {
     this.#client.send({ case: "eraseMarks", value: {} });
   }
 
-  // Ends the session for all people.
+  // Ends the session for all people. Does nothing if this browser does not have the session's
+  // presenter key.
   async endSession(): Promise<void> {
     const viewerKey = this.#state.session.viewerKey.peek() ?? "";
     const presenterKey = this.#keys.presenterKey(viewerKey);

@@ -1,5 +1,6 @@
-// The session bar. It shows the person in control. If the user has left the session's view for a
-// view of their own, it also shows the button that returns to the session's view.
+// The session bar. It shows the person in control and the button for control. If the user has left
+// the session's view for a view of their own, it also shows the button that returns to the
+// session's view.
 import type { SessionState } from "../core/session_state";
 import type { Page } from "./page";
 

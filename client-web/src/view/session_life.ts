@@ -58,8 +58,8 @@ export interface SessionLifeParts {
 
 export class SessionLife implements SessionListener {
   codecs: Codec[] = [Codec.JPEG];
-  // True if this page sets the session's picture size. False for a page that joined another
-  // person's session.
+  // True if this page sets the session's picture size. It is false at first for a page that joins
+  // another person's session, until the person chooses a resolution or opens a session.
   setsOutput: boolean;
   readonly #parts: SessionLifeParts;
   readonly #sync: SceneSync;

@@ -1,5 +1,6 @@
 // Fetches the map of the storm from above, which the server computes. The map is fetched only while
-// a tool that shows it is open, and again when another time is shown.
+// a tool that shows it is open. It is fetched again when another storm or time is shown, and when
+// the list of storms changes.
 import { ConnectError } from "@connectrpc/connect";
 import { effect } from "@preact/signals-core";
 import type { PageState } from "../core/state";

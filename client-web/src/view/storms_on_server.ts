@@ -19,8 +19,9 @@ export class StormsOnServer {
     this.#state = state;
   }
 
-  // Fetches the server's description and storms. Called for each new session, because the server
-  // may be a different one.
+  // Fetches the server's description and storms. If the scene names no storm, shows the first one.
+  // Called each time the page joins a session, because the server may be a different one. Also
+  // called when the list of storms may have changed.
   async learn(): Promise<void> {
     const { server, storms, scene } = this.#state;
     try {
@@ -37,8 +38,8 @@ export class StormsOnServer {
   }
 
   // Fetches the description of the storm at the time that is shown. After a change of the storm
-  // this happens at once, after a change of the time with a delay. Call this method in an effect,
-  // so that it runs again when a signal changes.
+  // this happens at once. After a change of the time it happens with a delay, and not while the
+  // times are playing. Call this method in an effect, so that it runs again when a signal changes.
   describeAfterRest(playing: boolean): void {
     const stormId = this.#state.stormId.value;
     const timeIndex = this.#state.timeIndex.value;
@@ -74,8 +75,8 @@ export class StormsOnServer {
     }
   }
 
-  // Makes the cloud that is set in the panel. Returns the id of the new storm; undefined if the
-  // server failed or the person stopped it.
+  // Makes the cloud that is set in the panel. Returns the id of the new storm; undefined if a
+  // setting is invalid, the server failed, or the person stopped it.
   async makeCloud(): Promise<string | undefined> {
     const making = new AbortController();
     this.#making = making;

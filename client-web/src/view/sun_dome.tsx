@@ -1,6 +1,6 @@
 // The sky dome: a disc with a sun that can be dragged. The disc's centre is the zenith, and the
-// ring is the horizon. The wedge shows the camera's direction. The grid's north is up, as on the map,
-// and the letters show the true directions.
+// ring is the horizon. The wedge shows the camera's direction. The grid's north is up, as on the
+// map, and the letters show the true directions.
 
 import { wrapDegrees } from "../core/camera";
 import { clampToLimits } from "../core/limits";

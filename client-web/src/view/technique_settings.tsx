@@ -63,7 +63,7 @@ export function TechniqueSettings({ state }: { state: PageState }) {
   );
 }
 
-// The choice of the presets that reproduce the settings in the papers' table of frame rates.
+// The choice of the presets that reproduce the settings of papers.
 function PapersChoice({ state }: { state: PageState }) {
   const presets = (state.server.value?.presets ?? [])
     .map(({ preset }) => preset)

@@ -106,8 +106,8 @@ interface StepsProps {
   readonly fixed: boolean;
 }
 
-// A slider with a tick for each time. The ticks of times that are already in memory, and thus
-// appear at once, are shaded.
+// A slider with a tick for each time. The section around each time that is in the server's memory
+// is shaded, because such a time appears at once.
 function Steps({ page, times, index, fixed }: StepsProps) {
   const { state, playback } = page;
   const last = times.length - 1;

@@ -1,5 +1,6 @@
 // The top bar. It shows the storm, the run, the valid time in UTC and local time, the lead time,
-// and the connection. It also has the buttons for saving and sharing.
+// and the connection. It also has the buttons for people, comparing, saving, sharing and full
+// screen.
 
 import type { PanelName } from "../core/tools";
 import { formatElapsed } from "../core/units";

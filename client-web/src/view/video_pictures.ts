@@ -28,8 +28,8 @@ export class VideoPictures {
   // The frames that are being decoded, by their timestamps. The timestamps are only counters.
   #waiting = new Map<number, Waiting>();
 
-  // Decodes a frame. The caller must close the result. Rejects if the frame depends on one that was
-  // not decoded.
+  // Decodes a frame. The caller must close the result. Rejects if the frame cannot be decoded, for
+  // example because it depends on a frame that was not decoded.
   decode(bytes: Uint8Array, isKey: boolean): Promise<VideoFrame> {
     return new Promise((resolve, reject) => {
       try {

@@ -55,8 +55,10 @@ export class Viewpoint {
     this.show(homeCamera(kind));
   }
 
-  // Turns the camera around a place in the storm. It starts from the camera's present position as
-  // far as possible. Without a height, the target keeps its present height.
+  // Makes the camera turn around a place in the storm. The camera keeps its azimuth as seen from
+  // that place. If it already turns around a target, it also keeps its elevation, distance and
+  // angle of view. Otherwise the server chooses them. If `zM` is undefined, the target keeps its
+  // present height.
   turnAround([xM, yM, zM]: readonly [number, number, number | undefined]): void {
     const pose = this.#shownPose();
     const orbit = pose?.kind === "orbit" ? pose : undefined;

@@ -88,7 +88,7 @@ export function Compare({ page }: { page: Page }) {
   );
 }
 
-// Shows that B's time differs from A's, and by how much.
+// Shows by how much B's time differs from A's time, or why B's times are not known.
 function TimeAway({ page: { comparing } }: { page: Page }) {
   const known = comparing.other.value !== undefined;
   const words =

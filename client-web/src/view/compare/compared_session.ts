@@ -22,7 +22,7 @@ import { PictureFlow } from "../picture_flow";
 
 export interface ComparedSteps {
   painted(frame: Frame): void;
-  // Reports SceneSync.agreed of B's session.
+  // Reports the value of SceneSync.agreed for B's session.
   agreed(revision: bigint | undefined): void;
   // Reports a part of the scene that B cannot show; undefined if B shows everything.
   problem(text: string | undefined): void;
@@ -175,7 +175,7 @@ export class ComparedSession implements SessionListener {
     return true;
   }
 
-  // Clears the problem if the picture on the screen is newer than the problem.
+  // Clears the problem if the picture on the screen is not older than the problem.
   #painted(frame: Frame): void {
     if (frame.sceneRevision >= this.#problemRevision) this.#steps.problem(undefined);
     this.#steps.painted(frame);

@@ -41,7 +41,7 @@ export interface ComparingSteps {
 }
 
 export class Comparing {
-  // The choice of picture B; undefined while nothing is compared.
+  // What picture B shows; undefined while nothing is compared.
   readonly choice = signal<ComparisonChoice | undefined>(undefined);
   readonly frame = signal<Frame | undefined>(undefined);
   // A text about a part of the scene that B cannot show.
@@ -172,7 +172,8 @@ export class Comparing {
     this.#session = undefined;
   }
 
-  // Returns B's scene; undefined without a comparison or a canvas.
+  // Returns B's scene. Returns undefined without a comparison, and while the canvas's size, A's
+  // camera or B's storm is not known yet.
   #wanted(): Scene | undefined {
     const choice = this.choice.value;
     const size = this.#size.value;

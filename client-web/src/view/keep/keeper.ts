@@ -69,7 +69,7 @@ export class Keeper {
   readonly #steps: KeeperSteps;
   readonly #remembered: RememberedMovies;
   #working: AbortController | undefined;
-  // True if the file that is being made is not lost when the page is closed.
+  // True if a reload of the page continues the file that is being made.
   #outlivesPage = false;
   // The file that is being made; undefined if no file is being made.
   readonly work = signal<Work | undefined>(undefined);
@@ -207,7 +207,7 @@ export class Keeper {
       const drawn = this.#calls.picturesOfJob(jobId, pictures, abort);
       await this.#writeMovie(draft, caption, drawn, pictures, progress);
     } finally {
-      // The movie is finished or cancelled, so no other client fetches its pictures.
+      // The movie is finished or cancelled, or has failed, so no page fetches its pictures again.
       this.#remembered.forget(stormId);
       await this.#calls.forgetJob(jobId);
     }

@@ -78,7 +78,7 @@ const ARROWS: Readonly<Record<string, readonly [number, number]>> = {
 const clamp = (share: number) => Math.min(1, Math.max(0, share));
 
 // Returns the domain that the map covers. Before the server has sent the map, the domain comes from
-// the storm's description.
+// the storm's description. Without a description it is 100 km wide.
 function domainOf(map: GetStormMapResponse | undefined, state: PageState): Extent {
   const grid = state.storm.value?.grid;
   const low = map?.low ?? grid?.low;
@@ -169,8 +169,8 @@ function usePointer(extent: Extent, steps: MapSteps) {
 }
 
 // Water paths as fractions of the map's largest water path. A column above WHITE_SHARE is fully
-// white, and FAINTEST_SHARE is the smallest visible path. The scale in between is wide because
-// water paths span many powers of ten.
+// white, and FAINTEST_SHARE is the smallest visible path. The scale between them is logarithmic,
+// because water paths span many powers of ten.
 const WHITE_SHARE = 0.6;
 const FAINTEST_SHARE = 2e-4;
 

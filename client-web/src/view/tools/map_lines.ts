@@ -11,7 +11,8 @@ export interface MapLines {
   readonly states: string;
 }
 
-// Returns the lines that the table of places reaches.
+// Returns the parts of the lines that lie in the area of the table of places. The lines of states
+// are returned only for the area around the United States.
 export async function mapLines(middle: EarthPlace, places: PlaceTable): Promise<MapLines> {
   const world = worldByTable(middle, places);
   const atlas = (await import("world-atlas/countries-50m.json")).default as unknown as Atlas;
@@ -26,11 +27,11 @@ type Line = readonly (readonly number[])[];
 
 // The data's lines are straight in degrees and curved on the map, so longer pieces are divided.
 const LONGEST_PIECE_DEG = 0.1;
-// The data cut countries at this meridian; the cuts are no borders.
+// The data cuts countries at the meridian of 180°. These cuts are not borders.
 const CUT_DEG = 179.99;
 
 // Returns lines of longitudes and latitudes as a path. A line is interrupted where it leaves the
-// map.
+// map, and at the meridian of 180°.
 export function pathOf(lines: readonly Line[], world: WorldOfPlace): string {
   const parts: string[] = [];
   for (const line of lines) {

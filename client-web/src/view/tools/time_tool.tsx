@@ -1,4 +1,5 @@
-// The tool that shows the valid time and its run, and controls playback.
+// The tool that shows the valid time and its run, controls playback, and chooses the units of
+// length.
 import { momentOf } from "../../core/moment";
 import { PLAY_RATES } from "../../core/playback";
 import { formatElapsed, type LengthUnits, lengthUnits } from "../../core/units";
