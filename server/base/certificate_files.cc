@@ -1,17 +1,13 @@
 #include "base/certificate_files.h"
 
-#include <fcntl.h>
-
-#include <cerrno>
 #include <chrono>
 #include <cstddef>
-#include <cstring>
 #include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "base/file_descriptor.h"
 #include "base/file_stamp.h"
+#include "base/named_file.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
 
@@ -19,14 +15,13 @@ namespace thunderhead::base {
 namespace {
 
 constexpr std::chrono::seconds kPause{1};
+// A longer chain of certificates is longer than clients accept.
 constexpr std::size_t kMost_bytes = 1 << 20;
 
 absl::StatusOr<std::string> Read(const std::string& what, const std::string& path) {
-  const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY));
-  std::string bytes;
-  const int code = file.IsOpen() ? ReadUpTo(file, kMost_bytes, bytes) : errno;
-  if (code != 0) return CannotUseForTls(what, path, std::strerror(code));
-  return bytes;
+  absl::StatusOr<std::string> bytes = ReadRegularFile(path, kMost_bytes);
+  if (bytes.ok()) return bytes;
+  return CannotUseForTls(what, path, std::string(bytes.status().message()));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "rpc_port/grpc_certificate.h"
 
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -58,6 +60,14 @@ TEST_F(GrpcCertificateTest, OnlyAPairThatFitsReplacesTheFormer) {
   std::filesystem::remove(files_.certificate);
   Look();
   EXPECT_EQ(Contents(path), first);
+  std::filesystem::create_symlink("/dev/zero", files_.certificate);
+  Look();
+  EXPECT_EQ(Contents(path), first);
+  std::filesystem::remove(files_.certificate);
+  ASSERT_EQ(mkfifo(files_.certificate.c_str(), 0600), 0);
+  Look();
+  EXPECT_EQ(Contents(path), first);
+  std::filesystem::remove(files_.certificate);
   // The new certificate comes before its key.
   const std::string next_key = folder_.File("next_key.pem");
   testing::WriteSelfSigned(files_.certificate, next_key, 2);
