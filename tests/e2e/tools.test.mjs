@@ -36,7 +36,7 @@ const SAMPLE = fileURLToPath(new URL("../../samples/supercell.nc", import.meta.u
 // With a tool open, the picture has even sides, like a movie's.
 const VIEWPORT = { width: 1002, height: 620 };
 // Pictures have a quarter of the window's pixels: they cost less, and the page's layout is the same.
-const WINDOW = { viewport: VIEWPORT, deviceScaleFactor: 0.5 };
+const WINDOW = { viewport: VIEWPORT };
 // Longer than the time within which the page treats several changes as one step of undo
 // (client-web/src/core/history.ts).
 const GESTURE_MS = 1000;
