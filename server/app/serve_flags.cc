@@ -25,6 +25,7 @@ constexpr std::array kRarelyChanged = {
     "--drain-seconds",
     "--grpc-memory",
     "--jobs-quota-each",
+    "--max-calls-each",
     "--max-connections",
     "--max-connections-each",
     "--max-handshakes-each",
@@ -146,6 +147,9 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
   AddLimit(serve, "--max-handshakes-each", flags.gateway.max_handshakes_per_address, 0, 1e5,
            "TLS connections per second that one address may start on each port, and twice as many "
            "at once; 0 for no limit");
+  AddLimit(serve, "--max-calls-each", flags.limits.max_calls_per_address, 0, 1e6,
+           "Calls per second that one address may begin on gRPC's port, and twice as many at once; "
+           "beyond them its connections are closed; 0 for no limit");
   AddLimit(
       serve, "--max-streams", flags.quotas.max_streams, 1, 1e6,
       "Maximum number of calls that stay open, and of responses that clients have not read yet");

@@ -93,4 +93,11 @@ absl::Status TooManyHandshakes() {
       {.reason = "TOO_MANY_HANDSHAKES"});
 }
 
+absl::Status TooManyCalls() {
+  return WithDetails(
+      absl::ResourceExhaustedError("your address begins too many calls per second; make fewer "
+                                   "calls, or try again later"),
+      {.reason = "TOO_MANY_CALLS"});
+}
+
 }  // namespace thunderhead::base

@@ -45,5 +45,7 @@ absl::Status ShuttingDown();
 absl::Status TooManyConnections();
 // Returns the same error for a client address that starts TLS handshakes too often.
 absl::Status TooManyHandshakes();
+// Returns the same error for a client address that begins calls of gRPC's port too often.
+absl::Status TooManyCalls();
 
 }  // namespace thunderhead::base

@@ -55,13 +55,16 @@ int AcceptLoop::DoChore() {
 }
 
 void AcceptLoop::Run() {
-  std::vector<pollfd> waits = {{stop_.Get(), POLLIN, 0}};
+  const int signal = chore_.has_value() ? chore_->signal : -1;  // poll ignores -1
+  std::vector<pollfd> waits = {{stop_.Get(), POLLIN, 0}, {signal, POLLIN, 0}};
+  constexpr std::size_t kFirstSocket = 2;
   for (const base::FileDescriptor& socket : sockets_) waits.push_back({socket.Get(), POLLIN, 0});
   if (chore_.has_value()) chore_due_ = chore_->time->Now() + chore_->pause;
   while (true) {
     if (poll(waits.data(), waits.size(), DoChore()) < 0 && errno != EINTR) return;
-    if (waits.front().revents != 0) return;
-    for (std::size_t i = 1; i < waits.size(); ++i) {
+    if (waits[0].revents != 0) return;
+    if (waits[1].revents != 0) chore_->run();
+    for (std::size_t i = kFirstSocket; i < waits.size(); ++i) {
       if (waits[i].revents == 0) continue;
       base::FileDescriptor connection(
           accept4(waits[i].fd, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));

@@ -20,12 +20,14 @@ class AcceptLoop {
   // thread.
   using Take = std::function<void(base::FileDescriptor connection)>;
 
-  // An additional task of the loop's thread. It runs once every `pause`. `time` measures the pause
-  // and must outlive the loop.
+  // An additional task of the loop's thread. It runs once every `pause`, and whenever the
+  // descriptor `signal` is readable, which the task must then read. `time` measures the pause.
+  // `time` and `signal` must outlive the loop.
   struct Chore {
     std::chrono::milliseconds pause;
     std::function<void()> run;
     const base::TimeSource* time = &base::SteadyTime();
+    int signal = -1;  // -1: none
   };
 
   // Starts a loop that accepts until it is destroyed. `sockets` must be listening and non-blocking.

@@ -8,9 +8,8 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/str_replace.h"
-#include "absl/strings/strip.h"
 #include "base/error_details.h"
+#include "rpc_port/connection_of.h"
 
 namespace thunderhead::rpc_port {
 namespace {
@@ -32,17 +31,6 @@ std::string ForwardedFor(const grpc::CallbackServerContext& context) {
                     absl::string_view(line->second.data(), line->second.size()));
   }
   return all;
-}
-
-// Returns the remote end of the call's connection: "1.2.3.4:80" or "[::1]:80" from gRPC's
-// "ipv4:1.2.3.4:80" or "ipv6:%5B::1%5D:80". Returns nothing for the local socket.
-std::optional<std::string> ConnectionOf(const grpc::CallbackServerContext& context) {
-  const std::string peer = context.peer();
-  absl::string_view address = peer;
-  if (absl::ConsumePrefix(&address, "ipv4:") || absl::ConsumePrefix(&address, "ipv6:")) {
-    return absl::StrReplaceAll(address, {{"%5B", "["}, {"%5D", "]"}});
-  }
-  return std::nullopt;
 }
 
 std::string PeerOf(const access::Door& door, const grpc::CallbackServerContext& context) {

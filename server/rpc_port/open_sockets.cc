@@ -23,6 +23,14 @@ constexpr std::chrono::milliseconds kLookPause{100};
 // the caller before they respond.
 constexpr std::chrono::seconds kJustUsed{10};
 
+// Resets a TCP connection. Unlike shutdown, this also drops the bytes that have arrived and that
+// gRPC has not read yet.
+void Disconnect(int socket) {
+  sockaddr nobody{};
+  nobody.sa_family = AF_UNSPEC;
+  connect(socket, &nobody, sizeof(nobody));
+}
+
 }  // namespace
 
 std::optional<std::string> OpenSockets::PeerOf(int socket) {
@@ -97,6 +105,16 @@ bool OpenSockets::CloseLeastNeeded(const std::string* network, Clock::time_point
   if (least == candidates.end()) return false;
   Close(least->open);
   return true;
+}
+
+void OpenSockets::AbortNetworkOf(const std::string& peer) {
+  const std::string network = base::NetworkOf(peer);
+  for (auto open = open_.begin(); open != open_.end();) {
+    const auto at = open++;
+    if (at->second.network != network) continue;
+    if (peer_of_(at->first) == at->second.peer) Disconnect(at->first);
+    Forget(at);
+  }
 }
 
 void OpenSockets::CloseUnused(std::chrono::milliseconds unused, Clock::time_point now) {

@@ -45,6 +45,10 @@ class OpenSockets {
   // second.
   bool Take(int socket, const std::string& peer, Clock::time_point now);
 
+  // Resets all connections of this peer's network. What they have sent is dropped if gRPC has not
+  // read it yet.
+  void AbortNetworkOf(const std::string& peer);
+
   // Shuts down the connections that have had no call for `unused` or longer.
   void CloseUnused(std::chrono::milliseconds unused, Clock::time_point now);
 

@@ -17,6 +17,9 @@ struct PortLimits {
   // Maximum number of TLS handshakes per second from one address, with bursts of twice as many; 0
   // means no limit.
   double max_handshakes_per_address = 256.0;
+  // Maximum number of calls per second that one address begins on gRPC's port, with bursts of twice
+  // as many; 0 means no limit. Beyond it all connections of the address are closed.
+  double max_calls_per_address = 2000.0;
   // A client must receive a finished picture, or each part of it, within delivery_time plus the
   // time that its bytes take at min_bytes_per_second. After that the call is cancelled.
   std::chrono::milliseconds delivery_time = std::chrono::minutes(2);

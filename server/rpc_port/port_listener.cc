@@ -107,32 +107,40 @@ absl::StatusOr<std::unique_ptr<PortListener>> PortListener::Open(
 }
 
 absl::Status PortListener::Start(Acceptor acceptor, OpenSockets open, const Options& options,
-                                 Refused refused) {
+                                 Refused report) {
   // The objects are held by shared pointers, because std::function must be copyable.
   const auto sockets = std::make_shared<OpenSockets>(std::move(open));
   const auto handshakes = std::make_shared<base::Allowances>(options.handshakes_per_address);
+  const auto refused = std::make_shared<const Refused>(std::move(report));
   auto take = [acceptor = std::shared_ptr(std::move(acceptor)), sockets, handshakes,
-               proxies = options.proxies, &time = *options.time,
-               refused = std::move(refused)](base::FileDescriptor connection) {
+               calls = options.calls, proxies = options.proxies, &time = *options.time,
+               refused](base::FileDescriptor connection) {
     const auto peer = OpenSockets::PeerOf(connection.Get());
     if (!peer.has_value()) return;  // the peer has already disconnected
+    if (calls->IsBlocked(*peer)) return (*refused)(*peer, base::TooManyCalls());
     if (!proxies.Holds(*peer) && handshakes->Take(base::NetworkOf(*peer), time.Now()).has_value()) {
-      return refused(*peer, base::TooManyHandshakes());
+      return (*refused)(*peer, base::TooManyHandshakes());
     }
     if (!sockets->Take(connection.Get(), *peer, time.Now()))
-      return refused(*peer, base::TooManyConnections());
+      return (*refused)(*peer, base::TooManyConnections());
     grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters handed;
     handed.fd = connection.Release();
     acceptor->HandleNewConnection(&handed);
   };
+  auto tend = [sockets, calls = options.calls, unused = options.unused, &time = *options.time,
+               refused] {
+    for (const std::string& peer : calls->TakeNewlyBlocked()) {
+      sockets->AbortNetworkOf(peer);
+      (*refused)(peer, base::TooManyCalls());
+    }
+    sockets->CloseUnused(unused, time.Now());
+  };
   THUNDERHEAD_ASSIGN_OR_RETURN(
-      loop_, AcceptLoop::Start(
-                 std::move(sockets_), std::move(take),
-                 AcceptLoop::Chore{options.unused / kLooks,
-                                   [sockets, unused = options.unused, &time = *options.time] {
-                                     sockets->CloseUnused(unused, time.Now());
-                                   },
-                                   options.time}));
+      loop_, AcceptLoop::Start(std::move(sockets_), std::move(take),
+                               AcceptLoop::Chore{.pause = options.unused / kLooks,
+                                                 .run = std::move(tend),
+                                                 .time = options.time,
+                                                 .signal = options.calls->Signal()}));
   return absl::OkStatus();
 }
 

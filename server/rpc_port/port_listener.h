@@ -15,6 +15,7 @@
 #include "base/time_source.h"
 #include "base/trusted_proxies.h"
 #include "rpc_port/accept_loop.h"
+#include "rpc_port/call_budgets.h"
 #include "rpc_port/open_sockets.h"
 
 namespace thunderhead::rpc_port {
@@ -22,12 +23,14 @@ namespace thunderhead::rpc_port {
 class PortListener {
  public:
   using Acceptor = std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor>;
-  // Called on the listener's thread when a new connection from `peer` was refused because of `why`.
+  // Called on the listener's thread when a new connection from `peer` was refused because of `why`,
+  // and when the connections of its network were closed because of `why`.
   using Refused = std::function<void(const std::string& peer, const absl::Status& why)>;
 
   struct Options {
     std::chrono::milliseconds unused;     // timeout of connections without a call
     double handshakes_per_address = 0.0;  // as PortLimits::max_handshakes_per_address
+    std::shared_ptr<CallBudgets> calls;   // counts the calls of the port
     // Addresses to which the limits per address do not apply.
     base::TrustedProxies proxies;
     const base::TimeSource* time = &base::SteadyTime();  // must outlive the listener

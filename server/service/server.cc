@@ -4,14 +4,17 @@
 #include <grpcpp/grpcpp.h>
 
 #include <chrono>
+#include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
 #include "base/executor.h"
 #include "base/status.h"
 #include "base/wake_signal.h"
+#include "rpc_port/call_budgets.h"
 #include "rpc_port/connection_calls.h"
 #include "rpc_port/grpc_certificate.h"
 #include "rpc_port/health_service.h"
@@ -115,6 +118,12 @@ class RunningServer final : public Server {
     builder.RegisterService(job_service_.get());
     builder.RegisterService(&health_);
     rpc_port::SetLimits(builder, limits_, kMaxResponseBytes);
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<rpc_port::CallBudgets> call_budgets,
+                                 rpc_port::CallBudgets::Open(limits_.max_calls_per_address,
+                                                             door_->Proxies(), *limits_.time));
+    std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> counters;
+    counters.push_back(rpc_port::CountCalls(call_budgets));
+    builder.experimental().SetInterceptorCreators(std::move(counters));
     rpc_port::PortListener::Acceptor acceptor;
     if (!address.empty()) {
       THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -140,6 +149,7 @@ class RunningServer final : public Server {
           {.unused = limits_.unused_connection,
            .handshakes_per_address =
                tls.certificate.empty() ? 0.0 : limits_.max_handshakes_per_address,
+           .calls = call_budgets,
            .proxies = door_->Proxies(),
            .time = limits_.time},
           [this](const std::string& peer, const absl::Status& why) {

@@ -109,9 +109,13 @@ TEST(PortsTest, ANewCertificateIsForNewConnections) {
 // A client's socket that sends nothing.
 class SilentClient {
  public:
-  explicit SilentClient(int port) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  // Connects from the address `from`, in the host's byte order.
+  explicit SilentClient(int port, in_addr_t from = INADDR_LOOPBACK)
+      : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(from);
+    EXPECT_EQ(bind(socket_.Get(), reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
     address.sin_port = htons(static_cast<std::uint16_t>(port));
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     connected_ =
@@ -239,6 +243,44 @@ TEST(PortsTest, ConnectionsWhoseCallsAreOnlyAnnouncedAreClosed) {
   EXPECT_TRUE(WaitFor([&] { return announcing.IsClosed(); }));
   EXPECT_EQ(guarded.service().server().Load().viewers, 1) << "others stay";
 }
+
+// A client that resets each call at once has never many open calls, but gRPC keeps the memory of a
+// reset call until its handler has run.
+class ResetCallsTest : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ResetCallsTest, CloseTheConnectionsOfTheirAddress) {
+  ManualTime time;
+  service::ServerOptions options = Patient(time);
+  options.address = "127.0.0.1:0";
+  options.limits.max_calls_per_address = 10.0;
+  GuardedService guarded(options);
+  const int port = guarded.service().server().Port();
+  const SilentClient beside(port);
+  const SilentClient foreign(port, INADDR_LOOPBACK + 1);
+  UntakingClient flooding(port);
+  const auto call = [&] {
+    flooding.Call(GetParam(), "");
+    flooding.Reset();
+  };
+  for (int i = 0; i < 20; ++i) call();
+  EXPECT_FALSE(flooding.IsClosed());
+  call();
+  EXPECT_TRUE(WaitFor([&] { return flooding.IsClosed(); }));
+  EXPECT_TRUE(WaitFor([&] { return beside.IsClosed(); }));
+  const SilentClient newcomer(port);
+  EXPECT_TRUE(WaitFor([&] { return newcomer.IsClosed(); }));
+  EXPECT_FALSE(foreign.IsClosed()) << "another address";
+  EXPECT_FALSE(guarded.Create().session_id().empty()) << "the gateway's calls";
+  EXPECT_THAT(guarded.Audit(), Contains(AllOf(HasSubstr("act=Connect"), HasSubstr("127.0.0.1:"),
+                                              HasSubstr("TOO_MANY_CALLS"))));
+  time.Advance(std::chrono::seconds(2));
+  EXPECT_TRUE(IsReached(port));
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEachKind, ResetCallsTest,
+                         ::testing::Values("ThunderheadService/ListStorms",
+                                           "ThunderheadService/Interact",
+                                           "ThunderheadService/NoSuchMethod"));
 
 TEST(PortsTest, GrpcListensOnAddressesOfIpv6) {
   service::ServerOptions options = Patient();

@@ -82,6 +82,11 @@ void UntakingClient::CallCompressed(const std::string& method, const std::string
   stream_ += 2;
 }
 
+void UntakingClient::Reset() {
+  constexpr std::size_t kCancel = 8;
+  Send(Frame(kReset, 0, stream_ - 2, Number(kCancel, 4)));
+}
+
 void UntakingClient::TakeAll() {
   while (!closed_) {
     char bytes[4096];

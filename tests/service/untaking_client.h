@@ -19,6 +19,8 @@ class UntakingClient {
   void Call(const std::string& method, const std::string& message, Stream stream = Stream::kEnds);
   // Makes a call whose message is `gzip`, a text that is already compressed.
   void CallCompressed(const std::string& method, const std::string& gzip);
+  // Resets the newest call.
+  void Reset();
   // Sends the headers of a call whose message never follows.
   void Announce(const std::string& method);
 

@@ -38,8 +38,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 SELDOM = {"RenderImage": 0.1, "RenderImageWithProgress": 0.1, "GenerateCloud": 0.05, "CreateRenderJob": 0.05, "Interact": 0.5,
           "WatchFrames": 0.3, "WatchRenderJob": 0.3}
 # The limits are small, so that the server's tables are full when the warm-up ends.
-SERVER_FLAGS = ["--max-requests", "0", "--max-sessions", "24", "--max-sessions-each", "24", "--max-picture", "0.003", "--max-samples", "0.1",
-                "--max-render-time", "0.5", "--max-jobs", "10", "--max-jobs-each", "10", "--max-job-pictures", "20",
+SERVER_FLAGS = ["--max-requests", "0", "--max-calls-each", "0", "--max-sessions", "24", "--max-sessions-each", "24", "--max-picture", "0.003",
+                "--max-samples", "0.1", "--max-render-time", "0.5", "--max-jobs", "10", "--max-jobs-each", "10", "--max-job-pictures", "20",
                 "--max-kept-pictures", "50", "--jobs-quota", "0.01", "--memory-budget", "128MiB"]
 GRPC_STATUSES = ["OK", "CANCELLED", "UNKNOWN", "INVALID_ARGUMENT", "DEADLINE_EXCEEDED", "NOT_FOUND", "ALREADY_EXISTS", "PERMISSION_DENIED",
                  "RESOURCE_EXHAUSTED", "FAILED_PRECONDITION", "ABORTED", "OUT_OF_RANGE", "UNIMPLEMENTED", "INTERNAL", "UNAVAILABLE",

@@ -1,12 +1,16 @@
 // Tests which connection of gRPC's port is closed in favour of a new one.
 #include "rpc_port/open_sockets.h"
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+
 #include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "base/file_descriptor.h"
 #include "gtest/gtest.h"
 
 namespace thunderhead::rpc_port {
@@ -122,6 +126,59 @@ TEST_F(OpenSocketsTest, OneThatIsClosedTakesNoUseFromAnotherOfTheSamePeer) {
     EXPECT_TRUE(Take(open, peer));
     EXPECT_EQ(calls_->UseOf("192.0.2.1:1")->calls, 1U);
   }
+}
+
+// A TCP connection of this machine with itself.
+struct Connected {
+  Connected() {
+    const base::FileDescriptor listener(::socket(AF_INET, SOCK_STREAM, 0));
+    sockaddr_in at{};
+    at.sin_family = AF_INET;
+    at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    auto* const address = reinterpret_cast<sockaddr*>(&at);
+    socklen_t bytes = sizeof(at);
+    EXPECT_EQ(bind(listener.Get(), address, bytes), 0);
+    EXPECT_EQ(listen(listener.Get(), 1), 0);
+    EXPECT_EQ(getsockname(listener.Get(), address, &bytes), 0);
+    EXPECT_EQ(connect(client.Get(), address, bytes), 0);
+    server = base::FileDescriptor(accept(listener.Get(), nullptr, nullptr));
+    EXPECT_EQ(send(client.Get(), "abc", 3, 0), 3);
+  }
+  // Returns how many bytes the server can read, or -1 if the connection has been reset.
+  ssize_t ServerReads() const {
+    char read[8];
+    return recv(server.Get(), read, sizeof(read), MSG_DONTWAIT);
+  }
+
+  base::FileDescriptor client{::socket(AF_INET, SOCK_STREAM, 0)};
+  base::FileDescriptor server;
+};
+
+TEST_F(OpenSocketsTest, AllOfANetworkAreAbortedAndWhatTheySentIsDropped) {
+  OpenSockets open = Of(4, 4);
+  const Connected first;
+  const Connected second;
+  const Connected other;
+  const auto take = [&](const Connected& connected, const std::string& peer) {
+    peers_[connected.server.Get()] = peer;
+    EXPECT_TRUE(open.Take(connected.server.Get(), peer, now_));
+  };
+  take(first, "192.0.2.1:1");
+  take(second, "192.0.2.1:2");
+  take(other, "192.0.2.2:1");
+  open.AbortNetworkOf("192.0.2.1:1");
+  EXPECT_EQ(first.ServerReads(), -1);
+  EXPECT_EQ(second.ServerReads(), -1);
+  EXPECT_EQ(other.ServerReads(), 3);
+}
+
+TEST_F(OpenSocketsTest, ADescriptorThatAnotherConnectionHasGotIsNotAborted) {
+  OpenSockets open = Of(4, 4);
+  const Connected connected;
+  ASSERT_TRUE(open.Take(connected.server.Get(), "192.0.2.1:1", now_));
+  peers_[connected.server.Get()] = "192.0.2.2:1";
+  open.AbortNetworkOf("192.0.2.1:1");
+  EXPECT_EQ(connected.ServerReads(), 3);
 }
 
 TEST_F(OpenSocketsTest, ThoseWithoutACallAreClosedAfterAWhile) {
