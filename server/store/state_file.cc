@@ -32,6 +32,15 @@ absl::StatusOr<FileIdentity> CreateForThisUser(const std::string& path) {
       absl::StrCat(path, " cannot be made private: ", std::strerror(errno)));
 }
 
+// Checks the other files that SQLite opens with a database. Opening a planted FIFO would never
+// return.
+absl::Status CheckSqliteFiles(const std::string& path) {
+  for (const char* const suffix : {"-journal", "-wal"}) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckFile(absl::StrCat(path, suffix)));
+  }
+  return absl::OkStatus();
+}
+
 absl::Status CheckWhole(Database& database, const std::string& path) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Statement check, database.Prepare("PRAGMA quick_check(1)"));
   THUNDERHEAD_RETURN_IF_ERROR(check.Next().status());
@@ -75,9 +84,7 @@ absl::StatusOr<std::shared_ptr<StateFile>> StateFile::Open(const std::string& pa
   if (!lock.ok()) {
     return base::Annotate(lock.status(), "each server needs its own state folder");
   }
-  for (const char* suffix : {"-journal", "-wal"}) {
-    THUNDERHEAD_RETURN_IF_ERROR(CheckFile(absl::StrCat(path, suffix)));
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckSqliteFiles(path));
   THUNDERHEAD_ASSIGN_OR_RETURN(const FileIdentity identity, CreateForThisUser(path));
   THUNDERHEAD_RETURN_IF_ERROR(Prepare(path));
   THUNDERHEAD_ASSIGN_OR_RETURN(Database database, ConnectTo(path));
@@ -90,6 +97,9 @@ absl::StatusOr<Database> StateFile::Connect() const { return ConnectTo(path_); }
 absl::StatusOr<int> StateFile::Check() {
   const std::lock_guard guard(mutex_);
   THUNDERHEAD_RETURN_IF_ERROR(CheckLock());
+  if (const absl::Status planted = CheckSqliteFiles(path_); !planted.ok()) {
+    return absl::UnavailableError(planted.message());
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<FileIdentity> found, IdentityAt(path_));
   if (found == identity_) return times_written_;
   if (found.has_value()) {

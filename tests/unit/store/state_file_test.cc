@@ -233,6 +233,25 @@ TEST_F(StateFileTest, ALinkThatIsPutInPlaceOfTheFileIsNotFollowed) {
   EXPECT_FALSE(store::Database::Open(path_).ok());
 }
 
+// SQLite would open them. Opening such a FIFO waits for another process, forever.
+TEST_F(StateFileTest, WhatIsPutInPlaceOfSqlitesFilesIsReportedAndNotOpened) {
+  Open();
+  for (const std::string& file : {path_ + "-journal", path_ + "-wal"}) {
+    ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+    const absl::Status saved = sessions_->Save({MarkedSession("a")});
+    EXPECT_EQ(saved.code(), absl::StatusCode::kUnavailable) << saved;
+    EXPECT_THAT(MessageOf(saved), AllOf(HasSubstr(file), HasSubstr("not a regular file")));
+    EXPECT_FALSE(jobs_->Add(JobOfOne('a')).ok());
+    fs::remove(file);
+    fs::create_symlink(folder_.File("target"), file);
+    EXPECT_THAT(MessageOf(sessions_->Save({MarkedSession("a")})),
+                AllOf(HasSubstr(file), HasSubstr("is a link")));
+    fs::remove(file);
+    EXPECT_TRUE(sessions_->Save({MarkedSession("a")}).ok());
+  }
+  ExpectKept(1, 0);
+}
+
 TEST_F(StateFileTest, AFolderThatOthersMayWriteIsRefused) {
   EXPECT_TRUE(store::CheckFolder(state_).ok());
   for (const auto more : {fs::perms::group_write, fs::perms::others_write}) {
@@ -286,7 +305,7 @@ TEST_F(StateFileTest, ASessionWithoutItsMarksIsRestoredAndCounted) {
   ::testing::internal::CaptureStdout();
   const auto loaded = sessions_->Load();
   EXPECT_THAT(::testing::internal::GetCapturedStdout(),
-              HasSubstr("session a is restored without its marks: they are missing"));
+              HasSubstr("session a is restored without its marks: its marks are missing"));
   ASSERT_TRUE(loaded.ok()) << loaded.status();
   SessionRecord without_marks = MarkedSession("a");
   without_marks.marks.clear();
