@@ -158,6 +158,7 @@ absl::Status Fit(const FitFlags& flags) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckEnding("-o", flags.output, {".balls"}));
   if (!flags.volume.empty()) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckEnding("--volume", flags.volume, {".nc"}));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckNotInput("--volume", flags.volume, flags.storm));
   }
   if (!flags.volume.empty() && flags.field != "extinction" && flags.field != "cloud") {
     return absl::InvalidArgumentError(

@@ -14,4 +14,9 @@ namespace thunderhead::app {
 absl::Status CheckEnding(const std::string& flag, const std::string& path,
                          std::initializer_list<const char*> endings);
 
+// Checks that the file to write would not replace the storm file that the command reads.
+// INVALID_ARGUMENT names `flag`.
+absl::Status CheckNotInput(const std::string& flag, const std::string& path,
+                           const std::string& storm);
+
 }  // namespace thunderhead::app

@@ -60,6 +60,13 @@ absl::Status Prepare(const std::string& path) {
   return absl::OkStatus();
 }
 
+// Writes the content of the database to the empty file at `path`.
+absl::Status CopyInto(Database& database, const std::string& path) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(Statement copy, database.Prepare("VACUUM INTO ?"));
+  copy.Bind(1, std::string_view(path));
+  return copy.Run();
+}
+
 absl::StatusOr<Database> ConnectTo(const std::string& path) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Database database, Database::Open(path));
   // With EXTRA, the removal of the journal, which ends a transaction, also survives a loss of
@@ -142,11 +149,14 @@ absl::Status StateFile::WriteAnew() {
   const std::string partial = base::PartialPath(path_);
   unlink(partial.c_str());
   THUNDERHEAD_ASSIGN_OR_RETURN(const FileIdentity identity, CreateForThisUser(partial));
-  {
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement copy, database_.Prepare("VACUUM INTO ?"));
-    copy.Bind(1, std::string_view(partial));
-    THUNDERHEAD_RETURN_IF_ERROR(copy.Run());
+  const absl::Status copied = CopyInto(database_, partial);
+  if (absl::IsDataLoss(copied)) {
+    return absl::DataLossError(absl::StrCat(
+        path_,
+        " was removed while the server runs, but was damaged before, so its content cannot be "
+        "written anew; restart the server, which then begins without sessions and jobs"));
   }
+  THUNDERHEAD_RETURN_IF_ERROR(copied);
   THUNDERHEAD_RETURN_IF_ERROR(base::PublishFile(path_));
   THUNDERHEAD_ASSIGN_OR_RETURN(database_, ConnectTo(path_));
   identity_ = identity;

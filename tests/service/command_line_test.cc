@@ -722,6 +722,16 @@ TEST_F(CommandLineTest, FitNamesWhatIsWrongWithItsOutputs) {
   EXPECT_FALSE(std::filesystem::exists(balls));
 }
 
+TEST_F(CommandLineTest, AnOutputDoesNotReplaceItsStorm) {
+  const std::string storm = folder_.File("storm.nc");
+  std::filesystem::copy_file(kSample, storm);
+  ExpectError("render " + storm + " -o " + storm, 64, "-o would replace the storm file");
+  ExpectError(
+      "fit " + storm + " --balls 1 -o " + folder_.File("storm.balls") + " --volume " + storm, 64,
+      "--volume would replace the storm file");
+  EXPECT_EQ(Contents(storm), Contents(kSample));
+}
+
 // A file in place of a device would stop other programs that use it.
 TEST_F(CommandLineTest, AnOutputReplacesNoDevice) {
   std::filesystem::create_symlink("/dev/null", picture_);

@@ -252,6 +252,22 @@ TEST_F(StateFileTest, WhatIsPutInPlaceOfSqlitesFilesIsReportedAndNotOpened) {
   ExpectKept(1, 0);
 }
 
+TEST_F(StateFileTest, ADamagedFileThatIsRemovedNeedsARestart) {
+  Open();
+  ASSERT_TRUE(sessions_->Save({MarkedSession("a")}).ok());
+  std::fstream(path_, std::ios::in | std::ios::out | std::ios::binary) << std::string(100, '\0');
+  EXPECT_TRUE(absl::IsDataLoss(sessions_->Save({MarkedSession("b")})));
+  fs::remove(path_);
+  for (int i = 0; i < 2; ++i) {
+    const absl::Status saved = sessions_->Save({MarkedSession("b")});
+    EXPECT_TRUE(absl::IsDataLoss(saved)) << saved;
+    EXPECT_THAT(MessageOf(saved), AllOf(HasSubstr("was removed"), HasSubstr("restart the server")));
+  }
+  sessions_.reset();
+  jobs_.reset();
+  ExpectKept(0, 0);
+}
+
 TEST_F(StateFileTest, AFolderThatOthersMayWriteIsRefused) {
   EXPECT_TRUE(store::CheckFolder(state_).ok());
   for (const auto more : {fs::perms::group_write, fs::perms::others_write}) {
