@@ -5,6 +5,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/field.hpp>
 #include <boost/beast/websocket/option.hpp>
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,16 @@ constexpr milliseconds kCloseTimeout{5000};
 constexpr milliseconds kLeaveTimeout{1000};
 constexpr milliseconds kSlowestWatch{500};
 constexpr milliseconds kFastestWatch{5};
+
+std::string TextOf(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const std::exception& known) {
+    return known.what();
+  } catch (...) {
+    return "an exception of an unknown type";
+  }
+}
 
 }  // namespace
 
@@ -104,7 +115,7 @@ void WebSocketExchange::Spawn(Task task) {
   net::co_spawn(link_->Stream().get_executor(), std::move(task),
                 [self = shared_from_this()](const std::exception_ptr& error) {
                   if (error) {
-                    spdlog::error("closing a WebSocket after an internal error");
+                    spdlog::error("closing a WebSocket after an internal error: {}", TextOf(error));
                     self->Abandon();
                   }
                   self->tasks_ended_ = --self->tasks_ == 0;
