@@ -89,9 +89,9 @@ absl::Status WrfSource::ReadVariable(const std::string& variable, std::size_t va
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t length,
                                ValuesOfTime(file_, variable, kRankOfLayers));
   if (length != values_expected) {
-    return absl::DataLossError(absl::StrCat(file_.Path(), ": ", variable, " now has ", length,
-                                            " values a time where it had ", values_expected,
-                                            "; the file was replaced: restart to read it anew"));
+    return absl::DataLossError(absl::StrCat(
+        file_.Path(), ": ", variable, " now has ", length, " values a time where it had ",
+        values_expected, "; the file was replaced: restart the server to read the new file"));
   }
   THUNDERHEAD_RETURN_IF_ERROR(
       ReadTime(file_, variable, kRankOfLayers, domain_.record, changes, values, huge));
@@ -111,7 +111,7 @@ absl::Status WrfSource::ReadTerm(const WrfTerm& term, Changes changes, std::vect
     if (levels.size() * Columns() != Cells()) {
       return absl::DataLossError(
           absl::StrCat(file_.Path(), ": ", term.variable, " now has ", levels.size(),
-                       " values; the file was replaced: ", "restart to read it anew"));
+                       " values; the file was replaced: restart the server to read the new file"));
     }
     values.clear();
     for (const double level : levels) {

@@ -231,7 +231,7 @@ TEST_F(StormFormatTest, AFileOfNoFormatIsToldWhatEachWouldNeed) {
       "nor a MYSTIC cloud file (it does not begin with three numbers of cells and a flag) "
       "nor an AT3D cloud field (it does not begin with its grid and the names of its columns)";
   const std::string toy = " nor a toy (it does not begin so)";
-  const std::string advice = "; give a file that is";
+  const std::string advice = "; give a file in one of these formats";
   EXPECT_EQ(message(StormFormats::BuiltIn()), built_in + advice);
   EXPECT_EQ(message(With(std::make_shared<ToyFormat>())), built_in + toy + advice);
 }
