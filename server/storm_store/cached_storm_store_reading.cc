@@ -341,7 +341,8 @@ void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   if (keep && (is_asked || read.waiters > 0)) {
     cache_.Insert(key, *fields);
   } else if (keep) {
-    cache_.InsertAhead(key, *fields);
+    // The cache must have the only reference, so that it can drop fields that do not fit.
+    cache_.InsertAhead(key, *std::exchange(fields, nullptr));
   }
   pending_.erase(key);
   read.result = std::move(fields);
