@@ -95,7 +95,11 @@ net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
       [this, frames = FrameCounter(accepted_at_)](std::span<const std::byte> bytes) mutable {
         if (frames.Take(bytes, site_.Now())) return true;
         if (is_closing_) return false;
-        is_flooded_ = true;
+        is_cut_off_ = true;
+        if (frames.HasForbiddenCode()) {
+          EndWith({websocket::close_code::protocol_error, "close with a code of 1000 to 4999"});
+          return false;
+        }
         TellOfRefusal(site_.options, client_, "Message", TooManyEmptyFrames());
         EndWith({websocket::close_code::policy_error, "too many frames without content"});
         return false;
@@ -178,7 +182,7 @@ net::awaitable<bool> WebSocketExchange::Write(const std::vector<net::const_buffe
 
 net::awaitable<void> WebSocketExchange::Close() {
   BeginClosing();
-  if (is_flooded_) {
+  if (is_cut_off_) {
     // Beast treats the failed read as the end of the connection and would send no close frame. So
     // the close frame is written here.
     link_->Stream().expires_after(kLeaveTimeout);
