@@ -196,6 +196,23 @@ test("named views are kept for their domain", () => {
   expect(again.all.value.length).toBeLessThan(2);
 });
 
+test("a view that cannot be stored lasts as long as the page, also while others are shown", () => {
+  const full = () => {
+    throw new Error("full");
+  };
+  let domain = "a";
+  const views = new NamedViews({ getItem: () => '{"a":[]}', setItem: full }, () => domain);
+  views.load();
+  const time = { validTime: "", timeIndex: 1 };
+  expect(views.keep({ name: "x", camera: cameraOfPose(ORBIT), ...time, picture: "" })).toBe(false);
+  domain = "b";
+  views.load();
+  expect(views.all.value).toEqual([]);
+  domain = "a";
+  views.load();
+  expect(views.all.value.map(({ name }) => name)).toEqual(["x"]);
+});
+
 test("two views of one name are two views", () => {
   const views = new NamedViews(undefined, () => "a");
   views.load();
