@@ -104,8 +104,8 @@ test("a file may name the accurate preset by its earlier name", () => {
 });
 
 test("a file without a scene says so", () => {
-  expect(() => sceneOfFile(PNG)).toThrow("no scene in it");
-  expect(() => sceneOfFile(new TextEncoder().encode("[1]"))).toThrow("no scene of Thunderhead");
+  expect(() => sceneOfFile(PNG)).toThrow("contains no scene");
+  expect(() => sceneOfFile(new TextEncoder().encode("[1]"))).toThrow("not a Thunderhead scene");
 });
 
 const EMPTY = create(SceneSchema);

@@ -49,7 +49,7 @@ describe("a session's state", () => {
     expect(session.editBlock.value).toBeUndefined();
     expect(session.steering.value).toBe(true);
     session.takePresence(presence([TEACHER, person(2n)], 0n));
-    expect(session.editBlock.value).toBe("Nobody steers.");
+    expect(session.editBlock.value).toBe("No one steers.");
   });
 
   it("keeps the controls of who steered usable while it joins again", () => {

@@ -356,7 +356,9 @@ export class Page {
     const copied = await this.addresses.copy(link);
     this.notes.say(
       "link",
-      copied ? "Presenter's link copied" : "This browser lets the page copy nothing: copy the text",
+      copied
+        ? "Presenter's link copied"
+        : "The browser does not allow copying. Select the link and copy it yourself.",
     );
   }
 

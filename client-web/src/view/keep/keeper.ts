@@ -154,7 +154,7 @@ export class Keeper {
       this.#state.restore(scene);
       this.#notes.say("file", `The view of ${file.name}`);
     } catch (error) {
-      this.#refuse("file", "File", `${file.name} is not opened: ${(error as Error).message}`);
+      this.#refuse("file", "File", `${file.name} cannot be opened: ${(error as Error).message}`);
     }
   }
 
@@ -303,7 +303,7 @@ async function annotate(
   const bitmap = await createImageBitmap(new Blob([bytes]));
   const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
   const context = canvas.getContext("2d");
-  if (context === null) throw new Error("this browser draws no pictures");
+  if (context === null) throw new Error("this browser cannot draw on a canvas");
   context.drawImage(bitmap, 0, 0);
   bitmap.close();
   const projection = projectionOf(drawn.view);
