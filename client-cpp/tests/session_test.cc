@@ -312,12 +312,13 @@ TEST_F(SessionTest, SaysWhyASessionEndedThatItReplaces) {
   options.never_gives_up = true;
   Begin(std::move(options));
   v1::InteractResponse response;
-  response.mutable_end()->set_message("The presenter has ended the session");
+  response.mutable_end()->set_message("the session was closed");
   service.Send(response);
   service.EndCall(grpc::Status::OK);
   ASSERT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
   EXPECT_EQ(session->State().notice,
-            "The presenter has ended the session; this is a new one with the same scene.");
+            "The last session has ended (the session was closed). This is a new one with the same "
+            "scene.");
 }
 
 TEST_F(SessionTest, SaysThatItIsNotSaved) {
