@@ -1,5 +1,5 @@
-// The certificate of gRPC's port. gRPC 1.51 can follow files. However, it ends the process if one of
-// them is empty, as a file is while another program writes it. It also serves a certificate that
+// The certificate of gRPC's port. gRPC 1.51 can follow files. However, it ends the process if one
+// of them is empty, as a file is while another program writes it. It also serves a certificate that
 // does not belong to the key. This class therefore gives gRPC a copy in memory, which is replaced
 // only by files that OpenSSL accepts.
 #pragma once
