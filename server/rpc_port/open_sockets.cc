@@ -22,6 +22,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookPause{100};
 constexpr std::chrono::milliseconds kMeasurement{10};
+// A client with ordinary calls sends less in that time, a flood of calls more.
+constexpr std::uint64_t kMuch_bytes = 4096;
 
 // A connection counts as used until this long after its last call, because some handlers release
 // the caller before they respond.
@@ -117,7 +119,7 @@ std::optional<std::string> OpenSockets::WhoSendsMost() const {
   std::this_thread::sleep_for(kMeasurement);
   std::map<std::string, std::uint64_t> by_network;
   std::optional<std::string> most;
-  std::uint64_t most_bytes = 0;
+  std::uint64_t most_bytes = kMuch_bytes;
   for (const auto& [socket, open] : open_) {
     if (proxies_.Holds(open.peer) || peer_of_(socket) != open.peer) continue;
     std::uint64_t& bytes = by_network[open.network];
