@@ -11,7 +11,8 @@ COPY deploy/packages deploy/packages
 RUN ./dev install runtime build web && rm -rf /var/lib/apt/lists/*
 COPY . .
 RUN ./dev build release \
-    && strip build/release/bin/thunderhead build/release/bin/thunderhead-reader build/release/bin/thunderhead-vdb-reader
+    && strip build/release/bin/thunderhead build/release/bin/thunderhead-reader build/release/bin/thunderhead-vdb-reader \
+        build/release/lib/thunderhead/vdb-writer.so
 
 FROM debian:bookworm-slim
 WORKDIR /opt/thunderhead
@@ -22,6 +23,7 @@ RUN ./dev install runtime && rm -rf /var/lib/apt/lists/* dev deploy \
     && install --directory --mode=0700 --owner=thunderhead /var/lib/thunderhead
 COPY --from=build /src/build/release/bin/thunderhead /src/build/release/bin/thunderhead-reader \
     /src/build/release/bin/thunderhead-vdb-reader bin/
+COPY --from=build /src/build/release/lib/thunderhead lib/thunderhead/
 COPY --from=build /src/client-web/dist share/thunderhead/page/
 COPY --from=build /src/samples/supercell-500m.nc /data/
 ENV PATH=/opt/thunderhead/bin:$PATH \

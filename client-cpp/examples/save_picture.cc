@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
   client::Session session(*connection, options, picture);  // joins on a separate thread
   const std::string jpeg = picture.Await();
   if (jpeg.empty()) {
-    std::cerr << "no picture came: " << session.State().reason << "\n";
+    std::cerr << "no frame arrived from the server: " << session.State().reason << "\n";
     return kUnavailable;
   }
   std::ofstream file(argv[2], std::ios::binary);

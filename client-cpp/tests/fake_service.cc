@@ -125,6 +125,13 @@ grpc::Status FakeService::GetServerInfo(grpc::ServerContext* /*context*/,
   return grpc::Status::OK;
 }
 
+grpc::Status FakeService::DescribeStorm(grpc::ServerContext* /*context*/,
+                                        const v1::DescribeStormRequest* request,
+                                        v1::DescribeStormResponse* response) {
+  if (answer_description) return answer_description(*request, *response);
+  return {grpc::StatusCode::NOT_FOUND, "no such storm"};
+}
+
 grpc::Status FakeService::Interact(grpc::ServerContext* context, Stream* stream) {
   Call call{stream, context, {}, {}};
   {

@@ -55,6 +55,9 @@ class FakeService final : public v1::ThunderheadService::Service {
   bool answers_scenes = true;  // accepts each update of the scene at once
   // Makes the response to the first scene of a session. The default accepts it.
   std::function<grpc::Status(const v1::Scene&)> answer_opening;
+  // Makes the response to a request for a storm's description. The default is NOT_FOUND.
+  std::function<grpc::Status(const v1::DescribeStormRequest&, v1::DescribeStormResponse&)>
+      answer_description;
   // The response's `durable` for the opened sessions; no value leaves the field unset.
   std::optional<bool> durable;
   bool forgets_sessions = false;  // joins fail with NOT_FOUND until another session is opened
@@ -73,6 +76,8 @@ class FakeService final : public v1::ThunderheadService::Service {
   grpc::Status Interact(grpc::ServerContext* context, Stream* stream) override;
   grpc::Status GetServerInfo(grpc::ServerContext* context, const v1::GetServerInfoRequest* request,
                              v1::GetServerInfoResponse* response) override;
+  grpc::Status DescribeStorm(grpc::ServerContext* context, const v1::DescribeStormRequest* request,
+                             v1::DescribeStormResponse* response) override;
   void Answer(Call& call, const v1::InteractRequest& request);
 
   std::mutex mutex_;

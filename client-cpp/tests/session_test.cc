@@ -298,6 +298,29 @@ TEST_F(SessionTest, OpensANewSessionWhenTheServerHasLostItsOwn) {
   EXPECT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
 }
 
+TEST_F(SessionTest, SaysThatTheServerHadLostTheSession) {
+  Steer();
+  service.forgets_sessions = true;
+  service.EndCall(grpc::Status::OK);
+  ASSERT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
+  EXPECT_EQ(session->State().notice,
+            "The server had lost the session; this is a new one with the same scene.");
+}
+
+TEST_F(SessionTest, SaysWhyASessionEndedThatItReplaces) {
+  SessionOptions options;
+  options.never_gives_up = true;
+  Begin(std::move(options));
+  v1::InteractResponse response;
+  response.mutable_end()->set_message("the session was closed");
+  service.Send(response);
+  service.EndCall(grpc::Status::OK);
+  ASSERT_TRUE(listener.Await([&] { return session->State().joined_count == 2; }));
+  EXPECT_EQ(session->State().notice,
+            "The last session has ended (the session was closed). This is a new one with the same "
+            "scene.");
+}
+
 TEST_F(SessionTest, SaysThatItIsNotSaved) {
   service.durable = false;
   Steer();

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "thunderhead/v1/storm.pb.h"
+#include "thunderhead_client/back_off.h"
 #include "thunderhead_client/connection.h"
 
 namespace thunderhead::client {
@@ -33,7 +34,8 @@ class Catalogue {
   Catalogue& operator=(const Catalogue&) = delete;
 
   // Requests the list of storms and the server's information again. Refresh() and Describe() return
-  // at once.
+  // at once. A request that fails because the server is busy or cannot be reached is repeated
+  // later.
   void Refresh();
   // Requests the description of a storm at one of its times. Does nothing if this description was
   // already requested since the last Refresh() or other description.
@@ -46,8 +48,8 @@ class Catalogue {
   using StormTime = std::pair<std::string, std::uint32_t>;
 
   void Run();
-  void Learn();
-  void LearnStorm(const StormTime& wanted);
+  grpc::Status Learn();
+  grpc::Status LearnStorm(const StormTime& wanted);
 
   const std::shared_ptr<const Connection> connection_;
   Canceller calls_;
@@ -59,6 +61,7 @@ class Catalogue {
   std::optional<StormTime> wanted_;
   StormTime described_;
   bool ends_ = false;
+  BackOff back_off_;
   std::thread thread_;
 };
 

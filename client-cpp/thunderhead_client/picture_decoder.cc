@@ -126,7 +126,7 @@ absl::Status PictureDecoder::DecodeVp9(const v1::Frame& frame, bool wanted, Pixe
   }
   vpx_codec_iter_t next = nullptr;
   const vpx_image_t* const image = vpx_codec_get_frame(codec, &next);
-  if (image == nullptr) return absl::DataLossError("a frame of video holds no picture");
+  if (image == nullptr) return absl::DataLossError("a video frame contains no picture");
   if (!wanted) return absl::OkStatus();
   const auto width_px = static_cast<int>(image->d_w);
   const auto height_px = static_cast<int>(image->d_h);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "thunderhead_client/session_call.h"
 
 namespace thunderhead::client {
@@ -94,7 +95,10 @@ void Session::Settle(const Outcome& outcome) {
   const bool reopens = (opens_sessions_ && outcome.forgotten) || options_.never_gives_up;
   if (!reopens) return;
   LeaveSession();
-  state_.notice = "The server had lost the session; this is a new one with the same scene.";
+  state_.notice = outcome.forgotten
+                      ? "The server had lost the session; this is a new one with the same scene."
+                      : absl::StrCat("The last session has ended (", outcome.reason,
+                                     "). This is a new one with the same scene.");
   ++state_.notice_count;
 }
 

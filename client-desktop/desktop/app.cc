@@ -218,21 +218,23 @@ bool App::TakeEvents(int timeout_ms) {
   return true;
 }
 
-bool App::TakeEvent(const SDL_Event& event) {
+void App::TakeEvent(const SDL_Event& event) {
   window_->Take(event);
   Unsettle(Clock::now());
   input_.Take(event);
   if (event.type == SDL_WINDOWEVENT) resized_at_ = Clock::now();
-  if (flags_.kiosk) return false;
+  if (flags_.kiosk) return;
   pointer_.SetSize(window_->width(), window_->height());
   pointer_.SetTool(stage_.HandTool());
   const KeyFocus focus = FocusNow();
-  if (event.type == SDL_KEYDOWN) return TakeKey(event.key, focus, keys_);
-  if (event.type == SDL_TEXTINPUT) {
-    return TakeText(event.text.text, static_cast<Uint16>(SDL_GetModState()), focus, keys_);
+  if (event.type == SDL_KEYDOWN) {
+    TakeKey(event.key, focus, keys_);
+  } else if (event.type == SDL_TEXTINPUT) {
+    TakeText(event.text.text, static_cast<Uint16>(SDL_GetModState()), focus, keys_);
+  } else {
+    const ScreenPoint at = PlaceOf(event);
+    pointer_.Take(event, !window_->IsOverPanel(at.x, at.y));
   }
-  const ScreenPoint at = PlaceOf(event);
-  return pointer_.Take(event, !window_->IsOverPanel(at.x, at.y));
 }
 
 bool App::TakePicture() {

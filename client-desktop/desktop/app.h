@@ -47,7 +47,7 @@ class App final : private client::SessionListener {
   // Wakes the event loop. Any thread may call this.
   void Wake();
   bool TakeEvents(int timeout_ms);
-  bool TakeEvent(const SDL_Event& event);
+  void TakeEvent(const SDL_Event& event);
   bool TakePicture();
   // Schedules the drawings that ImGui needs after an event or new texts, until layout and focus no
   // longer change.

@@ -103,11 +103,7 @@ std::string Shortened(std::string text, float width) {
     return ImGui::CalcTextSize(shown.c_str()).x <= width;
   };
   if (fits(text)) return text;
-  const auto is_inside = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
-  while (!text.empty() && !fits(text + "…")) {
-    while (is_inside(text.back()) && text.size() > 1) text.pop_back();
-    text.pop_back();
-  }
+  while (!text.empty() && !fits(text + "…")) text = CutTo(std::move(text), text.size() - 1);
   return text + "…";
 }
 
@@ -230,7 +226,7 @@ bool TextField(const char* label, std::string& text, std::size_t most_bytes) {
   const bool entered = TypeInto(
       "##text", text, [](const char* id, std::string* typed) { ImGui::InputText(id, typed); });
   ImGui::PopID();
-  if (text.size() > most_bytes) text.resize(most_bytes);
+  text = CutTo(std::move(text), most_bytes);
   return entered;
 }
 

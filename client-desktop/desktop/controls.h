@@ -26,6 +26,8 @@ bool NumberField(const char* label, const client::Limits& limits, double& value)
 // true when the user chose another.
 bool Segments(const char* id, const std::vector<const char*>& labels, int& chosen);
 bool Choice(const char* label, const std::vector<std::pair<int, std::string>>& options, int& value);
+// Draws a field to type a text. Returns true when the text is entered. A text of more than
+// `most_bytes` is cut (CutTo).
 bool TextField(const char* label, std::string& text, std::size_t most_bytes);
 bool AccentButton(const char* label);
 

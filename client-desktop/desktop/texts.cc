@@ -110,6 +110,17 @@ std::string FormatBitRate(double bytes_per_s) {
   return absl::StrFormat("%.0f kbit/s", kbit);
 }
 
+std::string CutTo(std::string text, std::size_t most_bytes) {
+  if (text.size() <= most_bytes) return text;
+  const auto begins_character = [&](std::size_t at) {
+    return (static_cast<unsigned char>(text[at]) & 0xC0U) != 0x80U;
+  };
+  std::size_t end = most_bytes;
+  while (end > 0 && !begins_character(end)) --end;
+  text.resize(end);
+  return text;
+}
+
 std::string FormatValidTime(const v1::StormTime& time) {
   const auto moment = MomentOf(time.valid_time());
   if (!moment) {

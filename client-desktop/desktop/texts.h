@@ -2,6 +2,7 @@
 // texts.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "thunderhead/v1/frame.pb.h"
@@ -27,6 +28,9 @@ std::string FormatPercent(double share);        // "8.4 %" for 0.084
 std::string FormatLength(double length_m);      // "8.4 km"
 std::string FormatBytes(double bytes);          // "1.2 MB"
 std::string FormatBitRate(double bytes_per_s);  // "1.4 Mbit/s"
+// Returns the start of a UTF-8 text with at most `most_bytes` bytes. Does not cut a character
+// apart, because protobuf accepts no string that is invalid UTF-8.
+std::string CutTo(std::string text, std::size_t most_bytes);
 // Returns a text like "2013-05-20 20:00 UTC". For an idealised run, which begins in year 1, the
 // text is like "day 1, 00:20".
 std::string FormatValidTime(const v1::StormTime& time);

@@ -81,12 +81,22 @@ int Ui::time_count() const {
   return storms.storm.id() == state.scene.storm_id() ? storms.storm.times_size() : 0;
 }
 
+int Ui::last_time() const {
+  if (time_count() > 0) return time_count() - 1;
+  for (const v1::StormSummary& storm : storms.storms.storms()) {
+    if (storm.id() == state.scene.storm_id() && storm.time_count() > 0) {
+      return static_cast<int>(storm.time_count()) - 1;
+    }
+  }
+  return 0;
+}
+
 double Ui::true_north_deg() const {
   return storms.storm.id() == state.scene.storm_id() ? storms.storm.true_north_deg() : 0.0;
 }
 
 int Ui::time_index() const {
-  if (!state.scene.has_time_index()) return std::max(0, time_count() - 1);
+  if (!state.scene.has_time_index()) return last_time();
   return static_cast<int>(state.scene.time_index());
 }
 
@@ -117,7 +127,7 @@ bool Ui::Refresh() {
     any = true;
   }
   if (!state.Steers()) playback.Pause();
-  catalogue.Describe(state.scene.storm_id(), state.scene.time_index());
+  catalogue.Describe(state.scene.storm_id(), static_cast<std::uint32_t>(time_index()));
   return any;
 }
 

@@ -83,6 +83,9 @@ struct Ui {
   bool texts_changed = false;
 
  private:
+  // Returns the index of the last time of the storm that is shown. Takes it from the list of storms
+  // until the server has described the storm, and returns 0 if the list does not have it either.
+  int last_time() const;
   // Applies a step of the history, if there is one.
   void Make(const std::optional<History::Edit>& step);
 };

@@ -340,6 +340,15 @@ TEST(Texts, AreThePages) {
             "Seen from SSW (200°), 4° high, 61 km away");
 }
 
+TEST(Texts, AreCutBetweenCharacters) {
+  EXPECT_EQ(CutTo("supercell", 9), "supercell");
+  EXPECT_EQ(CutTo("supercell", 5), "super");
+  EXPECT_EQ(CutTo("Zürich", 3), "Zü");
+  EXPECT_EQ(CutTo("Zürich", 2), "Z");
+  EXPECT_EQ(CutTo("雷雨", 5), "雷");
+  EXPECT_EQ(CutTo("⛈️", 2), "");
+}
+
 TEST(Texts, DirectionsCountFromTrueNorth) {
   EXPECT_EQ(DescribePose(OrbitPose{{}, 350.0, 4.0, 61'000.0, 35.0}, -12.5),
             "Seen from N (3°), 4° high, 61 km away");

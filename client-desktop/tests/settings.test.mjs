@@ -59,7 +59,7 @@ test("a quality and a goal take each other's place", async () => {
     assert.ok(chosen(), "no quality is chosen");
     await change("a goal", async () => {
       await desktop.click(265, 590);
-      await desktop.click(180, 669); // chooses "At most this time a frame"
+      await desktop.click(180, 669); // chooses "At most this time per frame"
     });
     display.screenshot("goal");
     await eventually("a quality beside the goal", () => !chosen());

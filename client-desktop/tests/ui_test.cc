@@ -3,6 +3,9 @@
 
 #include <cstdint>
 #include <limits>
+#include <mutex>
+#include <string>
+#include <vector>
 
 #include "client-cpp/tests/fake_service.h"
 #include "desktop/kiosk.h"
@@ -26,6 +29,13 @@ class Listener final : public client::SessionListener {
 // A window that steers a storm of six times.
 class UiTest : public ::testing::Test {
  protected:
+  UiTest() {
+    service.answer_description = [this](const v1::DescribeStormRequest& request, auto& /*storm*/) {
+      const std::lock_guard lock(mutex);
+      described.push_back(request);
+      return grpc::Status(grpc::StatusCode::NOT_FOUND, "no such storm");
+    };
+  }
   void SetUp() override {
     ASSERT_TRUE(Await([&] { return ui.state.link == client::Link::kLive; }));
     v1::Scene scene;
@@ -48,8 +58,19 @@ class UiTest : public ::testing::Test {
   void TurnSun() {
     ui.Edit("sun", [](v1::Scene& scene) { scene.mutable_sun()->set_azimuth_deg(10.0F); });
   }
+  // Returns the indices of a storm's times whose descriptions were requested.
+  std::vector<std::uint32_t> TimesDescribed(const std::string& storm_id) {
+    const std::lock_guard lock(mutex);
+    std::vector<std::uint32_t> times;
+    for (const v1::DescribeStormRequest& request : described) {
+      if (request.storm_id() == storm_id) times.push_back(request.time_index());
+    }
+    return times;
+  }
   const v1::Scene& scene() const { return ui.state.scene; }
 
+  std::mutex mutex;
+  std::vector<v1::DescribeStormRequest> described;
   FakeService service;
   Listener listener;
   client::Session session{service.Connect(), {}, listener};
@@ -116,6 +137,17 @@ TEST_F(UiTest, ChangesOfTheSceneAreCounted) {
   EXPECT_EQ(ui.edits, before + 1) << "the second changes nothing";
   ui.Undo();
   EXPECT_EQ(ui.edits, before + 2);
+}
+
+TEST_F(UiTest, TheLastTimeIsDescribedIfTheSceneNamesNone) {
+  v1::StormSummary& listed = *ui.storms.storms.add_storms();
+  listed.set_id("tornado");
+  listed.set_time_count(4);
+  v1::Scene scene;
+  scene.set_storm_id("tornado");
+  service.SendScene(scene, 2);
+  ASSERT_TRUE(Await([&] { return TimesDescribed("tornado").size() == 1; }));
+  EXPECT_EQ(TimesDescribed("tornado"), std::vector<std::uint32_t>{3});
 }
 
 TEST_F(UiTest, PlayFromTheStartIsNoStepEither) {

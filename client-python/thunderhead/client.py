@@ -249,7 +249,7 @@ class Client:
     def session(self, storm: str = "", scene: SceneLike = None, size: Optional[Size] = None) -> Session:
         """Opens a session: a scene on the server that you change step by step while it shows frames. See Session."""
         message: scene_pb2.Scene = scene_of(scene, storm, None, size)
-        return Session(self._stub, self._metadata, message, self._timeout_s)
+        return Session(self._stub, self._metadata, message, self._timeout_s, self._render_timeout_s)
 
 
 def _is_loopback(address: str) -> bool:

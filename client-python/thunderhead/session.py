@@ -17,6 +17,15 @@ from .v1 import frame_pb2, scene_pb2, thunderhead_pb2
 # The parameters that most people change first.
 _SLIDERS = ("camera.orbit.azimuth_deg", "camera.orbit.elevation_deg", "sun.azimuth_deg", "sun.elevation_deg")
 
+# Errors of a call that may succeed if it is repeated.
+_PASSING = (
+    grpc.StatusCode.ABORTED,
+    grpc.StatusCode.DEADLINE_EXCEEDED,
+    grpc.StatusCode.RESOURCE_EXHAUSTED,
+    grpc.StatusCode.UNAVAILABLE,
+)
+_ACKNOWLEDGE_AGAIN_S = 0.2
+
 
 class Session:
     """A session, which Client.session opens. A notebook shows its newest frame, and `widget()` adds sliders.
@@ -31,10 +40,18 @@ class Session:
     The server also ends a session that no one has used for a time.
     """
 
-    def __init__(self, stub: Any, metadata: Tuple[Tuple[str, str], ...], scene: scene_pb2.Scene, timeout_s: float) -> None:
+    def __init__(
+        self,
+        stub: Any,
+        metadata: Tuple[Tuple[str, str], ...],
+        scene: scene_pb2.Scene,
+        timeout_s: float,
+        render_timeout_s: float,
+    ) -> None:
         self._stub = stub
         self._metadata = metadata
         self._timeout_s = timeout_s
+        self._render_timeout_s = render_timeout_s
         with translated():
             created = stub.CreateSession(
                 thunderhead_pb2.CreateSessionRequest(scene=scene), timeout=timeout_s, metadata=metadata
@@ -79,13 +96,25 @@ class Session:
                 self._problem = ThunderheadError(message.problem.message, "FAILED_PRECONDITION")
             self._changed.notify_all()
         if message.HasField("frame"):
-            self._stub.AcknowledgeFrame(
-                thunderhead_pb2.AcknowledgeFrameRequest(
-                    session_id=self.id, viewer_id=message.viewer_id, sequence=message.frame.sequence
-                ),
-                timeout=self._timeout_s,
-                metadata=self._metadata,
-            )
+            self._acknowledge(message.viewer_id, message.frame.sequence)
+
+    def _acknowledge(self, viewer_id: int, sequence: int) -> None:
+        """Acknowledges a frame. Repeats this while the server is busy, because it sends no frame until then."""
+        request = thunderhead_pb2.AcknowledgeFrameRequest(session_id=self.id, viewer_id=viewer_id, sequence=sequence)
+        while self._frames.is_active():
+            try:
+                self._stub.AcknowledgeFrame(request, timeout=self._timeout_s, metadata=self._metadata)
+                return
+            except grpc.RpcError as error:
+                with self._changed:
+                    if self._ended:
+                        return
+                    if error.code() not in _PASSING:
+                        # The stream continues. If it has ended, it reports why.
+                        self._problem = error_of(error)
+                        self._changed.notify_all()
+                        return
+                    self._changed.wait_for(lambda: self._ended, _ACKNOWLEDGE_AGAIN_S)
 
     @property
     def scene(self) -> scene_pb2.Scene:
@@ -169,10 +198,10 @@ class Session:
         return jpeg
 
     def picture(self) -> Picture:
-        """Renders the newest scene at full quality, as Client.picture does."""
+        """Renders the newest scene at full quality, as Client.picture does, within the client's render_timeout_s."""
         request = thunderhead_pb2.RenderImageRequest(scene=self.scene)
         with translated():
-            return Picture(self._stub.RenderImage(request, timeout=900.0, metadata=self._metadata))
+            return Picture(self._stub.RenderImage(request, timeout=self._render_timeout_s, metadata=self._metadata))
 
     def _repr_jpeg_(self) -> bytes:
         return self.jpeg

@@ -40,8 +40,8 @@ describe("what a browser decodes", () => {
     // is old.
     [{ secure: false }, "video needs HTTPS or localhost"],
     [{}, "this browser has no WebCodecs"],
-    [{ vp9: false }, "this browser decodes no VP9"],
-    [{ vp9: "throws" }, "this browser decodes no VP9"],
+    [{ vp9: false }, "this browser cannot decode VP9"],
+    [{ vp9: "throws" }, "this browser cannot decode VP9"],
   ] as const)("is no video in %o, and the readout says why", async (browser, why) => {
     const { codecs, whyNoVideo } = await learnIn(browser);
     expect(codecs).toEqual([Codec.JPEG, Codec.AVIF]);

@@ -112,6 +112,8 @@ function completeCamera(camera: Scene["camera"]): Scene["camera"] {
   return camera;
 }
 
+// A scene without a time gets the first time. The server would show the last one, but tests step
+// forward from here.
 export function completeScene(scene: Scene): Scene {
   const stormId = scene.stormId === "" ? "supercell" : scene.stormId;
   const rendering = completeRendering(scene.rendering);
@@ -121,7 +123,8 @@ export function completeScene(scene: Scene): Scene {
     const set = scene.fields.find((field) => field.hydrometeor === hydrometeor) ?? defaults;
     return set === undefined ? [] : [set];
   });
-  return withOutput(withCamera({ ...scene, stormId, rendering, fields }, camera), {
+  const completed = { ...scene, stormId, timeIndex: scene.timeIndex ?? 0, rendering, fields };
+  return withOutput(withCamera(completed, camera), {
     widthPx: scene.output?.widthPx ?? LIMITS.width.defaultValue,
     heightPx: scene.output?.heightPx ?? LIMITS.height.defaultValue,
     jpegQuality: scene.output?.jpegQuality ?? LIMITS.jpegQuality.defaultValue,

@@ -26,7 +26,7 @@ test("B shows the nearest valid time where it has not A's, and says how far away
   const later = run("2020-05-20T05:00:00Z", "2020-05-20T06:20:00Z", "2020-05-20T09:00:00Z");
   const near = ofB(1, later);
   expect(near).toEqual({ index: 1, awayS: 1200 });
-  expect(awayInWords(near)).toContain("the nearest, 20 min later");
+  expect(awayInWords(near)).toContain("the nearest one, 20 min later");
   expect(ofB(0, later)).toEqual({ index: 0, awayS: 18_000 });
   const exact = ofB(2, run("2020-05-20T07:00:00Z"));
   expect(exact).toEqual({ index: 0, awayS: 0 });

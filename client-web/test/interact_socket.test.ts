@@ -149,7 +149,7 @@ describe("a call over a WebSocket", () => {
     (await accepted()).terminate();
     await until(() => cut.seen.ends.length === 1);
     expect([seen, ruled.seen, cut.seen].map(({ ends }) => ends[0])).toEqual([
-      { kind: "broken", message: "The server is going away" },
+      { kind: "broken", message: "The server is stopping" },
       { kind: "broken", message: "The server closed the connection: too many messages" },
       { kind: "broken", message: "The server cannot be reached" },
     ]);

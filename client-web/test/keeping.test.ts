@@ -104,8 +104,8 @@ test("a file may name the accurate preset by its earlier name", () => {
 });
 
 test("a file without a scene says so", () => {
-  expect(() => sceneOfFile(PNG)).toThrow("no scene in it");
-  expect(() => sceneOfFile(new TextEncoder().encode("[1]"))).toThrow("no scene of Thunderhead");
+  expect(() => sceneOfFile(PNG)).toThrow("contains no scene");
+  expect(() => sceneOfFile(new TextEncoder().encode("[1]"))).toThrow("not a Thunderhead scene");
 });
 
 const EMPTY = create(SceneSchema);
@@ -194,6 +194,23 @@ test("named views are kept for their domain", () => {
   stored.set("thunderhead.views", '{"a":[{"name":"x"},"y"]}');
   again.load();
   expect(again.all.value.length).toBeLessThan(2);
+});
+
+test("a view that cannot be stored lasts as long as the page, also while others are shown", () => {
+  const full = () => {
+    throw new Error("full");
+  };
+  let domain = "a";
+  const views = new NamedViews({ getItem: () => '{"a":[]}', setItem: full }, () => domain);
+  views.load();
+  const time = { validTime: "", timeIndex: 1 };
+  expect(views.keep({ name: "x", camera: cameraOfPose(ORBIT), ...time, picture: "" })).toBe(false);
+  domain = "b";
+  views.load();
+  expect(views.all.value).toEqual([]);
+  domain = "a";
+  views.load();
+  expect(views.all.value.map(({ name }) => name)).toEqual(["x"]);
 });
 
 test("two views of one name are two views", () => {

@@ -295,7 +295,7 @@ describe("the page in a session", () => {
     expect(teacher.page.state.session.steering.value).toBe(true);
     teacher.page.actions.giveControl();
     await pass(50);
-    expect(teacher.page.state.session.editBlock.value).toBe("Nobody steers.");
+    expect(teacher.page.state.session.editBlock.value).toBe("No one steers.");
     teacher.page.actions.takeControl();
     await pass(50);
     expect(teacher.page.state.session.steering.value).toBe(true);
@@ -467,7 +467,7 @@ describe("the page in a session", () => {
     await pass(60_000);
     expect(texts()).toHaveLength(1);
     await page.actions.endSession();
-    expect(texts()).toContain(`Ending the session: ${END_NOT_SAVED}`);
+    expect(texts()).toContain(`The session could not be ended: ${END_NOT_SAVED}`);
     service.diskFull = false;
     page.actions.openNewSession();
     await pass(500);
@@ -505,7 +505,7 @@ describe("the page in a session", () => {
     service.forget(session());
 
     const stranger = await visit(address);
-    expect(stranger.page.state.session.ended.value).toMatch(/does not have this session/);
+    expect(stranger.page.state.session.ended.value).toMatch(/no longer has this session/);
     expect(service.sessions).toEqual([]);
     stranger.page.actions.openNewSession();
     await pass(500);
@@ -555,7 +555,7 @@ describe("the page in a session", () => {
     await pass(50);
     expect(viewer.page.state.timeIndex.value).toBe(0);
     expect(session().scene.timeIndex ?? 0).toBe(0);
-    expect(notices(viewer)).toMatch(/not taken/);
+    expect(notices(viewer)).toMatch(/not made/);
   });
 
   it("keeps a viewer's edit while the server still sees the lost connection steer", async () => {

@@ -84,6 +84,10 @@ describe("a stroke", () => {
     expect([kept[0], kept.at(-1)]).toEqual([zigzag[0], zigzag[399]]);
   });
 
+  it("keeps both ends, however few corners are allowed", () => {
+    expect(simplifiedStroke(circle.slice(0, 200), 1)).toEqual([circle[0], circle[199]]);
+  });
+
   it("has a length", () => {
     expect(strokeLengthPx([])).toBe(0);
     expect(strokeLengthPx(circle)).toBeCloseTo(2 * Math.PI * 200, -1);

@@ -7,6 +7,7 @@ import { withCamera, withSky, withTime } from "../src/core/scene";
 import { type Edit, SceneSync, type SceneVerdict } from "../src/core/scene_sync";
 import { PageState } from "../src/core/state";
 import { type Scene, SceneSchema } from "../src/gen/thunderhead/v1/scene_pb";
+import { StormDescriptionSchema, StormSummarySchema } from "../src/gen/thunderhead/v1/storm_pb";
 
 const sceneOf = (timeIndex: number): Scene => create(SceneSchema, { timeIndex });
 
@@ -199,6 +200,19 @@ describe("the page's state", () => {
     state.edit((scene) => scene);
     expect(edits).toEqual([2]);
     expect(state.timeIndex.value).toBe(2);
+  });
+
+  it("shows the storm's last time where the scene names none, as the server does", () => {
+    const state = new PageState();
+    state.adoptScene(create(SceneSchema, { stormId: "moore" }));
+    expect(state.timeIndex.value).toBe(0);
+    state.storms.value = [create(StormSummarySchema, { id: "moore", timeCount: 6 })];
+    expect(state.timeIndex.value).toBe(5);
+    const times = Array.from({ length: 8 }, () => ({}));
+    state.storm.value = create(StormDescriptionSchema, { id: "moore", times });
+    expect(state.timeIndex.value).toBe(7);
+    state.edit((scene) => withTime(scene, 0));
+    expect(state.timeIndex.value).toBe(0);
   });
 
   it("takes the camera from a frame where the scene leaves it open, and only there", () => {

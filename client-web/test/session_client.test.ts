@@ -250,7 +250,7 @@ describe("the session client", () => {
     session().leave(person as FakePerson);
     person?.end(
       Code.Aborted,
-      "another connection has joined with this connection's participant_key",
+      "this connection did not answer CheckAlive, so another one with its participant_key replaced it; join again",
     );
     await pass(2_500);
     expect(seen.joined).toHaveLength(2);

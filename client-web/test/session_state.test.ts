@@ -2,7 +2,9 @@
 // shared cases (tests/clients/cases/session_state.json) test who may do what.
 import { create, type MessageInitShape } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
+import { AccessToken } from "../src/core/access_token";
 import { OwnKeys, trimmedName } from "../src/core/own_keys";
+import { Participant } from "../src/core/participant";
 import { SessionState } from "../src/core/session_state";
 import {
   JoinedSchema,
@@ -47,7 +49,7 @@ describe("a session's state", () => {
     expect(session.editBlock.value).toBeUndefined();
     expect(session.steering.value).toBe(true);
     session.takePresence(presence([TEACHER, person(2n)], 0n));
-    expect(session.editBlock.value).toBe("Nobody steers.");
+    expect(session.editBlock.value).toBe("No one steers.");
   });
 
   it("keeps the controls of who steered usable while it joins again", () => {
@@ -170,6 +172,38 @@ describe("what the page keeps in the browser", () => {
     const spoilt = memory();
     spoilt.setItem("thunderhead.presenter-keys", '{"viewers": 1}');
     expect(new OwnKeys(spoilt).presenterKey("viewers")).toBeUndefined();
+  });
+
+  it("uses the newest text while the storage is full, and not the older one in it", () => {
+    const store = memory();
+    const [token, participant, keys] = [
+      new AccessToken(store),
+      new Participant(store),
+      new OwnKeys(store),
+    ];
+    const keep = (text: string) => {
+      token.set(text);
+      participant.keep("session", text);
+      keys.name = text;
+      keys.keep("viewers", text);
+    };
+    const kept = () => [
+      token.value,
+      participant.keyFor("session"),
+      keys.name,
+      keys.presenterKey("viewers"),
+    ];
+    keep("old");
+    const { setItem } = store;
+    store.setItem = () => {
+      throw new Error("full");
+    };
+    keep("new");
+    expect(kept()).toEqual(["new", "new", "new", "new"]);
+    store.setItem = setItem;
+    keep("newest");
+    expect(kept()).toEqual(["newest", "newest", "newest", "newest"]);
+    expect([...store.items.values()].join()).not.toContain("old");
   });
 
   it("trims a name to forty characters, counted as people count", () => {

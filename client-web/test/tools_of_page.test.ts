@@ -161,7 +161,7 @@ it("no cores of another time stay where the map of this one does not come", asyn
   page.showTime(1);
   await pass(1000);
   expect(page.state.stormMap.value).toBeUndefined();
-  expect(page.state.mapProblem.value).toMatch(/sends no map: the file is gone/);
+  expect(page.state.mapProblem.value).toMatch(/could not send the map: the file is gone/);
 });
 
 it("playing is not undone time by time", async () => {

@@ -1,4 +1,4 @@
-"""Looks through comments and documents for the phrases of words.txt and for sentences that are hard to read.
+"""Looks through comments, docstrings and documents for the phrases of words.txt and for sentences that are hard to read.
 
     words.py [--count] [PATH...]      the whole tree if no path is given
 
@@ -7,6 +7,7 @@ Reports each phrase with its replacement, each comment that begins with Of, Whos
 """
 
 import argparse
+import ast
 import collections
 import pathlib
 import re
@@ -16,10 +17,14 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MOST_WORDS = 30
 KEEP = "words: keep"
-# Start of a comment line, by file extension.
-COMMENTS = {".cc": "//", ".h": "//", ".glsl": "//", ".proto": "//", ".ts": "//", ".mjs": "//", ".py": "#", ".cmake": "#", ".sh": "#"}
+# Start of a comment line, by file extension or, for a file without one, by name. CSS has only comments in /* */.
+COMMENTS = {
+    **dict.fromkeys([".cc", ".h", ".glsl", ".frag", ".vert", ".comp", ".proto", ".ts", ".tsx", ".mjs"], "//"),
+    **dict.fromkeys([".py", ".cmake", ".sh", ".yaml", ".yml", ".toml", ".cfg", ".conf", ".service"], "#"),
+    **dict.fromkeys(["CMakeLists.txt", "Dockerfile", "dev"], "#"),
+}
 # Texts that other people or programs wrote.
-LEFT_OUT = re.compile(r"^(LICENSE|docs/lab/|docs/gallery/|docs/accuracy/|samples/|data/|docs/decisions/)")
+LEFT_OUT = re.compile(r"^(LICENSE|docs/lab/|docs/gallery/|samples/|data/)")
 BEGINNINGS = re.compile(r"^(Of|Whose|Where) ")
 
 
@@ -38,20 +43,56 @@ def paragraphs_of_code(text: str, mark: str) -> list[tuple[int, str, bool]]:
     found: list[tuple[int, str, bool]] = []
     lines: list[str] = []
     first = 0
+    indent = 0
     for number, line in enumerate([*text.splitlines(), ""], 1):
         stripped = line.strip()
         is_comment = stripped.startswith(mark) and not stripped.startswith("#!")
-        if is_comment:
-            if not lines:
-                first = number
-            lines.append(stripped[len(mark) :].strip())
-        if lines and (not is_comment or not lines[-1]):
+        content = stripped[len(mark) :] if is_comment else ""
+        own_indent = len(content) - len(content.lstrip())
+        # An indented line begins an example or an item. A line that is indented more continues it.
+        begins = own_indent < indent or (indent == 1 and own_indent > 2) or (indent > 2 and own_indent == indent)
+        if lines and (not content.strip() or begins):
             found.append((first, " ".join(lines).replace(KEEP, "").strip(), any(KEEP in each for each in lines)))
             lines = []
+        if content.strip():
+            if not lines:
+                first, indent = number, own_indent
+            lines.append(content.strip())
         # This handles a comment behind code.
         behind = line.find(f"  {mark} ")
         if not is_comment and behind > 0:
             found.append((number, line[behind + len(mark) + 2 :].replace(KEEP, "").strip(), KEEP in line))
+    return found
+
+
+def paragraphs_of_style_sheet(text: str) -> list[tuple[int, str, bool]]:
+    """Returns the comments of a style sheet."""
+    found = []
+    for match in re.finditer(r"/\*(.*?)\*/", text, re.DOTALL):
+        lines = [line.strip().lstrip("*").strip() for line in match[1].splitlines()]
+        found.append((text.count("\n", 0, match.start()) + 1, " ".join(lines).strip(), KEEP in match[1]))
+    return found
+
+
+def paragraphs_of_docstrings(text: str) -> list[tuple[int, str, bool]]:
+    """Returns the paragraphs of a Python source's docstrings."""
+    found = []
+    for node in ast.walk(ast.parse(text)):
+        if not isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+            continue
+        docstring = ast.get_docstring(node)
+        if not docstring:
+            continue
+        first = node.body[0].lineno
+        lines: list[str] = []
+        for number, line in enumerate([*docstring.splitlines(), ""]):
+            # An item such as "name: what it is" begins a paragraph, and indented lines continue it. Other indented
+            # lines are examples.
+            if lines and (not line or re.match(r"- |\w+: ", line)):
+                found.append((first + number - len(lines), " ".join(lines), any(KEEP in each for each in lines)))
+                lines = []
+            if lines or (line and not line.startswith(" ")):
+                lines.append(line.strip())
     return found
 
 
@@ -91,24 +132,30 @@ def paragraphs_of_document(text: str) -> list[tuple[int, str, bool]]:
 def sentences(paragraph: str) -> list[str]:
     """Returns the sentences, without code, links' addresses and footnotes."""
     plain = re.sub(r"`[^`]*`", "code", paragraph)
-    plain = re.sub(r"\]\([^)]*\)", "]", plain)
-    return re.split(r"(?<=[.!?:;])\s+(?=[A-Z\[(*\"-])", plain)
+    plain = re.sub(r"\]\([^)]*\)", "]", plain).replace("**", "")
+    # A sentence may begin with the lower-case name of a variable or file.
+    return re.split(r"(?<=[.!?:;])\s+(?=[A-Z\[(*\"-])|(?<=\w{3}\.)\s+(?=[a-z_])", plain)
 
 
 def faults_in(path: str, text: str, known: list[tuple[re.Pattern[str], str]]) -> list[tuple[int, str, str]]:
     """Returns line, kind and message of each fault of a file."""
     suffix = pathlib.PurePath(path).suffix
+    mark = COMMENTS.get(pathlib.PurePath(path).name, COMMENTS.get(suffix))
     if suffix == ".md":
         paragraphs = paragraphs_of_document(text)
-    elif suffix in COMMENTS:
-        paragraphs = paragraphs_of_code(text, COMMENTS[suffix])
+    elif suffix == ".css":
+        paragraphs = paragraphs_of_style_sheet(text)
+    elif mark is not None:
+        paragraphs = paragraphs_of_code(text, mark)
     else:
         return []
+    if suffix == ".py":
+        paragraphs += paragraphs_of_docstrings(text)
     faults = []
     for line, paragraph, keep in paragraphs:
         if keep:
             continue
-        prose = re.sub(r"`[^`]*`", "code", paragraph)
+        prose = re.sub(r"\]\([^)]*\)", "]", re.sub(r"`[^`]*`", "code", paragraph))
         for pattern, replacement in known:
             for match in pattern.finditer(prose):
                 faults.append((line, "phrase", f"'{match.group(0)}': write {replacement}"))

@@ -8,6 +8,7 @@
 #include "base/client_network.h"
 #include "base/error_details.h"
 #include "base/status.h"
+#include "spdlog/spdlog.h"
 
 namespace thunderhead::access {
 namespace {
@@ -75,6 +76,11 @@ absl::StatusOr<std::unique_ptr<Authenticator>> TrustTokens(const std::string& pa
 absl::StatusOr<std::unique_ptr<Authenticator>> TrustJwt(const std::string& path,
                                                         const JwtClaims& wanted) {
   THUNDERHEAD_ASSIGN_OR_RETURN(auto file, KeptFile<JwtKey>::Open(path, &JwtKey::Parse));
+  if (wanted.audience.empty()) {
+    spdlog::warn(
+        "--jwt-audience is not given: tokens of every audience (aud) are accepted, also those for "
+        "other services; give --jwt-audience if the tokens for this server have aud");
+  }
   return std::make_unique<Jwts>(std::move(file), wanted);
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "nlohmann/json.hpp"
@@ -83,6 +84,7 @@ absl::Status CheckAudience(const json& claims, const std::string& wanted) {
 
 absl::StatusOr<std::string> NameOfHolder(const json& claims) {
   THUNDERHEAD_ASSIGN_OR_RETURN(std::string name, TextClaim(claims, "sub", "name"));
+  if (absl::StrContains(name, '\0')) return WrongToken("has a name (sub) with a NUL character");
   if (!name.empty() && name.size() <= kMaxClaimBytes) return name;
   return WrongToken(absl::StrCat("has a name (sub) of ", name.size(), " bytes, and 1 to ",
                                  kMaxClaimBytes, " are allowed"));

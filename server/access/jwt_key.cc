@@ -1,13 +1,13 @@
 #include "access/jwt_key.h"
 
-#include <jwt.h>
 #include <openssl/bio.h>
+#include <openssl/crypto.h>
+#include <openssl/err.h>
 #include <openssl/evp.h>
+#include <openssl/hmac.h>
 #include <openssl/pem.h>
+#include <openssl/sha.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdlib>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -31,18 +31,24 @@ using Time = std::chrono::system_clock::time_point;
 constexpr int kMinRsaBits = 2048;
 constexpr std::size_t kMaxTokenBytes = 8192;
 
-using Token = std::unique_ptr<jwt_t, decltype(&jwt_free)>;
+using PublicKey = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
 
 absl::Status WrongForm() {
   return WrongToken(
       "does not have the form of a signed token: three parts in base64url (RFC 7515)");
 }
 
-absl::Status CheckPublicKey(const std::string& pem) {
+// Returns the public key in a PEM text, or nothing.
+PublicKey ReadPublicKey(const std::string& pem) {
   const std::unique_ptr<BIO, decltype(&BIO_free)> bytes(
       BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())), &BIO_free);
-  const std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)> key(
-      PEM_read_bio_PUBKEY(bytes.get(), nullptr, nullptr, nullptr), &EVP_PKEY_free);
+  PublicKey key(PEM_read_bio_PUBKEY(bytes.get(), nullptr, nullptr, nullptr), &EVP_PKEY_free);
+  ERR_clear_error();
+  return key;
+}
+
+absl::Status CheckPublicKey(const std::string& pem) {
+  const PublicKey key = ReadPublicKey(pem);
   if (key == nullptr || EVP_PKEY_base_id(key.get()) != EVP_PKEY_RSA ||
       EVP_PKEY_bits(key.get()) < kMinRsaBits) {
     return absl::InvalidArgumentError(
@@ -57,30 +63,13 @@ absl::Status CheckPublicKey(const std::string& pem) {
 absl::StatusOr<json> ParsePart(const std::string& part, const char* what) {
   std::string text;
   if (!absl::WebSafeBase64Unescape(part, &text)) return WrongForm();
+  // The parser would end at a NUL byte, and would skip a byte order mark (RFC 8259, 8.1).
+  const bool is_json_alone =
+      !absl::StrContains(text, '\0') && !absl::StartsWith(text, "\xEF\xBB\xBF");
   constexpr bool kThrows = false;
-  json fields = json::parse(text, nullptr, kThrows);
+  json fields = is_json_alone ? json::parse(text, nullptr, kThrows) : json();
   if (fields.is_object()) return fields;
   return WrongToken(absl::StrCat("has ", what, " that are not a valid JSON object in UTF-8"));
-}
-
-// Returns the reason why libjwt cannot parse a JSON value, or nothing. libjwt would report it as a
-// wrong signature.
-const char* UnreadableIn(const json& value, int depth = 0) {
-  constexpr int kMaxDepth = 100;
-  constexpr double kFirstTooLarge = 9223372036854775808.0;  // 2^63
-  if (depth > kMaxDepth) return "that are nested too deeply";
-  if (value.is_number() && std::abs(value.get<double>()) >= kFirstTooLarge) {
-    return "with a number that is too large";
-  }
-  if (value.is_string() && absl::StrContains(value.get_ref<const std::string&>(), '\0')) {
-    return "with a NUL character";
-  }
-  if (!value.is_structured()) return nullptr;
-  for (const auto& [key, each] : value.items()) {
-    if (absl::StrContains(key, '\0')) return "with a NUL character";
-    if (const char* const why = UnreadableIn(each, depth + 1); why != nullptr) return why;
-  }
-  return nullptr;
 }
 
 // Checks that the header names the algorithm of the server's key.
@@ -96,41 +85,76 @@ absl::Status CheckAlgorithm(const json& header, const char* wanted) {
                                  ", which this server's key is for"));
 }
 
-// Finds what is wrong with a token apart from its signature and the meaning of its claims. Rejects
-// two kinds of invalid tokens that libjwt accepts. The first has characters outside the base64url
-// alphabet after its signature. The second has a header that requires the reader to support
-// extensions (crit, RFC 7515, 4.1.11), because this reader supports none.
-absl::Status CheckForm(const std::string& token, const char* algorithm) {
-  constexpr std::string_view kBase64Url =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
+// Checks that the header names no other kind of token (typ) than a JWT (RFC 7519, 5.1) or an access
+// token (RFC 9068, 2.1). Tokens of other kinds are for other purposes (RFC 8725, 3.11).
+absl::Status CheckType(const json& header) {
+  const auto type = header.find("typ");
+  if (type == header.end()) return absl::OkStatus();
+  for (const char* const known : {"JWT", "at+jwt", "application/jwt", "application/at+jwt"}) {
+    if (type->is_string() && absl::EqualsIgnoreCase(type->get_ref<const std::string&>(), known)) {
+      return absl::OkStatus();
+    }
+  }
+  return WrongToken("has another type (typ) than JWT or at+jwt");
+}
+
+// The parts of a token of a valid form, whose signature and claims are not checked yet.
+struct ParsedToken {
+  std::string_view signed_text;
+  std::string signature;
+  json claims;
+};
+
+// Finds what is wrong with a token apart from its signature and the meaning of its claims. A header
+// that requires the reader to support extensions (crit, RFC 7515, 4.1.11) is an error, because this
+// reader supports none. The result refers to `token`.
+absl::StatusOr<ParsedToken> ParseToken(const std::string& token, const char* algorithm) {
   const std::vector<std::string> parts = absl::StrSplit(token, '.');
-  const bool is_base64 = std::ranges::all_of(parts, [&](const std::string& part) {
-    return part.find_first_not_of(kBase64Url) == std::string::npos;
-  });
-  if (parts.size() != 3 || !is_base64 || parts[0].empty() || parts[1].empty()) return WrongForm();
+  if (parts.size() != 3) return WrongForm();
+  ParsedToken parsed;
+  for (const std::string& part : parts) {
+    // The form is the canonical one, so that no one can write a token in another way.
+    const bool is_base64 = absl::WebSafeBase64Unescape(part, &parsed.signature) &&
+                           absl::WebSafeBase64Escape(parsed.signature) == part;
+    if (!is_base64 || (part.empty() && &part != &parts[2])) return WrongForm();
+  }
   if (parts[2].empty()) return WrongToken("has no signature");
+  parsed.signed_text = std::string_view(token).substr(0, token.rfind('.'));
   THUNDERHEAD_ASSIGN_OR_RETURN(const json header, ParsePart(parts[0], "header fields"));
   if (header.contains("crit")) {
     return WrongToken("demands extensions (crit) that this server does not have");
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckAlgorithm(header, algorithm));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const json claims, ParsePart(parts[1], "claims"));
-  for (const json* const part : {&header, &claims}) {
-    const char* const why = UnreadableIn(*part);
-    if (why == nullptr) continue;
-    return WrongToken(absl::StrCat("has ", part == &header ? "header fields " : "claims ", why));
-  }
-  return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(CheckType(header));
+  THUNDERHEAD_ASSIGN_OR_RETURN(parsed.claims, ParsePart(parts[1], "claims"));
+  return parsed;
 }
 
-// Returns the claims as libjwt has parsed them from the signed text.
-absl::StatusOr<json> ClaimsOf(jwt_t* token) {
-  const std::unique_ptr<char, decltype(&std::free)> text(jwt_get_grants_json(token, nullptr),
-                                                         &std::free);
-  constexpr bool kThrows = false;
-  json claims = text == nullptr ? json() : json::parse(text.get(), nullptr, kThrows);
-  if (claims.is_object()) return claims;
-  return WrongToken("has claims that are not a valid JSON object in UTF-8");
+const unsigned char* BytesOf(std::string_view text) {
+  return reinterpret_cast<const unsigned char*>(text.data());
+}
+
+bool IsSignedByHs256(const ParsedToken& token, const std::string& secret) {
+  unsigned char right[SHA256_DIGEST_LENGTH];
+  return HMAC(EVP_sha256(), secret.data(), static_cast<int>(secret.size()),
+              BytesOf(token.signed_text), token.signed_text.size(), right, nullptr) != nullptr &&
+         token.signature.size() == sizeof(right) &&
+         CRYPTO_memcmp(token.signature.data(), right, sizeof(right)) == 0;
+}
+
+bool IsSignedByRs256(const ParsedToken& token, const std::string& pem) {
+  const PublicKey key = ReadPublicKey(pem);
+  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(),
+                                                                        &EVP_MD_CTX_free);
+  // The padding of an RSA key's signature is that of RS256 by default (PKCS #1, version 1.5).
+  const bool is_signed =
+      key != nullptr && context != nullptr &&
+      EVP_DigestVerifyInit(context.get(), nullptr, EVP_sha256(), nullptr, key.get()) == 1 &&
+      EVP_DigestVerify(context.get(), BytesOf(token.signature), token.signature.size(),
+                       BytesOf(token.signed_text), token.signed_text.size()) == 1;
+  // Otherwise the next TLS call of this thread could report the errors of this one.
+  ERR_clear_error();
+  return is_signed;
 }
 
 }  // namespace
@@ -153,19 +177,13 @@ absl::StatusOr<JwtKey> JwtKey::Parse(const std::string& text) {
 absl::StatusOr<Identity> JwtKey::Verify(const std::string& token, const JwtClaims& wanted,
                                         Time now) const {
   if (token.size() > kMaxTokenBytes) return WrongToken("is too long");
-  THUNDERHEAD_RETURN_IF_ERROR(CheckForm(token, is_public_ ? "RS256" : "HS256"));
-  jwt_t* decoded = nullptr;
-  const int error =
-      jwt_decode(&decoded, token.c_str(), reinterpret_cast<const unsigned char*>(key_.data()),
-                 static_cast<int>(key_.size()));
-  const Token owned(decoded, &jwt_free);
-  // The token's algorithm must be that of the key. Otherwise anyone could sign a token by HS256
-  // with the text of the public key as the secret.
-  if (error != 0 || jwt_get_alg(decoded) != (is_public_ ? JWT_ALG_RS256 : JWT_ALG_HS256)) {
-    return WrongToken("is not signed with this server's key");
-  }
-  THUNDERHEAD_ASSIGN_OR_RETURN(const json claims, ClaimsOf(decoded));
-  return IdentityOf(claims, wanted, now);
+  // The algorithm is that of the key. Otherwise anyone could sign a token by HS256 with the text of
+  // the public key as the secret.
+  THUNDERHEAD_ASSIGN_OR_RETURN(const ParsedToken parsed,
+                               ParseToken(token, is_public_ ? "RS256" : "HS256"));
+  const bool is_signed = is_public_ ? IsSignedByRs256(parsed, key_) : IsSignedByHs256(parsed, key_);
+  if (!is_signed) return WrongToken("is not signed with this server's key");
+  return IdentityOf(parsed.claims, wanted, now);
 }
 
 }  // namespace thunderhead::access

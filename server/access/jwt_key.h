@@ -25,8 +25,9 @@ class JwtKey {
   // of less than 32 bytes or a key in another form.
   static absl::StatusOr<JwtKey> Parse(const std::string& text);
 
-  // Returns UNAUTHENTICATED if the token is malformed, forged, expired or not yet valid, or if a
-  // claim is missing or has another value than required.
+  // Accepts tokens of the types JWT and at+jwt (RFC 9068), and tokens without a type (typ). Returns
+  // UNAUTHENTICATED if the token is of another type, malformed, forged, expired or not yet valid,
+  // or if a claim is missing or has another value than required.
   absl::StatusOr<Identity> Verify(const std::string& token, const JwtClaims& wanted,
                                   std::chrono::system_clock::time_point now) const;
 

@@ -55,7 +55,8 @@ absl::StatusOr<std::string> ReadSecretFile(const std::string& path) {
     text.append(block, static_cast<std::size_t>(count));
     if (text.size() > kMaxBytes) {
       return absl::FailedPreconditionError(
-          absl::StrCat(path, " is larger than ", kMaxBytes, " bytes; is it the right file?"));
+          absl::StrCat(path, " is larger than ", kMaxBytes >> 20,
+                       " MiB; check that the flag names the right file"));
     }
   }
 }

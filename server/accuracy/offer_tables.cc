@@ -18,8 +18,14 @@ double PixelsOf(const glm::ivec2& size_px) { return static_cast<double>(size_px.
 absl::StatusOr<PricedSettings> ReadBuiltIn(const char* view) {
   const auto& texts = EmbeddedTradeTableTexts();
   const auto text = texts.find(view);
-  if (text == texts.end()) return absl::NotFoundError("there is none");
-  return ReadPricedSettings(text->second);
+  if (text == texts.end()) {
+    return absl::NotFoundError("the program has no accuracy table for them");
+  }
+  absl::StatusOr<PricedSettings> table = ReadPricedSettings(text->second);
+  if (table.ok()) return table;
+  return absl::Status(table.status().code(),
+                      absl::StrCat("the program cannot read their accuracy table (",
+                                   table.status().message(), ")"));
 }
 
 }  // namespace
@@ -29,9 +35,9 @@ OfferTables BuiltInOfferTables() {
   for (std::size_t i = 0; i < tables.size(); ++i) {
     tables[i] = ReadBuiltIn(kViews[i]);
     if (tables[i].ok()) continue;
-    tables[i] = absl::FailedPreconditionError(
-        absl::StrCat("no accuracy can be offered for ", kViews[i],
-                     " views; their table: ", tables[i].status().message()));
+    tables[i] = absl::FailedPreconditionError(absl::StrCat(
+        "max_error and max_milliseconds are not available for ", kViews[i], " views, because ",
+        tables[i].status().message(), "; choose a preset instead"));
   }
   return tables;
 }

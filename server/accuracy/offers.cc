@@ -61,17 +61,19 @@ std::optional<Unmet> WhyUnmet(const scene::Scene& scene, const Offer& offer) {
   }
   const std::string view(ViewNameOf(scene.camera));
   if (const auto* limit = std::get_if<scene::MaxError>(&scene.accuracy)) {
-    return Unmet{Unmet::Code::kErrorOutOfReach,
-                 absl::StrFormat("an error of %.3g is out of reach for %s views; the nearest is "
-                                 "%.3g, in %.3g ms a frame. The reference refines to any error",
-                                 limit->relative_rmse, view, offer.error, offer.milliseconds)};
+    return Unmet{
+        Unmet::Code::kErrorOutOfReach,
+        absl::StrFormat("no setting reaches an error of %.3g for %s views; the best has %.3g "
+                        "in %.3g ms a frame; for a smaller error, choose the technique reference",
+                        limit->relative_rmse, view, offer.error, offer.milliseconds)};
   }
-  return Unmet{Unmet::Code::kTimeOutOfReach,
-               absl::StrFormat(
-                   "%.3g ms a frame are out of reach for %s views of %dx%d on this machine; the "
-                   "nearest is %.3g ms, with an error of %.3g",
-                   std::get<scene::MaxMilliseconds>(scene.accuracy).milliseconds, view,
-                   scene.output.width_px, scene.output.height_px, offer.milliseconds, offer.error)};
+  return Unmet{
+      Unmet::Code::kTimeOutOfReach,
+      absl::StrFormat(
+          "no setting reaches %.3g ms a frame for %s views of %dx%d on this machine; the best "
+          "takes %.3g ms, with an error of %.3g; for less time, choose a smaller picture",
+          std::get<scene::MaxMilliseconds>(scene.accuracy).milliseconds, view,
+          scene.output.width_px, scene.output.height_px, offer.milliseconds, offer.error)};
 }
 
 Offer BestOffer(const std::vector<Offer>& offers, const scene::Accuracy& limit,

@@ -160,7 +160,8 @@ absl::StatusOr<PricedSettings> ReadPricedSettings(std::string_view text) {
     table.rows.push_back(row);
   }
   if (table.size_px.x == 0) {
-    return absl::InvalidArgumentError("it does not say its pictures' size ('# size: 160x107')");
+    return absl::InvalidArgumentError(
+        "it has no line with the size of its pictures; add one such as '# size: 160x107'");
   }
   if (table.rows.empty()) return absl::InvalidArgumentError("it has no rows");
   KeepCommonestJpegQuality(&table.rows);

@@ -2,12 +2,12 @@
 #include <memory>
 #include <string>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "app/commands.h"
 #include "app/interruption.h"
 #include "app/local_scene.h"
+#include "app/output_name.h"
 #include "app/scene_file.h"
 #include "base/status.h"
 #include "base/whole_file.h"
@@ -40,9 +40,9 @@ void Print(const interchange::VdbFile& file, const std::string& path) {
 
 absl::Status Export(const ExportFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
-  if (!absl::EndsWithIgnoreCase(flags.output, ".vdb")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("-o is '", flags.output, "'; its name must end in .vdb"));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckEnding("-o", flags.output, {".vdb"}));
+  if (!flags.view.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckEnding("--view", flags.view, {".json"}));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(const LocalScene local, OpenScene(flags.storm, flags.scene));
   THUNDERHEAD_ASSIGN_OR_RETURN(

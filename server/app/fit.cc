@@ -9,6 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/output_name.h"
 #include "app/seed_flag.h"
 #include "base/status.h"
 #include "base/stopwatch.h"
@@ -154,6 +155,11 @@ absl::Status WriteVolume(const FitFlags& flags, const clouds::MetaballCloud& clo
 absl::Status Fit(const FitFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_ASSIGN_OR_RETURN(const clouds::FitOptions options, OptionsOf(flags));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckEnding("-o", flags.output, {".balls"}));
+  if (!flags.volume.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckEnding("--volume", flags.volume, {".nc"}));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckNotInput("--volume", flags.volume, flags.storm));
+  }
   if (!flags.volume.empty() && flags.field != "extinction" && flags.field != "cloud") {
     return absl::InvalidArgumentError(
         absl::StrCat("--volume can write extinction or cloud, not ", flags.field));

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/output_name.h"
 #include "app/seed_flag.h"
 #include "base/status.h"
 #include "clouds/cloud_file.h"
@@ -122,10 +122,7 @@ absl::StatusOr<CloudShape> ShapeOf(const GenerateFlags& flags) {
 }
 
 absl::Status Generate(const GenerateFlags& flags) {
-  if (!absl::EndsWithIgnoreCase(flags.output, ".nc")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("-o is '", flags.output, "'; its name must end in .nc"));
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckEnding("-o", flags.output, {".nc"}));
   THUNDERHEAD_ASSIGN_OR_RETURN(const CloudShape shape, ShapeOf(flags));
   const Interruption interruption;
   runs::ProgressBar bar("generating");

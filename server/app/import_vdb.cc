@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/output_name.h"
 #include "base/status.h"
 #include "interchange/vdb_file_reader.h"
 #include "interchange/vdb_import.h"
@@ -94,10 +94,7 @@ void Print(const storm_files::CfCloud& cloud, const std::string& path) {
 
 absl::Status ImportVdb(const ImportVdbFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
-  if (!absl::EndsWithIgnoreCase(flags.output, ".nc")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("-o is '", flags.output, "'; its name must end in .nc"));
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckEnding("-o", flags.output, {".nc"}));
   std::optional<interchange::ImportOptions> options;
   // Without the name of a grid, reading the file gives the error that lists its grids.
   if (!flags.grid.empty()) {

@@ -11,6 +11,7 @@
 #include "accuracy/named_settings.h"
 #include "app/commands.h"
 #include "app/local_scene.h"
+#include "app/output_name.h"
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "gl/context.h"
@@ -46,12 +47,8 @@ absl::Status CheckFlags(const SlicesFlags& flags) {
     return absl::InvalidArgumentError(
         absl::StrCat("--slab is ", *flags.slab, "; the optical depth must be above 0"));
   }
-  if (!flags.output.empty() && !absl::EndsWithIgnoreCase(flags.output, ".svg") &&
-      !absl::EndsWithIgnoreCase(flags.output, ".csv")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("-o is '", flags.output, "'; its name must end in .svg or .csv"));
-  }
-  return absl::OkStatus();
+  if (flags.output.empty()) return absl::OkStatus();
+  return CheckEnding("-o", flags.output, {".svg", ".csv"});
 }
 
 // Returns the technique with that name; an empty name means half-angle slices.

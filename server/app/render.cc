@@ -9,6 +9,7 @@
 #include "accuracy/named_settings.h"
 #include "app/commands.h"
 #include "app/interruption.h"
+#include "app/output_name.h"
 #include "app/product_flags.h"
 #include "app/render_reference.h"
 #include "app/scene_file.h"
@@ -158,6 +159,9 @@ absl::Status Render(const RenderFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(*request.mutable_scene(), ReadScene(flags.scene));
   THUNDERHEAD_ASSIGN_OR_RETURN(const runs::ProductFormat format,
                                ProductFormatOf("-o", flags.output, flags.files));
+  if (flags.server.address.empty()) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckNotInput("-o", flags.output, flags.storm));
+  }
   THUNDERHEAD_RETURN_IF_ERROR(runs::CheckScene(format, request.scene()));
   if (request.scene().rendering().has_reference()) return ByReference(flags, format);
   if (flags.reference.AnyLimit() || !flags.reference.light.air ||

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/own_file.h"
 #include "base/slow_calls.h"
 #include "base/status.h"
 #include "base/whole_file.h"
@@ -111,7 +112,7 @@ absl::StatusOr<State> OpenState(const std::string& folder) {
 void KeepStormIds(const State& state, storm_store::LiveCatalogueOptions& catalogue) {
   if (state.folder.empty()) return;
   const std::string path = state.folder + "/" + kStormIds;
-  auto ids = state.calls->Ask(state.folder, [path] { return base::ReadWholeFile(path); });
+  auto ids = state.calls->Ask(state.folder, [path] { return base::ReadOwnFile(path); });
   if (ids.ok()) {
     catalogue.ids = *std::move(ids);
   } else if (!absl::IsNotFound(ids.status())) {

@@ -84,21 +84,37 @@ absl::Status NoRegularFile(const std::string& path) {
       absl::StrCat(path, ": is not a regular file; give the model's output file"));
 }
 
+// Returns the error `code` of opening a file.
+absl::Status NotOpened(const std::string& path, int code) {
+  const std::string why = absl::StrCat(" (", std::strerror(code), ")");
+  switch (code) {
+    case ENOENT:
+      return absl::NotFoundError(absl::StrCat(path, ": there is no such file; check the path"));
+    case ENOTDIR:
+    case ELOOP:
+    case ENAMETOOLONG:
+      return absl::NotFoundError(absl::StrCat(path, ": leads to no file", why, "; check the path"));
+    case ENXIO:  // a socket, or a device that does not exist
+    case ENODEV:
+      return NoRegularFile(path);
+    case EACCES:
+    case EPERM:
+      return absl::PermissionDeniedError(
+          absl::StrCat(path, ": may not be read", why, "; give this user permission to read it"));
+    case EMFILE:
+    case ENFILE:
+      return absl::UnavailableError(absl::StrCat(path, ": cannot be opened", why,
+                                                 "; try again, or raise the limit of open files"));
+    default:
+      return absl::UnavailableError(absl::StrCat(path, ": cannot be opened", why, "; try again"));
+  }
+}
+
 }  // namespace
 
 absl::StatusOr<FileDescriptor> OpenRegularFile(const std::string& path) {
   FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
-  if (!file.IsOpen()) {
-    const int error = errno;
-    if (error == ENOENT) {
-      return absl::NotFoundError(absl::StrCat(path, ": there is no such file; check the path"));
-    }
-    // A socket cannot be opened.
-    if (error == ENXIO) return NoRegularFile(path);
-    return absl::PermissionDeniedError(absl::StrCat(path, ": may not be read (",
-                                                    std::strerror(error),
-                                                    "); give this user permission to read it"));
-  }
+  if (!file.IsOpen()) return NotOpened(path, errno);
   struct stat information = {};
   if (fstat(file.Get(), &information) == 0 && S_ISREG(information.st_mode)) return file;
   return NoRegularFile(path);

@@ -30,11 +30,12 @@ class ByteSource {
 };
 
 // Opens a regular file for reading, but never a pipe or device, because opening one could block or
-// have side effects. Errors: NOT_FOUND; PERMISSION_DENIED; INVALID_ARGUMENT (no regular file).
+// have side effects. Errors: NOT_FOUND; PERMISSION_DENIED; INVALID_ARGUMENT (no regular file);
+// UNAVAILABLE (the storage fails, or too many files are open).
 absl::StatusOr<FileDescriptor> OpenRegularFile(const std::string& path);
 
 // Opens the file at `path`. If its bytes were registered by ReadFromMemory, these are used.
-// Errors: NOT_FOUND; PERMISSION_DENIED; INVALID_ARGUMENT (no regular file).
+// Errors are those of OpenRegularFile.
 absl::StatusOr<std::shared_ptr<const ByteSource>> OpenBytes(const std::string& path);
 
 // Makes OpenBytes use `bytes` for `path`, and refuse every path that was not registered. It is for

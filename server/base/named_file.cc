@@ -23,14 +23,8 @@ std::string SizeText(std::size_t bytes) {
   return absl::StrCat(bytes, " bytes");
 }
 
-}  // namespace
-
-absl::Status TooLarge(const std::string& what, std::size_t max_bytes) {
-  return absl::InvalidArgumentError(absl::StrCat(what, " has more than ", SizeText(max_bytes),
-                                                 ", the limit; check that it is the right file"));
-}
-
-absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t max_bytes) {
+absl::StatusOr<std::string> ReadStart(const std::string& path, std::size_t max_bytes,
+                                      bool may_be_pipe) {
   // Without O_NONBLOCK, opening a FIFO would wait for a program that writes to it.
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (!file.IsOpen()) return Unreadable(path, errno);
@@ -39,19 +33,40 @@ absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t m
   // The reads of a pipe wait for its writers.
   if (S_ISFIFO(found.st_mode) && ::fcntl(file.Get(), F_SETFL, 0) != 0)
     return Unreadable(path, errno);
-  if (!S_ISREG(found.st_mode) && !S_ISFIFO(found.st_mode)) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(path, " is neither a regular file nor a pipe; check the path"));
+  if (!S_ISREG(found.st_mode) && !(may_be_pipe && S_ISFIFO(found.st_mode))) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        path, may_be_pipe ? " is neither a regular file nor a pipe" : " is not a regular file",
+        "; check the path"));
   }
   std::string bytes;
   if (const int code = ReadUpTo(file, max_bytes, bytes); code != 0) return Unreadable(path, code);
   return bytes;
 }
 
-absl::StatusOr<std::string> ReadBoundedFile(const std::string& path, std::size_t max_bytes) {
-  absl::StatusOr<std::string> bytes = ReadFileStart(path, max_bytes + 1);
+absl::StatusOr<std::string> ReadWhole(const std::string& path, std::size_t max_bytes,
+                                      bool may_be_pipe) {
+  absl::StatusOr<std::string> bytes = ReadStart(path, max_bytes + 1, may_be_pipe);
   if (bytes.ok() && bytes->size() > max_bytes) return TooLarge(path, max_bytes);
   return bytes;
+}
+
+}  // namespace
+
+absl::Status TooLarge(const std::string& what, std::size_t max_bytes) {
+  return absl::InvalidArgumentError(absl::StrCat(what, " has more than ", SizeText(max_bytes),
+                                                 ", the limit; check that it is the right file"));
+}
+
+absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t max_bytes) {
+  return ReadStart(path, max_bytes, /*may_be_pipe=*/true);
+}
+
+absl::StatusOr<std::string> ReadBoundedFile(const std::string& path, std::size_t max_bytes) {
+  return ReadWhole(path, max_bytes, /*may_be_pipe=*/true);
+}
+
+absl::StatusOr<std::string> ReadRegularFile(const std::string& path, std::size_t max_bytes) {
+  return ReadWhole(path, max_bytes, /*may_be_pipe=*/false);
 }
 
 absl::Status CheckRegularFile(const std::string& path) {

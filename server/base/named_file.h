@@ -16,6 +16,10 @@ namespace thunderhead::base {
 // regular file nor a pipe, or is larger.
 absl::StatusOr<std::string> ReadBoundedFile(const std::string& path, std::size_t max_bytes);
 
+// Returns the contents of the regular file at `path`, or of one to which a link leads. A pipe is an
+// error, and opening it does not wait. Otherwise like ReadBoundedFile.
+absl::StatusOr<std::string> ReadRegularFile(const std::string& path, std::size_t max_bytes);
+
 // Returns the first `max_bytes` of a larger file. Otherwise like ReadBoundedFile.
 absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t max_bytes);
 

@@ -63,6 +63,15 @@ absl::Status Drop(const std::string& path) {
   return status;
 }
 
+// Checks that nothing, a regular file, or a link to one or to nothing is at `path`. The rename
+// would replace a device or a FIFO. A program that runs as root could replace /dev/null.
+absl::Status CheckReplaceable(const std::string& path) {
+  struct stat found {};
+  if (stat(path.c_str(), &found) != 0 || S_ISREG(found.st_mode)) return absl::OkStatus();
+  return absl::FailedPreconditionError(
+      absl::StrCat(path, " is not a regular file and is not replaced by one; choose another name"));
+}
+
 bool IsFileWithOneName(const struct stat& found) {
   return S_ISREG(found.st_mode) && found.st_nlink == 1;
 }
@@ -140,12 +149,14 @@ std::string PartialPath(std::string_view path) {
 }
 
 absl::StatusOr<std::string> StartPartial(const std::string& path) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckReplaceable(path));
   const Descriptor file(OpenPartial(path));
   if (file.Number() < 0) return NotWritten(path);
   return PartialPath(path);
 }
 
 absl::Status WriteWholeFile(const std::string& path, std::string_view bytes) {
+  THUNDERHEAD_RETURN_IF_ERROR(CheckReplaceable(path));
   Descriptor file(OpenPartial(path));
   if (file.Number() < 0) return NotWritten(path);
   if (!WriteAll(file.Number(), bytes) || file.Close() != 0) return Drop(path);
@@ -154,6 +165,10 @@ absl::Status WriteWholeFile(const std::string& path, std::string_view bytes) {
 
 absl::Status PublishFile(const std::string& path) {
   const std::string partial = PartialPath(path);
+  if (const absl::Status replaceable = CheckReplaceable(path); !replaceable.ok()) {
+    unlink(partial.c_str());
+    return replaceable;
+  }
   {
     // fsync flushes what any descriptor of the file has written. It refuses a FIFO.
     Descriptor file(open(partial.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));

@@ -1,6 +1,8 @@
 // Reads and writes whole files. A written file appears completely or not at all, even after a power
 // failure. For this purpose the file is written under a temporary name in the same folder, flushed
-// to the disk, and then renamed.
+// to the disk, and then renamed. A file may replace a regular file or a link to one, but nothing
+// else: a device, FIFO, socket or folder at its path is an error and stays. A link is replaced and
+// not followed.
 #pragma once
 
 #include <string>
@@ -19,11 +21,13 @@ absl::StatusOr<std::string> ReadWholeFile(const std::string& path);
 std::string PartialPath(std::string_view path);
 
 // Makes an empty file at PartialPath(path) and returns that path. Replaces anything there that is
-// not a regular file with one hard link, such as a planted link or FIFO. Errors are those of
+// not a regular file with one hard link, such as a planted link or FIFO. Returns
+// FAILED_PRECONDITION if the file could not replace what is at `path`. Other errors are those of
 // WriteProblem.
 absl::StatusOr<std::string> StartPartial(const std::string& path);
 
-// Writes the whole file. Returns FAILED_PRECONDITION if its folder is missing or not writable.
+// Writes the whole file. Returns FAILED_PRECONDITION if its folder is missing or not writable, or
+// if it cannot replace what is at `path`.
 // Returns UNAVAILABLE if the file cannot be written now, for example because the disk is full.
 absl::Status WriteWholeFile(const std::string& path, std::string_view bytes);
 
@@ -35,8 +39,8 @@ absl::Status WriteProblem(std::string_view message, int code);
 // Creates the folder and its parents. Errors are those of WriteProblem.
 absl::Status MakeFolders(const std::string& folder);
 
-// Renames the complete file at PartialPath(path) to `path`. Errors are those of WriteProblem. After
-// an error the partial file no longer exists.
+// Renames the complete file at PartialPath(path) to `path`. Errors are those of WriteWholeFile.
+// After an error the partial file no longer exists.
 absl::Status PublishFile(const std::string& path);
 
 }  // namespace thunderhead::base

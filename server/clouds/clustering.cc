@@ -44,8 +44,8 @@ class NearestCentre {
     const int farthest = std::max({cells_.x, cells_.y, cells_.z});
     for (int ring = 0; ring <= farthest; ++ring) {
       // The distance to all cells of this ring is at least this value.
-      const double aoffset_m = (ring - 1) * cell_m_;
-      if (ring > 0 && aoffset_m > 0.0 && aoffset_m * aoffset_m > best) break;
+      const double least_m = (ring - 1) * cell_m_;
+      if (ring > 0 && least_m > 0.0 && least_m * least_m > best) break;
       SearchRing(home, ring, point_m, &best, &nearest);
     }
     return nearest;

@@ -75,6 +75,14 @@ int Wanted(const Sprouting& sprouting) {
                           (sprouting.relative_radius * sprouting.relative_radius));
 }
 
+// Returns the maximum number of bubbles for the parent with this index if all parents together may
+// get `room` bubbles. The limit is the same for each parent, so that no part of the surface is left
+// bare. If there are more parents than bubbles, evenly distributed parents get one bubble each.
+int ShareOf(std::int64_t index, int parents, int room) {
+  if (room >= parents) return room / parents;
+  return static_cast<int>((index + 1) * room / parents - index * room / parents);
+}
+
 // Places bubbles on one parent by dart throwing.
 class Sprouter {
  public:
@@ -202,8 +210,7 @@ void Sprout(const Sprouting& sprouting, std::size_t first, CumulusSurface* surfa
   for (std::size_t parent = first; parent < end; ++parent) parents += sprouts(parent) ? 1 : 0;
   const int room = sprouting.max_bubbles - static_cast<int>(end);
   if (parents == 0 || room <= 0) return;
-  // The limit is the same for each parent, so that no part of the surface is left bare.
-  const int max = std::clamp(room / parents, 1, Wanted(sprouting));
+  int sprouted = 0;  // parents before the current one
   std::vector<std::size_t> near;
   for (std::size_t parent = first; parent < end; ++parent) {
     if (!sprouts(parent)) continue;
@@ -217,7 +224,9 @@ void Sprout(const Sprouting& sprouting, std::size_t first, CumulusSurface* surfa
         near.push_back(other);
       }
     }
-    Sprouter(sprouting, first, parent, surface).Run(near, max);
+    Sprouter(sprouting, first, parent, surface)
+        .Run(near, std::min(ShareOf(sprouted, parents, room), Wanted(sprouting)));
+    ++sprouted;
   }
 }
 

@@ -60,8 +60,8 @@ struct Sprouting {
   double lowest_sine = -0.6;      // the smallest sine of the normal's elevation angle at which
                                   // bubbles grow
   double min_radius_m = 0.0;      // parents that are smaller than this get no bubbles
-  int max_bubbles = 20000;        // maximum number of bubbles of the surface; close to it, each
-                                  // parent gets fewer
+  int max_bubbles = 20000;  // maximum number of bubbles after growth; close to it, each parent
+                            // gets fewer, or only some get one
   std::uint64_t seed = 1;
 };
 

@@ -43,7 +43,8 @@ absl::StatusOr<std::string> EncodeAvif(const frame::FineImage& image, const Avif
       image.height_px > kMaxAvifSide_px || image.rgb.size() != values) {
     return absl::InvalidArgumentError(
         absl::StrCat("a picture of ", image.width_px, " x ", image.height_px, " pixels with ",
-                     image.rgb.size(), " values cannot be encoded as AVIF"));
+                     image.rgb.size(), " values cannot be encoded as AVIF; each side must be 1 to ",
+                     kMaxAvifSide_px, " pixels, with three values a pixel"));
   }
   const Image coded(
       avifImageCreate(image.width_px, image.height_px, kBits, AVIF_PIXEL_FORMAT_YUV444),

@@ -131,7 +131,9 @@ absl::StatusOr<std::unique_ptr<Vp9Encoder>> Vp9Encoder::Create(int width_px, int
   state->image.reset(
       vpx_img_alloc(nullptr, VPX_IMG_FMT_I420, config.g_w, config.g_h, kAlignment_bytes));
   if (state->image == nullptr) {
-    return absl::ResourceExhaustedError("no memory for a picture of the VP9 encoder");
+    return absl::ResourceExhaustedError(
+        absl::StrCat("there is not enough memory to encode video of ", width_px, " x ", height_px,
+                     " pixels; choose a smaller picture"));
   }
   return std::unique_ptr<Vp9Encoder>(new Vp9Encoder(std::move(state), width_px, height_px));
 }

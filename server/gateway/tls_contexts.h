@@ -1,14 +1,14 @@
-// The certificate and key for TLS connections, which are loaded again when their files change. Open
-// connections keep the certificate with which they began. A separate thread checks the files every
-// second, so that a blocked storage delays no connection.
+// The TLS contexts of the HTTP port, which follow the files of certificate and key
+// (base/certificate_files.h). Open connections keep the certificate with which they began.
 #pragma once
 
 #include <boost/asio/ssl/context.hpp>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "absl/status/statusor.h"
-#include "base/looks.h"
+#include "base/certificate_files.h"
 #include "base/time_source.h"
 
 namespace thunderhead::gateway {
@@ -19,18 +19,19 @@ class TlsContexts {
   // Returns INVALID_ARGUMENT if the files cannot be read or do not match. `time` must outlive this
   // object.
   static absl::StatusOr<std::unique_ptr<TlsContexts>> Open(
-      std::string certificate, std::string key, const base::TimeSource& time = base::SteadyTime());
+      const std::string& certificate, const std::string& key,
+      const base::TimeSource& time = base::SteadyTime());
 
   // Returns the TLS context with the newest files that could be loaded.
   std::shared_ptr<boost::asio::ssl::context> Current();
 
  private:
-  struct State;
+  struct Newest;
 
-  TlsContexts(const std::shared_ptr<State>& state, const base::TimeSource& time);
+  explicit TlsContexts(std::shared_ptr<Newest> newest) : newest_(std::move(newest)) {}
 
-  const std::shared_ptr<State> state_;
-  const std::unique_ptr<base::Looks> looks_;
+  const std::shared_ptr<Newest> newest_;
+  std::unique_ptr<base::CertificateFiles> files_;
 };
 
 }  // namespace thunderhead::gateway

@@ -5,6 +5,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http/field.hpp>
 #include <boost/beast/websocket/option.hpp>
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +32,16 @@ constexpr milliseconds kCloseTimeout{5000};
 constexpr milliseconds kLeaveTimeout{1000};
 constexpr milliseconds kSlowestWatch{500};
 constexpr milliseconds kFastestWatch{5};
+
+std::string TextOf(const std::exception_ptr& error) {
+  try {
+    std::rethrow_exception(error);
+  } catch (const std::exception& known) {
+    return known.what();
+  } catch (...) {
+    return "an exception of an unknown type";
+  }
+}
 
 }  // namespace
 
@@ -84,7 +95,11 @@ net::awaitable<bool> WebSocketExchange::Accept(const Request& request) {
       [this, frames = FrameCounter(accepted_at_)](std::span<const std::byte> bytes) mutable {
         if (frames.Take(bytes, site_.Now())) return true;
         if (is_closing_) return false;
-        is_flooded_ = true;
+        is_cut_off_ = true;
+        if (frames.HasForbiddenCode()) {
+          EndWith({websocket::close_code::protocol_error, "close with a code of 1000 to 4999"});
+          return false;
+        }
         TellOfRefusal(site_.options, client_, "Message", TooManyEmptyFrames());
         EndWith({websocket::close_code::policy_error, "too many frames without content"});
         return false;
@@ -104,7 +119,7 @@ void WebSocketExchange::Spawn(Task task) {
   net::co_spawn(link_->Stream().get_executor(), std::move(task),
                 [self = shared_from_this()](const std::exception_ptr& error) {
                   if (error) {
-                    spdlog::error("closing a WebSocket after an internal error");
+                    spdlog::error("closing a WebSocket after an internal error: {}", TextOf(error));
                     self->Abandon();
                   }
                   self->tasks_ended_ = --self->tasks_ == 0;
@@ -167,7 +182,7 @@ net::awaitable<bool> WebSocketExchange::Write(const std::vector<net::const_buffe
 
 net::awaitable<void> WebSocketExchange::Close() {
   BeginClosing();
-  if (is_flooded_) {
+  if (is_cut_off_) {
     // Beast treats the failed read as the end of the connection and would send no close frame. So
     // the close frame is written here.
     link_->Stream().expires_after(kLeaveTimeout);

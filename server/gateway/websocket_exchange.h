@@ -90,7 +90,7 @@ class WebSocketExchange : public std::enable_shared_from_this<WebSocketExchange>
   bool is_pinging_ = false;
   bool is_held_back_ = false;
   bool is_closing_ = false;
-  bool is_flooded_ = false;  // true once the client has sent too many frames without data
+  bool is_cut_off_ = false;  // true once the FrameCounter has refused the client's frames
   std::optional<CloseReason> close_reason_;
   std::optional<std::chrono::steady_clock::time_point> leave_by_;
 

@@ -8,11 +8,12 @@
 #include <limits>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
-#include <string_view>
 
 #include "base/status.h"
 #include "base/stopwatch.h"
+#include "gl/chosen_targets.h"
 #include "gl/device.h"
 #include "glm/common.hpp"
 #include "shaders/bindings.h"
@@ -63,8 +64,9 @@ bool FindsComputingFaster(const std::string& renderer) {
 }  // namespace
 
 bool ComputesWholeTargets() {
-  static const char* const chosen = std::getenv("THUNDERHEAD_WHOLE_TARGETS");
-  if (chosen != nullptr) return std::string_view(chosen) == "compute";
+  static const std::optional<bool> chosen =
+      ComputesByChoice(std::getenv("THUNDERHEAD_WHOLE_TARGETS"));
+  if (chosen.has_value()) return *chosen;
   static std::mutex mutex;
   static std::map<std::string, bool> computes;
   const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));

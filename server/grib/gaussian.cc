@@ -80,9 +80,12 @@ absl::StatusOr<std::vector<double>> RowLatitudes_deg(const Octets& section, doub
   };
   THUNDERHEAD_ASSIGN_OR_RETURN(const int first, index(47));
   THUNDERHEAD_ASSIGN_OR_RETURN(const int last, index(56));
-  if (std::abs(last - first) != rows - 1 || (rows > 1 && (last < first) != from_south)) {
-    return BadGrid(absl::StrCat("has ", rows, " rows where its corners say ",
-                                std::abs(last - first) + 1, ", or they run in another direction"));
+  if (std::abs(last - first) != rows - 1) {
+    return BadGrid(absl::StrCat("has ", rows, " rows, but its first and last latitude say ",
+                                std::abs(last - first) + 1));
+  }
+  if (rows > 1 && (last < first) != from_south) {
+    return BadGrid("has rows whose direction contradicts its first and last latitude");
   }
   std::vector<double> latitudes = GaussianLatitudes_deg(count, std::min(first, last), rows);
   if (from_south) std::ranges::reverse(latitudes);
@@ -158,8 +161,9 @@ absl::StatusOr<std::vector<CellRow>> RowsOfCells(const std::vector<std::uint64_t
     }
     if (sum == points) return rows;
   }
-  return BadGrid(
-      absl::StrCat("has ", points, " points, which are not those of its rows between its corners"));
+  return BadGrid(absl::StrCat(
+      "has ", points,
+      " points, which is not the number in its rows between its first and last longitude"));
 }
 
 absl::StatusOr<Grid> ReadReduced(const Octets& section, const Earth& earth) {

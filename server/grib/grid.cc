@@ -40,7 +40,7 @@ absl::StatusOr<Grid> ReadLatitudeLongitude(const Octets& section, bool is_rotate
   }
   const double northwards_deg = last_latitude_deg - first_latitude_deg;
   if (grid.rows > 1 && (northwards_deg > 0.0) != grid.from_south) {
-    return BadGrid("has rows in another direction than its corners");
+    return BadGrid("has rows whose direction contradicts its first and last latitude");
   }
   const double eastwards_deg = LongitudeRange_deg(section, unit, grid);
   THUNDERHEAD_ASSIGN_OR_RETURN(

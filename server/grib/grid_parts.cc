@@ -146,8 +146,9 @@ absl::StatusOr<double> StepOf(const Octets& section, std::size_t octet, double u
   // Coordinates in the file are rounded, so a difference of half a step over the whole range is
   // allowed.
   if (count > 1 && std::abs(step_deg - from_range_deg) * (count - 1) > step_deg / 2.0) {
-    return BadGrid(absl::StrFormat("has %s %.6g degrees apart, but its corners say %.6g", name,
-                                   step_deg, from_range_deg));
+    return BadGrid(
+        absl::StrFormat("has %s %.6g degrees apart, but its first and last point say %.6g", name,
+                        step_deg, from_range_deg));
   }
   // The range is exact where the step is a rounded number.
   return count > 1 ? from_range_deg : step_deg;

@@ -1,6 +1,5 @@
 // Writes scalar grids as an OpenVDB file. The grids are sparse, have half floats on disk and a
-// linear transform to world metres. Only vdb_file.cc, vdb_grid_reader.cc and vdb_sizes.cc include
-// OpenVDB, because its headers take long to compile. This code does not depend on storms.
+// linear transform to world metres. This code does not depend on storms.
 #pragma once
 
 #include <array>

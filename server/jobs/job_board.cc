@@ -162,9 +162,10 @@ absl::StatusOr<ResultFile> JobBoard::ResultOf(const PicturePlace& picture) const
       break;
   }
   return base::WithDetails(
-      absl::NotFoundError(absl::StrCat("there is no such picture: ", record.problem.message.empty()
-                                                                         ? "it was cancelled"
-                                                                         : record.problem.message)),
+      absl::NotFoundError(absl::StrCat("this picture has no result: ",
+                                       record.problem.message.empty()
+                                           ? "it was cancelled; request it in a new job"
+                                           : record.problem.message)),
       {.reason = "NO_SUCH_RESULT"});
 }
 

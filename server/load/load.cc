@@ -217,7 +217,9 @@ class RunningLoad {
     }
     told.least_frames = least.value_or(0);
     const double now_s = Now_s();
-    told.frames_per_s = static_cast<double>(frames - told_frames_) / (now_s - told_s_) / viewers;
+    if (viewers > 0 && now_s > told_s_) {
+      told.frames_per_s = static_cast<double>(frames - told_frames_) / (now_s - told_s_) / viewers;
+    }
     told_frames_ = frames;
     told_s_ = now_s;
     for (const auto& [message, count] : errors_.Counts()) told.errors += count;

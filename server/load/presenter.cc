@@ -50,7 +50,7 @@ std::vector<Update> Presenter::Updates() const {
 void Presenter::OnMessage(google::protobuf::io::ZeroCopyInputStream& message,
                           std::size_t /*bytes*/) {
   const std::optional<Response> response = ReadResponse(message);
-  if (!response.has_value()) return errors_.Add("a message is no InteractResponse");
+  if (!response.has_value()) return errors_.Add(kUnreadable);
   if (response->part == Response::Part::kRefused) {
     return errors_.Add(absl::StrCat("the presenter was refused: ", response->refusal));
   }

@@ -11,6 +11,10 @@
 
 namespace thunderhead::load {
 
+// What a test reports if ReadResponse returns nothing.
+inline constexpr char kUnreadable[] =
+    "the server sent a message that cannot be parsed; run both programs in the same version";
+
 struct Response {
   enum class Part { kFrame, kSceneTaken, kRefused, kOther };
 

@@ -67,7 +67,7 @@ void Viewer::OnMessage(google::protobuf::io::ZeroCopyInputStream& message, std::
   const bool measuring = measuring_;
   if (measuring) record_.bytes += bytes;
   const std::optional<Response> response = ReadResponse(message);
-  if (!response.has_value()) return errors_.Add("a message is no InteractResponse");
+  if (!response.has_value()) return errors_.Add(kUnreadable);
   if (response->part == Response::Part::kRefused) return errors_.Add(response->refusal);
   if (response->part != Response::Part::kFrame) return;
   Acknowledge(response->sequence, response->own_view);

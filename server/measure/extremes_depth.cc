@@ -139,12 +139,12 @@ Extreme LightEnergy(const accuracy::PlainTechnique& plain,
             // If no light were lost, the medium would have no effect.
             const bool lit = seen.least_light < 0.999 && seen.radiance > 0.0;
             return Sound(
-                seen,
-                {absl::StrFormat("light and transmittance within 0 to 1, not all is left, some is "
-                                 "seen and at most %g",
-                                 most),
-                 absl::StrFormat("least light %g, seen %g", seen.least_light, seen.radiance),
-                 lit && seen.radiance <= most});
+                seen, {absl::StrFormat(
+                           "light and transmittance from 0 to 1, some light lost, radiance above 0 "
+                           "and at most %g",
+                           most),
+                       absl::StrFormat("least light %g, seen %g", seen.least_light, seen.radiance),
+                       lit && seen.radiance <= most});
           }};
 }
 

@@ -130,8 +130,10 @@ absl::StatusOr<Seen> Probe::Draw(const scene::Scene& scene, const volume::Hydrom
     THUNDERHEAD_RETURN_IF_ERROR(renderer.DrawView(medium, settings));
     seen.eye = frame::ReadLinear(renderer.Eye());
   } else {
-    return absl::UnimplementedError(
-        absl::StrCat("no probe draws ", std::string(scene::NameOf(technique)), " without its sky"));
+    return absl::UnimplementedError(absl::StrCat(
+        "the technique ", std::string(scene::NameOf(technique)), " cannot be probed; choose ",
+        std::string(scene::LightVolume::kName), ", ", std::string(scene::HalfAngle::kName), " or ",
+        std::string(scene::Metaballs::kName)));
   }
   seen.unsound = UnsoundPicture(seen.eye);
   if (seen.unsound.empty()) seen.unsound = light.unsound;

@@ -199,7 +199,8 @@ std::string TradeSvg(const TradeTitle& title, const std::vector<TradeRow>& rows)
   LogPlot plot(times, errors,
                absl::StrFormat("%s, %s: relative RMSE against milliseconds a frame (%dx%d)",
                                title.storm, title.view, title.size_px.x, title.size_px.y),
-               "blue: light volume, orange: half-angle slices, green: metaballs; hollow: paper "
+               "blue: light volume, orange: half-angle slices, green: metaballs, violet: cumulus "
+               "surfaces; hollow: paper "
                "transport; line: "
                "Pareto front");
   plot.Line(FrontOf(rows), "#555555");

@@ -115,6 +115,19 @@ std::vector<double> PackedLimits(int group, int variable, const char* name, bool
   return limits;
 }
 
+// Returns an error if an attribute of the valid range is NaN, so that it limits nothing.
+absl::Status CheckLimits(int group, int variable) {
+  for (const char* name : {"valid_min", "valid_max", "valid_range"}) {
+    const std::vector<double> limits = NumbersOf(group, variable, name);
+    if (std::ranges::none_of(limits, [](double limit) { return std::isnan(limit); })) continue;
+    return absl::InvalidArgumentError(
+        absl::StrCat("its attribute ", name,
+                     " is not a number (NaN), so it does not say which values are valid; write a "
+                     "number there, or remove the attribute"));
+  }
+  return absl::OkStatus();
+}
+
 void ReadValidRange(int group, int variable, bool integers, Packing& packing) {
   double lowest = packing.lowest;
   double highest = packing.highest;
@@ -196,6 +209,7 @@ absl::StatusOr<Packing> PackingOf(int group, int variable) {
   packing.fill = Meant(OneNumberOr(group, variable, "_FillValue", DefaultFill(type)), packing);
   packing.missing = NumbersOf(group, variable, "missing_value");
   for (double& code : packing.missing) code = Meant(code, packing);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckLimits(group, variable));
   ReadValidRange(group, variable, span != 0.0, packing);
   return packing;
 }

@@ -31,7 +31,7 @@ struct Packing {
 
 // Reads the attributes scale_factor, add_offset, _FillValue, missing_value, valid_min, valid_max,
 // valid_range and _Unsigned. Returns INVALID_ARGUMENT, with the attribute's name and the remedy, if
-// scale_factor or add_offset is not one finite number.
+// scale_factor or add_offset is not one finite number, or if a limit of the valid range is NaN.
 absl::StatusOr<Packing> PackingOf(int group, int variable);
 
 // Returns the numbers of an attribute, or an empty array if it is absent or a text.

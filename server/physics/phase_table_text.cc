@@ -116,9 +116,10 @@ absl::StatusOr<Header> ReadHeader(Lines& lines, PhaseTableContent& content) {
 // Checks that the figures in the header agree with the tabulated curve.
 absl::Status CheckFigures(const Header& header, const PhaseTable& table) {
   if (header.forward_angle_deg != PhaseTable::kForwardAngleDeg) {
-    return absl::InvalidArgumentError(
-        absl::StrFormat("forward_share is of %g degrees; it must be of %g",
-                        header.forward_angle_deg, PhaseTable::kForwardAngleDeg));
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "the line forward_share gives the share within %g degrees; it must be within "
+        "%g degrees; regenerate the file with ./dev tables",
+        header.forward_angle_deg, PhaseTable::kForwardAngleDeg));
   }
   for (std::size_t c = 0; c < kPhaseChannels; ++c) {
     const double share = table.ForwardShare(c);

@@ -10,6 +10,7 @@
 #include <OpenEXR/ImfStringAttribute.h>
 
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <exception>
 #include <stdexcept>
@@ -32,6 +33,12 @@ constexpr std::array<const char*, 3> kError = {"stderr.R", "stderr.G", "stderr.B
 constexpr char kOpacity[] = "storm.opacity";
 constexpr char kOpticalDepth[] = "storm.optical_depth";
 constexpr char kDepthOneDistance[] = "storm.depth_one_distance";
+
+// OpenEXR allocates some rows when it opens a file. This limit keeps their memory small.
+constexpr int kMaxSide_px = 65535;
+// ZIP, the compression of the files that EncodeExr writes, makes data at most this many times
+// smaller.
+constexpr std::uint64_t kMaxCompression = 1032;
 
 // A channel of a file, and the address of its first value in a picture.
 struct Channel {
@@ -116,6 +123,26 @@ class BytesIn final : public Imf::IStream {
   std::size_t at_ = 0;
 };
 
+// Makes OpenEXR refuse files with longer sides.
+void LimitSides() {
+  static const bool is_limited = (Imf::Header::setMaxImageSize(kMaxSide_px, kMaxSide_px), true);
+  static_cast<void>(is_limited);
+}
+
+// Returns an error if a file of `bytes` cannot contain the values of as many pixels as its header
+// says, so that no memory is allocated for them.
+absl::Status CheckSize(const glm::ivec2& size_px, std::uint64_t values_per_pixel,
+                       std::uint64_t bytes, const std::string& what) {
+  const std::uint64_t pixels =
+      static_cast<std::uint64_t>(size_px.x) * static_cast<std::uint64_t>(size_px.y);
+  if (pixels * values_per_pixel * sizeof(float) <= kMaxCompression * bytes) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat("'", what, "' has ", bytes, " bytes, too few for its ", size_px.x, " x ",
+                   size_px.y, " pixels; give a complete file that thunderhead wrote"));
+}
+
 ExrAttributes AttributesOf(const Imf::Header& header) {
   ExrAttributes attributes;
   for (auto at = header.begin(); at != header.end(); ++at) {
@@ -172,6 +199,7 @@ void SetExrNumber(const std::string& name, float value, std::string* exr) {
 
 absl::StatusOr<ExrPicture> DecodeExr(const std::string& exr, const std::string& what) {
   try {
+    LimitSides();
     BytesIn bytes(exr);
     Imf::InputFile file(bytes);
     const auto has = [&](const char* name) {
@@ -179,8 +207,9 @@ absl::StatusOr<ExrPicture> DecodeExr(const std::string& exr, const std::string& 
     };
     for (const char* name : kRadiance) {
       if (has(name)) continue;
-      return absl::InvalidArgumentError(absl::StrCat("'", what, "' has no channel ", name,
-                                                     "; give a file that thunderhead wrote"));
+      return absl::InvalidArgumentError(absl::StrCat("'", what,
+                                                     "' is an OpenEXR file without the channel ",
+                                                     name, "; give a file that thunderhead wrote"));
     }
     const Imath::Box2i window = file.header().dataWindow();
     if (window.min.x != 0 || window.min.y != 0) {
@@ -190,10 +219,16 @@ absl::StatusOr<ExrPicture> DecodeExr(const std::string& exr, const std::string& 
     ExrPicture result;
     LinearPicture& picture = result.picture;
     picture.size_px = {window.max.x + 1, window.max.y + 1};
+    const bool has_error = has(kError[0]) && has(kError[1]) && has(kError[2]);
+    std::uint64_t values = has_error ? 6 : 3;
+    for (const char* name : {kOpacity, kOpticalDepth, kDepthOneDistance}) {
+      values += has(name) ? 1 : 0;
+    }
+    THUNDERHEAD_RETURN_IF_ERROR(CheckSize(picture.size_px, values, exr.size(), what));
     const auto width = static_cast<std::size_t>(picture.size_px.x);
     const std::size_t pixels = width * static_cast<std::size_t>(picture.size_px.y);
     picture.radiance.resize(pixels);
-    if (has(kError[0]) && has(kError[1]) && has(kError[2])) picture.standard_error.resize(pixels);
+    if (has_error) picture.standard_error.resize(pixels);
     if (has(kOpacity)) picture.opacity.resize(pixels);
     if (has(kOpticalDepth)) picture.optical_depth.resize(pixels);
     if (has(kDepthOneDistance)) picture.depth_one_distance_m.resize(pixels);
@@ -203,7 +238,8 @@ absl::StatusOr<ExrPicture> DecodeExr(const std::string& exr, const std::string& 
     return result;
   } catch (const std::exception& error) {
     return absl::InvalidArgumentError(
-        absl::StrCat("cannot read '", what, "': ", error.what(), "; give an OpenEXR file"));
+        absl::StrCat("cannot read '", what, "': ", error.what(),
+                     "; give an OpenEXR file that thunderhead wrote"));
   }
 }
 

@@ -31,7 +31,8 @@ absl::StatusOr<std::string> EncodeExr(const LinearPicture& picture,
 void SetExrNumber(const std::string& name, float value, std::string* exr);
 
 // A picture and its attributes, decoded from a file's bytes. Error messages name the file as
-// `what`. DecodeExr returns INVALID_ARGUMENT for anything but a file of this format.
+// `what`. DecodeExr returns INVALID_ARGUMENT for anything but a file of this format, and for a file
+// with too few bytes for the picture's size in its header.
 struct ExrPicture {
   LinearPicture picture;
   ExrAttributes attributes;

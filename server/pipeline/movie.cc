@@ -114,6 +114,14 @@ absl::Status Failed(const std::string& path, const std::string& what, int code) 
   return base::WriteProblem(message, AVUNERROR(code));
 }
 
+// Returns the error of libavcodec or libavutil, which has nothing to do with the file.
+absl::Status NotMade(const std::string& path, const std::string& what, int code) {
+  const std::string message =
+      absl::StrCat(path, " cannot be made: ", what, " failed (", Reason(code), ")");
+  if (AVUNERROR(code) >= kErrnos) return absl::InvalidArgumentError(message);
+  return base::WriteProblem(message, AVUNERROR(code));
+}
+
 // Makes an empty partial file. Another user of the folder may have put a link or a FIFO in its
 // place, which is removed and never opened. On failure, returns a descriptor that is not open, and
 // sets errno.
@@ -167,9 +175,9 @@ class MovieWriter {
     }
     Settings encoder(kind.encoder);
     int code = avcodec_open2(codec_.get(), codec, encoder.Address());
-    if (code < 0) return Failed(path_, kind.codec_name, code);
+    if (code < 0) return EncoderFailed(code);
     stream_ = avformat_new_stream(format, nullptr);
-    if (stream_ == nullptr) return Failed(path_, "a stream", AVERROR(ENOMEM));
+    if (stream_ == nullptr) return NotMade(path_, "the allocation of a stream", AVERROR(ENOMEM));
     stream_->time_base = codec_->time_base;
     stream_->avg_frame_rate = codec_->framerate;
     avcodec_parameters_from_context(stream_->codecpar, codec_.get());
@@ -190,7 +198,7 @@ class MovieWriter {
     }
     for (int i = 0; i < frames; ++i) {
       if (const int code = av_frame_make_writable(frame_.get()); code < 0) {
-        return Failed(path_, "a frame", code);
+        return NotMade(path_, "the allocation of a frame", code);
       }
       const std::array<const std::uint8_t*, 1> source = {image.rgb.data()};
       const std::array<int, 1> stride = {3 * image.width_px};
@@ -210,6 +218,10 @@ class MovieWriter {
   }
 
  private:
+  absl::Status EncoderFailed(int code) const {
+    return NotMade(path_, absl::StrCat("the ", KindOf(path_)->codec_name, " encoder"), code);
+  }
+
   absl::Status MakeFrame() {
     frame_.reset(av_frame_alloc());
     frame_->format = codec_->pix_fmt;
@@ -218,7 +230,7 @@ class MovieWriter {
     frame_->color_range = codec_->color_range;
     frame_->colorspace = codec_->colorspace;
     if (const int code = av_frame_get_buffer(frame_.get(), 0); code < 0) {
-      return Failed(path_, "memory", code);
+      return NotMade(path_, "the allocation of a frame", code);
     }
     packet_.reset(av_packet_alloc());
     scaler_.reset(sws_getContext(codec_->width, codec_->height, AV_PIX_FMT_RGB24, codec_->width,
@@ -233,13 +245,13 @@ class MovieWriter {
   // Encodes a frame and writes the packets that are ready. A null frame flushes the encoder.
   absl::Status Encode(const AVFrame* frame) {
     if (const int code = avcodec_send_frame(codec_.get(), frame); code < 0) {
-      return Failed(path_, "a frame", code);
+      return EncoderFailed(code);
     }
     THUNDERHEAD_CHECK(stream_ != nullptr, path_);
     while (true) {
       int code = avcodec_receive_packet(codec_.get(), packet_.get());
       if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) return absl::OkStatus();
-      if (code < 0) return Failed(path_, "a frame", code);
+      if (code < 0) return EncoderFailed(code);
       packet_->duration = 1;
       av_packet_rescale_ts(packet_.get(), codec_->time_base, stream_->time_base);
       packet_->stream_index = stream_->index;

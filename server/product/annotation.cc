@@ -184,12 +184,15 @@ void DrawLegend(const std::vector<LegendEntry>& legend, Pen& pen) {
   for (const LegendEntry& entry : legend) text_px = std::max(text_px, pen.WidthOf(entry.name));
   const double line_px = pen.LineHeight_px();
   const double swatch_px = kSwatch * pen.Line_px();
+  const double room_px = pen.Width_px() - 2.0 * pen.Margin_px() - 1.6 * swatch_px;
   const double left_px =
       std::max(pen.Margin_px(), pen.Width_px() - pen.Margin_px() - text_px - 1.6 * swatch_px);
   double top_px = pen.Height_px() - pen.Margin_px() - line_px * static_cast<double>(legend.size());
   for (const LegendEntry& entry : legend) {
     pen.Swatch(left_px, top_px + 0.5 * (line_px - swatch_px), entry.color);
-    top_px = pen.TextAt(left_px + 1.6 * swatch_px, top_px, 0.0, entry.name);
+    // In a picture without room for a name, the name keeps a letter.
+    top_px =
+        pen.TextAt(left_px + 1.6 * swatch_px, top_px, std::max(room_px, pen.Line_px()), entry.name);
   }
 }
 

@@ -27,7 +27,7 @@ absl::StatusOr<GdalLibrary> Open() {
   if (library == nullptr) {
     return absl::FailedPreconditionError(
         absl::StrCat("GeoTIFF needs GDAL, which is not installed (", dlerror(),
-                     "); install Debian's package libgdal32"));
+                     "); install Debian's package libgdal32 and restart thunderhead"));
   }
   GdalLibrary gdal;
   const bool whole = Find(library, "GDALRegister_GTiff", gdal.RegisterGTiff) &&
@@ -46,8 +46,9 @@ absl::StatusOr<GdalLibrary> Open() {
                      Find(library, "CPLQuietErrorHandler", gdal.QuietErrorHandler) &&
                      Find(library, "CPLGetLastErrorMsg", gdal.GetLastErrorMsg);
   if (!whole) {
-    return absl::FailedPreconditionError(absl::StrCat("this machine's GDAL lacks a function (",
-                                                      dlerror(), "); install Debian's libgdal32"));
+    return absl::FailedPreconditionError(
+        absl::StrCat("the installed GDAL lacks a function that GeoTIFF needs (", dlerror(),
+                     "); install Debian's package libgdal32 and restart thunderhead"));
   }
   gdal.RegisterGTiff();
   return gdal;

@@ -61,6 +61,8 @@ GroupWeights::GroupWeights(const Medium& medium, const scene::MediumSettings& se
   even_albedo = even_albedo && !colored;
   const bool whole = !paper && !translucent;
   phase_cut = whole ? 0.0F : static_cast<float>(std::pow(std::sin(theta_f / 4.0), 2.0));
+  // Light buffers have one channel for all groups, and Riley et al. give one cumulative phase
+  // function for all particles, because all of them scatter mainly forwards.
   const physics::PhaseFunction& first = medium.groups.front().phase;
   cumulative_phase = {physics::CumulativePhase(first, theta_f / 4.0),
                       physics::CumulativePhase(first, theta_f / 2.0)};

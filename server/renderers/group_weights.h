@@ -39,7 +39,7 @@ struct GroupWeights {
   bool even_albedo = true;  // all groups have the same albedo and no colours
   float phase_cut = 0.0F;   // haversine of the angle within which phase functions are cut
   // Cumulative phase function of the first group at theta_f / 4 and theta_f / 2 (Vis eq. 13). Only
-  // the paper's transport uses it.
+  // the paper's transport uses it, for the light of all groups, as the paper does.
   glm::vec2 cumulative_phase{0.0F};
 
   GroupWeights(const Medium& medium, const scene::MediumSettings& settings);

@@ -54,8 +54,8 @@ absl::Status UnknownTechnique(std::string_view name, const TechniqueRegistry& re
     if (!technique->Capabilities().images) continue;
     absl::StrAppend(&known, known.empty() ? "" : ", ", std::string(technique->Name()));
   }
-  return absl::InvalidArgumentError(absl::StrCat("there is no technique '", std::string(name),
-                                                 "' that draws; the techniques are ", known));
+  return absl::InvalidArgumentError(absl::StrCat("no renderer draws the technique '",
+                                                 std::string(name), "'; choose one of: ", known));
 }
 
 }  // namespace

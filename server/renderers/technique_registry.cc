@@ -44,8 +44,9 @@ class ByTechnique final : public Preparation {
 
 absl::Status TechniqueRegistry::Add(std::shared_ptr<const TechniqueFactory> technique) {
   if (Find(technique->Name()) != nullptr) {
-    return absl::AlreadyExistsError(
-        absl::StrCat("there is a technique '", std::string(technique->Name()), "' already"));
+    return absl::AlreadyExistsError(absl::StrCat("there is already a technique '",
+                                                 std::string(technique->Name()),
+                                                 "'; give the new technique another name"));
   }
   techniques_.push_back(std::move(technique));
   return absl::OkStatus();

@@ -101,9 +101,9 @@ absl::StatusOr<std::unique_ptr<PortListener>> PortListener::Open(
   if (!sockets.empty()) {
     return std::unique_ptr<PortListener>(new PortListener(std::move(sockets), port));
   }
-  return absl::UnavailableError(absl::StrCat(
-      "cannot listen for gRPC on ", address,
-      ": it is not an address of this machine, or the port is in use; choose another"));
+  return absl::UnavailableError(absl::StrCat("cannot listen for gRPC on ", address,
+                                             ": it is not an address of this machine, or the port "
+                                             "is in use; choose another address or port"));
 }
 
 absl::Status PortListener::Start(Acceptor acceptor, OpenSockets open, const Options& options,

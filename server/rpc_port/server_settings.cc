@@ -1,8 +1,6 @@
 #include "rpc_port/server_settings.h"
 
 #include <grpcpp/resource_quota.h>
-#include <grpcpp/security/tls_certificate_provider.h>
-#include <grpcpp/security/tls_credentials_options.h>
 
 namespace thunderhead::rpc_port {
 namespace {
@@ -27,16 +25,6 @@ void RefuseCompression(grpc::ServerBuilder& builder) {
 }
 
 }  // namespace
-
-std::shared_ptr<grpc::ServerCredentials> CredentialsOf(const TlsFiles& files) {
-  if (files.certificate.empty()) return grpc::InsecureServerCredentials();
-  grpc::experimental::TlsServerCredentialsOptions options(
-      std::make_shared<grpc::experimental::FileWatcherCertificateProvider>(
-          files.key, files.certificate, files.look_every_s));
-  options.watch_identity_key_cert_pairs();
-  options.set_cert_request_type(GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE);
-  return grpc::experimental::TlsServerCredentials(options);
-}
 
 void SetLimits(grpc::ServerBuilder& builder, const PortLimits& limits, int max_response_bytes) {
   grpc::ResourceQuota quota("thunderhead");

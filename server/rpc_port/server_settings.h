@@ -1,11 +1,9 @@
 // The settings of a gRPC server: TLS, timeouts, and limits of memory and sizes.
 #pragma once
 
-#include <grpcpp/security/server_credentials.h>
 #include <grpcpp/server_builder.h>
 
 #include <chrono>
-#include <memory>
 #include <string>
 
 #include "rpc_port/port_limits.h"
@@ -21,8 +19,6 @@ struct TlsFiles {
 
 // The time for a peer to acknowledge a keepalive ping or sent data. Then its connection is closed.
 inline constexpr std::chrono::milliseconds kKeepaliveTimeout{10'000};
-
-std::shared_ptr<grpc::ServerCredentials> CredentialsOf(const TlsFiles& files);
 
 // Sets the limits and timeouts of the server. Its responses have at most `max_response_bytes`.
 void SetLimits(grpc::ServerBuilder& builder, const PortLimits& limits, int max_response_bytes);

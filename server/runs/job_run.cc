@@ -44,11 +44,6 @@ absl::StatusOr<absl::Time> ParseIso(const std::string& text) {
                    "', which is not a time; run the server and this program in the same version"));
 }
 
-bool MayComeBack(const absl::Status& status) {
-  return absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status) ||
-         absl::IsCancelled(status);
-}
-
 void PauseForServer(const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any stopped;
@@ -305,14 +300,16 @@ absl::Status JobRun::Watch(JobShare& share, const std::stop_token& stop) {
 }
 
 absl::Status JobRun::Make(JobShare& share, const std::stop_token& stop) {
-  auto lost_since = steady_clock::now();
+  bool is_lost = false;
+  auto lost_since = steady_clock::now();  // if lost: the end of the first call that failed
   while (true) {
     const std::size_t left = share.pictures.size();
     absl::Status status = share.job_id.empty() ? Create(share) : absl::OkStatus();
     if (status.ok()) status = Watch(share, stop);
     if (stop.stop_requested()) return RunInterrupted();
-    if (share.pictures.size() < left) lost_since = steady_clock::now();
+    if (share.pictures.size() < left) is_lost = false;
     if (status.ok() || share.pictures.empty()) break;
+    if (!std::exchange(is_lost, true)) lost_since = steady_clock::now();
     if (!MayComeBack(status) || steady_clock::now() - lost_since > kServerPatience) return status;
     PauseForServer(stop);
   }

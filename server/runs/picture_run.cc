@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -91,8 +92,45 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanOf(
   return pictures;
 }
 
+namespace {
+
+using FileId = std::pair<dev_t, ino_t>;
+
+// Returns the files from which the pictures are made.
+std::set<FileId> InputsOf(const std::vector<PlannedPicture>& pictures) {
+  std::set<std::string> paths;
+  for (const PlannedPicture& picture : pictures) paths.insert(picture.input);
+  std::set<FileId> files;
+  for (const std::string& path : paths) {
+    struct stat about {};
+    if (stat(path.c_str(), &about) == 0) files.emplace(about.st_dev, about.st_ino);
+  }
+  return files;
+}
+
+// Checks that the product replaces neither a storm file nor the manifest.
+absl::Status CheckPlace(const std::string& product, const std::set<FileId>& inputs,
+                        const std::string& manifest) {
+  struct stat about {};
+  if (lstat(product.c_str(), &about) == 0 && inputs.contains({about.st_dev, about.st_ino})) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--product would replace the storm file '", product, "'; give another name"));
+  }
+  if (fs::absolute(product).lexically_normal() != fs::absolute(manifest).lexically_normal()) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(absl::StrCat("a product and the manifest would both be '",
+                                                 product, "'; give another name by --manifest"));
+}
+
+}  // namespace
+
 absl::Status CheckNames(const PictureRunOptions& options,
                         const std::vector<PlannedPicture>& pictures) {
+  const std::set<FileId> inputs = InputsOf(pictures);
+  for (const PlannedPicture& picture : pictures) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckPlace(picture.path, inputs, options.manifest));
+  }
   std::vector<pipeline::ProductKey> keys;
   keys.reserve(pictures.size());
   for (const PlannedPicture& picture : pictures) keys.push_back(picture.key);

@@ -46,7 +46,8 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanOf(
     const PictureRunOptions& options, const std::vector<storm_store::CataloguedStorm>& storms,
     std::size_t storm, const std::string& name, const std::vector<int>& times, bool assume_run);
 
-// Returns INVALID_ARGUMENT if two pictures would have the same name.
+// Returns INVALID_ARGUMENT if two pictures would have the same name, or if one would replace a
+// storm file of the plan or the manifest.
 absl::Status CheckNames(const PictureRunOptions& options,
                         const std::vector<PlannedPicture>& pictures);
 

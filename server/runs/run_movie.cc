@@ -120,6 +120,26 @@ absl::Status MakeMovie(const std::string& path, const View& view,
   return absl::OkStatus();
 }
 
+absl::Status CheckNoManifest(const std::string& path, const std::string& manifest) {
+  namespace fs = std::filesystem;
+  if (fs::absolute(path).lexically_normal() != fs::absolute(manifest).lexically_normal()) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(absl::StrCat("a movie and the manifest would both be '", path,
+                                                 "'; give another name by --manifest"));
+}
+
+// Returns the error for two movies of one name, and what distinguishes them.
+absl::Status SameName(const std::string& path, const pipeline::ProductKey& one,
+                      const pipeline::ProductKey& other) {
+  const bool of_one_storm = one.storm == other.storm;
+  return absl::InvalidArgumentError(absl::StrCat(
+      "--movie would give the movies of ",
+      of_one_storm ? absl::StrCat("two runs of storm ", one.storm)
+                   : absl::StrCat("storms ", one.storm, " and ", other.storm),
+      " the same name '", path, "'; add ", of_one_storm ? "{run:%Y%m%d%H}" : "{storm}"));
+}
+
 }  // namespace
 
 absl::Status MakeMovies(const MovieOptions& options, const std::vector<PlannedPicture>& pictures,
@@ -130,12 +150,11 @@ absl::Status MakeMovies(const MovieOptions& options, const std::vector<PlannedPi
     if (!picture.outcome.ok()) continue;
     if (picture.view > 0 && !options.name->Has("view")) continue;
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::string path, options.name->For(picture.key));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckNoManifest(path, run.Options().manifest));
     std::vector<const PlannedPicture*>& movie = movies[path];
     if (!movie.empty() && (movie.front()->key.storm != picture.key.storm ||
                            movie.front()->key.run != picture.key.run)) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          "--movie would give the movies of storms ", movie.front()->key.storm, " and ",
-          picture.key.storm, " the same name '", path, "'; add {storm} or {run:%Y%m%d%H}"));
+      return SameName(path, movie.front()->key, picture.key);
     }
     movie.push_back(&picture);
   }

@@ -26,6 +26,11 @@ std::shared_ptr<grpc::Channel> ChannelTo(const ServerPlace& place) {
 
 }  // namespace
 
+bool MayComeBack(const absl::Status& status) {
+  return absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status) ||
+         absl::IsCancelled(status);
+}
+
 ServerLink::ServerLink(const ServerPlace& place)
     : address_(place.address),
       token_(place.token),
@@ -41,15 +46,20 @@ absl::Status ServerLink::StatusOf(const grpc::Status& status) const {
   if (status.error_code() == grpc::StatusCode::UNIMPLEMENTED) {
     return absl::UnimplementedError(
         absl::StrCat("the server at ", address_,
-                     " is older than this program and has no render jobs: run both in the same "
-                     "version"));
+                     " lacks a call that this program needs; run both in the same version (",
+                     status.error_message(), ")"));
   }
   if (!status.ok() && stop_.stop_requested()) {
     return absl::CancelledError("interrupted; run the same command again to continue");
   }
   absl::Status same = FromGrpc(status);
-  if (!absl::IsUnavailable(same) && !absl::IsDeadlineExceeded(same)) return same;
-  return base::Annotate(same, absl::StrCat("the server at ", address_, " cannot be reached"));
+  if (absl::IsUnavailable(same)) {
+    return base::Annotate(same, absl::StrCat("the server at ", address_, " cannot be reached"));
+  }
+  if (!absl::IsDeadlineExceeded(same)) return same;
+  return base::Annotate(same, absl::StrCat("the server at ", address_,
+                                           " has not answered in time; look at its log, or try "
+                                           "again"));
 }
 
 }  // namespace thunderhead::runs

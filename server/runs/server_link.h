@@ -22,6 +22,10 @@ struct ServerPlace {
   std::string tls_roots;  // PEM text of the certificates to trust; empty for no TLS
 };
 
+// Returns true for the errors of a call that may succeed later, because the server is restarting,
+// cannot be reached or answers slowly.
+bool MayComeBack(const absl::Status& status);
+
 class ServerLink {
  public:
   // Creates the link without waiting for the server.
@@ -51,10 +55,10 @@ class ServerLink {
   // Adds the access token to the call.
   void Prepare(grpc::ClientContext& context) const;
 
-  // Converts a gRPC status to one with the same code and message. For UNAVAILABLE and
-  // DEADLINE_EXCEEDED, the message also says that the server cannot be reached. For UNIMPLEMENTED,
-  // the message says that the server is older than this program. Any error becomes CANCELLED once a
-  // stop is requested.
+  // Converts a gRPC status to one with the same code and message. For UNAVAILABLE, the message also
+  // says that the server cannot be reached, and for DEADLINE_EXCEEDED that it has not answered in
+  // time. For UNIMPLEMENTED, the message says that the versions differ. Any error becomes CANCELLED
+  // once a stop is requested.
   absl::Status StatusOf(const grpc::Status& status) const;
 
  private:

@@ -160,7 +160,8 @@ absl::Status Ended(const WatchedFolder& folder, bool in_time) {
   if (!in_time && folder.WaitingCount() > 0) {
     return absl::UnavailableError(absl::StrCat("the time of --until has passed, but ",
                                                folder.WaitingCount(),
-                                               " files are not complete or not drawn"));
+                                               " files are not complete or not drawn; run the "
+                                               "command again when they are complete"));
   }
   if (folder.BadCount() > 0) {
     return absl::DataLossError(

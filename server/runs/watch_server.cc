@@ -96,14 +96,17 @@ class Watching {
 absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRun& run,
                          RunProgress& progress, const std::stop_token& stop) {
   Watching watching(watch, server, run, progress);
-  auto reached = steady_clock::now();
+  bool is_lost = false;
+  auto lost_since = steady_clock::now();  // if lost: the end of the first look that failed
   while (!stop.stop_requested()) {
     absl::Status looked = watching.Look(stop);
     if (stop.stop_requested()) break;
     if (looked.ok()) {
-      reached = steady_clock::now();
-    } else if (!absl::IsUnavailable(looked) || steady_clock::now() - reached > kWatchPatience) {
-      return looked;
+      is_lost = false;
+    } else {
+      // A call that the server does not answer takes longer than kWatchPatience.
+      if (!std::exchange(is_lost, true)) lost_since = steady_clock::now();
+      if (!MayComeBack(looked) || steady_clock::now() - lost_since > kWatchPatience) return looked;
     }
     if (watch.is_over(watching.TimesDone())) return watching.Bad();
     PauseForLook(stop);

@@ -23,8 +23,9 @@ struct ServerWatch {
 };
 
 // Watches until the watch is over. Then returns OK, or DATA_LOSS if some pictures can never be
-// made. Returns CANCELLED if `stop` is requested, and UNAVAILABLE if the server cannot be reached
-// for a minute. Any other error of a call ends the watch at once.
+// made. Returns CANCELLED if `stop` is requested, and UNAVAILABLE or DEADLINE_EXCEEDED if the
+// server cannot be reached or does not answer, again a minute after the first failure. Any other
+// error of a call ends the watch at once.
 absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRun& run,
                          RunProgress& progress, const std::stop_token& stop);
 

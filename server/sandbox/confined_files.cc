@@ -140,7 +140,7 @@ std::vector<absl::StatusOr<storm_files::StormFile>> ConfinedFiles::DescribeEach(
   std::vector<Description> descriptions;
   const auto take = [&](Receiver& from_reader) -> absl::Status {
     Visit(from_reader, descriptions);
-    if (descriptions.size() != paths.size()) return absl::InternalError("the number of its files");
+    if (descriptions.size() != paths.size()) return absl::InternalError("the number of files");
     for (const Description& each : descriptions) {
       if (each.code == 0) THUNDERHEAD_RETURN_IF_ERROR(CheckPlausible(each.file));
     }
@@ -155,8 +155,7 @@ std::vector<absl::StatusOr<storm_files::StormFile>> ConfinedFiles::DescribeEach(
     const bool is_late = paths.size() > 1 && options_.time->Now() - began >= patience;
     if (absl::IsAborted(together) || (!together.ok() && is_late)) {
       files.emplace_back(absl::AbortedError(absl::StrCat(
-          paths[i],
-          ": was not described, because files of its batch are slow; describe it alone")));
+          paths[i], ": was not read, because other files read with it are slow; open it alone")));
     } else if (!together.ok()) {
       files.push_back(DescribeFor(paths[i], {}, DescriptionPatience(patience, false)));
     } else if (descriptions[i].code != 0) {

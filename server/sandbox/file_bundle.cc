@@ -105,7 +105,8 @@ absl::StatusOr<FileBundle> Bundle(const std::vector<std::string>& paths, const O
   if (total > most_bytes) {
     return absl::ResourceExhaustedError(
         absl::StrCat(paths.front(), " and the ", paths.size() - 1, " other files of its time have ",
-                     total >> 20, " MiB, more than may be read; give fewer or smaller files"));
+                     total >> 20, " MiB, more than the ", most_bytes >> 20,
+                     " MiB that may be read; give fewer or smaller files"));
   }
   THUNDERHEAD_RETURN_IF_ERROR(Write(bundle.file.Get(), paths.front(), table));
   for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -131,7 +132,7 @@ absl::StatusOr<std::vector<BundledFile>> FilesOfBundle(std::span<const std::byte
     files[i].bytes = taker.Take(sizes[i]);
   }
   if (taker.Ok()) return files;
-  return absl::InternalError("the files of a time did not arrive whole");
+  return absl::InternalError("the files of a time arrived incomplete");
 }
 
 }  // namespace thunderhead::sandbox

@@ -64,11 +64,11 @@ bool AllFinite(std::span<const float> values, float least) {
 }
 
 absl::Status CheckGrid(const volume::RegularGrid& grid) {
-  THUNDERHEAD_RETURN_IF_ERROR(Require(AreCells(grid.cells), "the number of its cells"));
+  THUNDERHEAD_RETURN_IF_ERROR(Require(AreCells(grid.cells), "the number of cells"));
   for (int axis = 0; axis < 3; ++axis) {
     const bool sound = Within(grid.spacing_m[axis], 1e-6, kFarthest_m) &&
                        Within(grid.low_corner_m[axis], -kFarthest_m, kFarthest_m);
-    THUNDERHEAD_RETURN_IF_ERROR(Require(sound, "the size of its cells"));
+    THUNDERHEAD_RETURN_IF_ERROR(Require(sound, "the size of cells"));
   }
   return absl::OkStatus();
 }
@@ -148,28 +148,28 @@ absl::Status CheckAir(const volume::AirDensity& air, const glm::ivec3& cells) {
 
 absl::Status CheckPlausible(const storm_files::StormFile& file) {
   for (const storm_files::StormFile& other : file.others) {
-    THUNDERHEAD_RETURN_IF_ERROR(Require(other.others.empty(), "the number of its storms"));
+    THUNDERHEAD_RETURN_IF_ERROR(Require(other.others.empty(), "the number of storms"));
     THUNDERHEAD_RETURN_IF_ERROR(CheckPlausible(other));
   }
   static const absl::Time kFirst = absl::FromCivil(absl::CivilYear(0), absl::UTCTimeZone());
   static const absl::Time kLast = absl::FromCivil(absl::CivilYear(10'000), absl::UTCTimeZone());
   const bool in_time = std::ranges::all_of(
       file.times, [](absl::Time time) { return time >= kFirst && time < kLast; });
-  THUNDERHEAD_RETURN_IF_ERROR(Require(in_time, "its times"));
+  THUNDERHEAD_RETURN_IF_ERROR(Require(in_time, "the times"));
   const bool is_part = !file.part.of.empty();
   const bool may_be_empty = is_part && file.part.at_all_times;
   THUNDERHEAD_RETURN_IF_ERROR(
       Require((may_be_empty || !file.times.empty()) && file.times.size() <= storm_files::kMaxTimes,
-              "the number of its times"));
+              "the number of times"));
   // The description of a file that is only a part of a time has no other members to check.
   if (is_part) return absl::OkStatus();
-  THUNDERHEAD_RETURN_IF_ERROR(Require(AreCells(file.cells), "the number of its cells"));
+  THUNDERHEAD_RETURN_IF_ERROR(Require(AreCells(file.cells), "the number of cells"));
   THUNDERHEAD_RETURN_IF_ERROR(
       Require(Within(file.dx_m, 1e-6, kFarthest_m) && Within(file.dy_m, 1e-6, kFarthest_m),
-              "the size of its cells"));
+              "the size of cells"));
   const bool fields = !file.fields.empty() && file.fields.size() <= physics::kHydrometeorCount &&
                       std::ranges::all_of(file.fields, IsKnown);
-  THUNDERHEAD_RETURN_IF_ERROR(Require(fields, "its fields"));
+  THUNDERHEAD_RETURN_IF_ERROR(Require(fields, "the fields"));
   const bool place = Within(file.latitude_deg.value_or(0.0), -90.0, 90.0) &&
                      Within(file.longitude_deg.value_or(0.0), -360.0, 360.0);
   const bool middles = (file.middles.empty() || file.middles.size() == file.times.size()) &&
@@ -178,14 +178,14 @@ absl::Status CheckPlausible(const storm_files::StormFile& file) {
                                 Within(middle.longitude_deg, -360.0, 360.0);
                        });
   const bool projections = file.projections.empty() || file.projections.size() == file.times.size();
-  return Require(place && middles && projections, "its place");
+  return Require(place && middles && projections, "the place");
 }
 
 absl::Status CheckPlausible(const storm_files::VerticalGrid& grid) {
   return Require(grid.cells >= 1 && grid.cells <= kMaxCells &&
                      Within(grid.low_m, -kFarthest_m, kFarthest_m) &&
                      Within(grid.spacing_m, 1e-6, kFarthest_m),
-                 "its heights");
+                 "the heights");
 }
 
 absl::Status CheckPlausible(const volume::HydrometeorFields& fields, const glm::ivec2& columns) {
@@ -193,12 +193,12 @@ absl::Status CheckPlausible(const volume::HydrometeorFields& fields, const glm::
   const glm::ivec3 cells = fields.grid.cells;
   THUNDERHEAD_RETURN_IF_ERROR(
       Require(glm::ivec2(cells) == columns,
-              "the number of its columns, which was different before (was the file replaced?)"));
+              "the number of columns, which was different before (was the file replaced?)"));
   for (const volume::HydrometeorField& field : fields.fields) {
     THUNDERHEAD_RETURN_IF_ERROR(CheckField(field, fields.grid.CellCount()));
   }
   THUNDERHEAD_RETURN_IF_ERROR(
-      Require(IsInside(fields.condensate, cells), "the box of its condensate"));
+      Require(IsInside(fields.condensate, cells), "the box of the condensate"));
   THUNDERHEAD_RETURN_IF_ERROR(
       CheckGround(fields, static_cast<std::size_t>(cells.x) * static_cast<std::size_t>(cells.y)));
   THUNDERHEAD_RETURN_IF_ERROR(CheckAir(fields.air, cells));

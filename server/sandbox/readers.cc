@@ -72,9 +72,8 @@ absl::Status EndedEarly(const std::string& path, int signal, const ReaderLimits&
 }
 
 absl::Status Nonsense(const std::string& path, const std::string& what) {
-  return Failed(
-      path, "nonsense",
-      absl::DataLossError(absl::StrCat("gave an impossible value for ", what, kWhatToDo)));
+  return Failed(path, "nonsense",
+                absl::DataLossError(absl::StrCat("sent an invalid value for ", what, kWhatToDo)));
 }
 
 void Log(const Note& note) {
@@ -129,7 +128,7 @@ absl::Status Judge(const std::string& path, const Receiver& from_reader, Child& 
     case Receiver::Failure::kStopped:
       return Stopped(path);
     case Receiver::Failure::kTooLarge:
-      return Nonsense(path, "its size");
+      return Nonsense(path, "the size of its reply");
     default:
       return EndedEarly(path, child.End(milliseconds(1000)).value_or(0), limits);
   }
@@ -165,7 +164,7 @@ absl::Status Listen(const std::string& path, Receiver& from_reader, Reply wanted
       break;
     }
   }
-  return Nonsense(path, "its kind");
+  return Nonsense(path, "the kind of its reply");
 }
 
 // The time for which an idle reader is kept for another request about its file.
@@ -252,7 +251,7 @@ std::optional<absl::Status> Readers::Ask(std::unique_ptr<StartedReader> reader, 
     if (patience.is_trial && from_reader.Why() == Receiver::Failure::kTooLate) {
       return absl::AbortedError(absl::StrCat(request.path, ": needs longer than ",
                                              absl::FormatDuration(absl::FromChrono(patience.time)),
-                                             "; try it again with more patience"));
+                                             "; try again with a longer time limit"));
     }
     return Judge(request.path, from_reader, reader->Process(), limits);
   }

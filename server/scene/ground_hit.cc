@@ -11,7 +11,7 @@ namespace thunderhead::scene {
 Surface::Surface(const Scene& scene, const volume::HydrometeorFields& fields)
     : fields_(fields), view_(ViewOf(scene, fields)) {}
 
-double Surface::Height_m(const glm::dvec3& place_m) const {
+double Surface::WorldZ_m(const glm::dvec3& place_m) const {
   const glm::dvec2 away_m = glm::dvec2(place_m) - view_.touch_m;
   const double fall_m = 0.5 * view_.ground_curvature_per_m * glm::dot(away_m, away_m);
   return volume::TerrainHeight_m(fields_, glm::dvec2(place_m)) - fall_m;
@@ -21,7 +21,7 @@ std::optional<double> Surface::MeetsRay_m(const glm::dvec3& origin_m, const glm:
                                           double farthest_m) const {
   const auto is_below = [&](double along_m) {
     const glm::dvec3 place_m = origin_m + along_m * direction;
-    return place_m.z < Height_m(place_m);
+    return place_m.z < WorldZ_m(place_m);
   };
   if (is_below(0.0)) return std::nullopt;
   double before_m = 0.0;

@@ -17,7 +17,7 @@ class Surface {
   Surface(const Scene& scene, const volume::HydrometeorFields& fields);
 
   // Returns the z coordinate of the ground below or above a place, in world coordinates.
-  double Height_m(const glm::dvec3& place_m) const;
+  double WorldZ_m(const glm::dvec3& place_m) const;
 
   // Returns the distance along the ray at which the ray first goes below the ground, accurate to a
   // metre. Returns nothing if that is beyond `farthest_m` or if the ray begins below the ground.

@@ -24,10 +24,10 @@ struct Depths {
 class DepthRays {
  public:
   DepthRays(const Scene& scene, const volume::HydrometeorFields& fields)
-      : medium_(DetailedMedium::Of(scene, fields, ShowsDetail(scene))),
+      : medium_(DetailedMedium::Of(scene, fields, FieldLookOf(scene.rendering.technique).detail)),
         surface_(scene, fields),
         view_(ViewOf(scene, fields)),
-        steps_per_half_cell_(ShowsDetail(scene) ? kDetailSteps : 1.0) {}
+        steps_per_half_cell_(FieldLookOf(scene.rendering.technique).detail ? kDetailSteps : 1.0) {}
 
   // Returns the optical depth and the depth-one distance along the ray through normalised device
   // coordinates.
@@ -52,11 +52,6 @@ class DepthRays {
   // Integration steps in each half cell if the medium has detail. The wavelength of the finest
   // octave of detail is 3/8 of a cell, which is 1.5 steps.
   static constexpr double kDetailSteps = 2.0;
-
-  static bool ShowsDetail(const Scene& scene) {
-    const MediumSettings* medium = MediumSettingsOf(scene.rendering.technique);
-    return medium != nullptr && medium->look.detail;
-  }
 
   // Integrates the extinction by the midpoint rule with equal steps.
   Depths March(const glm::dvec3& origin_m, const glm::dvec3& direction, double begin_m,

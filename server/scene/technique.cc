@@ -44,7 +44,10 @@ MediumSettings* MediumSettingsOf(Technique* technique) {
 }
 
 FieldLook FieldLookOf(const Technique& technique) {
-  return std::visit([](const auto& settings) { return settings.Look(); }, technique);
+  FieldLook look = std::visit([](const auto& settings) { return settings.Look(); }, technique);
+  // Metaballs have this setting, too, but draw no medium that could have detail.
+  look.detail = look.detail && CapabilitiesOf(technique).detail == DetailUse::kMedium;
+  return look;
 }
 
 bool IsTraced(const Technique& technique) { return !CapabilitiesOf(technique).images; }

@@ -17,6 +17,7 @@
 #include "base/wake_signal.h"
 #include "rpc_port/call_budgets.h"
 #include "rpc_port/connection_calls.h"
+#include "rpc_port/grpc_certificate.h"
 #include "rpc_port/health_service.h"
 #include "rpc_port/local_listener.h"
 #include "rpc_port/open_sockets.h"
@@ -130,9 +131,15 @@ class RunningServer final : public Server {
     if (!address.empty()) {
       THUNDERHEAD_ASSIGN_OR_RETURN(
           port_, rpc_port::PortListener::Open(address, rpc_port::kKeepaliveTimeout));
+      std::shared_ptr<grpc::ServerCredentials> credentials = grpc::InsecureServerCredentials();
+      if (!tls.certificate.empty()) {
+        THUNDERHEAD_ASSIGN_OR_RETURN(certificate_,
+                                     rpc_port::GrpcCertificate::Open(tls, *limits_.time));
+        credentials = certificate_->Credentials();
+      }
       using Builder = grpc::ServerBuilder::experimental_type;
       acceptor = builder.experimental().AddExternalConnectionAcceptor(
-          Builder::ExternalConnectionType::FROM_FD, rpc_port::CredentialsOf(tls));
+          Builder::ExternalConnectionType::FROM_FD, credentials);
     }
     server_ = builder.BuildAndStart();
     if (server_ == nullptr) return absl::InternalError("gRPC's server does not start");
@@ -260,6 +267,7 @@ class RunningServer final : public Server {
   // Answers calls of unknown methods with UNIMPLEMENTED, so that they are counted, too.
   grpc::CallbackGenericService unknown_methods_;
   rpc_port::HealthService health_{v1::ThunderheadService::service_full_name()};
+  std::unique_ptr<rpc_port::GrpcCertificate> certificate_;  // null without TLS
   std::unique_ptr<grpc::Server> server_;
   std::unique_ptr<rpc_port::LocalListener> local_;
   std::unique_ptr<rpc_port::PortListener> port_;  // null without a port

@@ -178,7 +178,8 @@ absl::Status Roster::MayAnswer(std::uint64_t id) const {
   const Person* const person = Find(id);
   if (person == nullptr) return NoSuchPerson(id);
   if (steering_ == id || person->role == Role::kPresenter) return absl::OkStatus();
-  return Denied("only a presenter or the person in control can give control", "NOT_STEERING");
+  return Denied("only a presenter or the person in control can give or refuse control",
+                "NOT_STEERING");
 }
 
 absl::Status Roster::GiveControl(std::uint64_t from, std::uint64_t to, Time now) {

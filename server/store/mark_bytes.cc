@@ -69,7 +69,7 @@ std::string ToBytes(const std::vector<session::Mark>& marks) {
 }
 
 absl::StatusOr<std::vector<session::Mark>> MarksFrom(const std::string& bytes) {
-  const absl::Status damaged = absl::DataLossError("they are damaged");
+  const absl::Status damaged = absl::DataLossError("its marks are damaged");
   if (bytes.size() % kWordBytes != 0) return damaged;
   std::vector<session::Mark> marks;
   Reader reader(bytes);

@@ -40,7 +40,8 @@ bool IsOnFullDisk(const std::string& path) {
 absl::Status DamagedFile(const std::string& path, const std::string& why) {
   return absl::DataLossError(absl::StrCat(
       path, " is damaged (", why, "); move it away, with ", path, "-journal and ", path,
-      "-wal if they are there, to begin without sessions, or put a backup in its place"));
+      "-wal if they are there, to begin without sessions, or put a backup in its place; then start "
+      "the server again"));
 }
 
 void Database::Close::operator()(sqlite3* database) const { sqlite3_close(database); }

@@ -109,7 +109,8 @@ absl::StatusOr<ImageRecord> PictureOf(const Statement& row) {
   // The extension is part of the name of a file that is removed with the picture.
   if (picture.extension.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789") !=
       std::string::npos) {
-    return absl::DataLossError("a picture's file has an extension that is none");
+    return absl::DataLossError(
+        "the file extension of a picture has characters other than a-z and 0-9");
   }
   picture.drawn_at = TimeOf(row.Number(9));
   picture.fetched = row.Number(10) != 0;
@@ -202,7 +203,8 @@ class OpenJobStore final : public SqliteJobStore {
       records.push_back(JobOf(rows));
       // The id names the folder of the job's results, which is removed with the job.
       if (!jobs::IsJobId(records.back().id)) {
-        return DamagedFile(connection_.Path(), "a render job has an id that is none");
+        return DamagedFile(connection_.Path(),
+                           "the id of a render job does not have the form of an id");
       }
       index_by_id[records.back().id] = records.size() - 1;
     }

@@ -88,7 +88,7 @@ SessionRecord RecordOf(const Statement& row) {
 
 absl::StatusOr<std::vector<session::Mark>> MarksOf(const Statement& row) {
   // Each session is saved together with its marks, even if it has none.
-  if (row.IsNull(11)) return absl::DataLossError("they are missing");
+  if (row.IsNull(11)) return absl::DataLossError("its marks are missing");
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<session::Mark> marks, MarksFrom(row.Bytes(11)));
   SetLines(row.Bytes(12), &session::Mark::owner_key, &marks);
   SetLines(row.Bytes(15), &session::Mark::domain, &marks);

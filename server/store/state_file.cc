@@ -32,6 +32,15 @@ absl::StatusOr<FileIdentity> CreateForThisUser(const std::string& path) {
       absl::StrCat(path, " cannot be made private: ", std::strerror(errno)));
 }
 
+// Checks the other files that SQLite opens with a database. Opening a planted FIFO would never
+// return.
+absl::Status CheckSqliteFiles(const std::string& path) {
+  for (const char* const suffix : {"-journal", "-wal"}) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckFile(absl::StrCat(path, suffix)));
+  }
+  return absl::OkStatus();
+}
+
 absl::Status CheckWhole(Database& database, const std::string& path) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Statement check, database.Prepare("PRAGMA quick_check(1)"));
   THUNDERHEAD_RETURN_IF_ERROR(check.Next().status());
@@ -49,6 +58,13 @@ absl::Status Prepare(const std::string& path) {
   THUNDERHEAD_RETURN_IF_ERROR(database.Execute("PRAGMA journal_mode = DELETE"));
   unlink(absl::StrCat(path, "-shm").c_str());
   return absl::OkStatus();
+}
+
+// Writes the content of the database to the empty file at `path`.
+absl::Status CopyInto(Database& database, const std::string& path) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(Statement copy, database.Prepare("VACUUM INTO ?"));
+  copy.Bind(1, std::string_view(path));
+  return copy.Run();
 }
 
 absl::StatusOr<Database> ConnectTo(const std::string& path) {
@@ -75,9 +91,7 @@ absl::StatusOr<std::shared_ptr<StateFile>> StateFile::Open(const std::string& pa
   if (!lock.ok()) {
     return base::Annotate(lock.status(), "each server needs its own state folder");
   }
-  for (const char* suffix : {"-journal", "-wal"}) {
-    THUNDERHEAD_RETURN_IF_ERROR(CheckFile(absl::StrCat(path, suffix)));
-  }
+  THUNDERHEAD_RETURN_IF_ERROR(CheckSqliteFiles(path));
   THUNDERHEAD_ASSIGN_OR_RETURN(const FileIdentity identity, CreateForThisUser(path));
   THUNDERHEAD_RETURN_IF_ERROR(Prepare(path));
   THUNDERHEAD_ASSIGN_OR_RETURN(Database database, ConnectTo(path));
@@ -90,6 +104,9 @@ absl::StatusOr<Database> StateFile::Connect() const { return ConnectTo(path_); }
 absl::StatusOr<int> StateFile::Check() {
   const std::lock_guard guard(mutex_);
   THUNDERHEAD_RETURN_IF_ERROR(CheckLock());
+  if (const absl::Status planted = CheckSqliteFiles(path_); !planted.ok()) {
+    return absl::UnavailableError(planted.message());
+  }
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<FileIdentity> found, IdentityAt(path_));
   if (found == identity_) return times_written_;
   if (found.has_value()) {
@@ -132,11 +149,14 @@ absl::Status StateFile::WriteAnew() {
   const std::string partial = base::PartialPath(path_);
   unlink(partial.c_str());
   THUNDERHEAD_ASSIGN_OR_RETURN(const FileIdentity identity, CreateForThisUser(partial));
-  {
-    THUNDERHEAD_ASSIGN_OR_RETURN(Statement copy, database_.Prepare("VACUUM INTO ?"));
-    copy.Bind(1, std::string_view(partial));
-    THUNDERHEAD_RETURN_IF_ERROR(copy.Run());
+  const absl::Status copied = CopyInto(database_, partial);
+  if (absl::IsDataLoss(copied)) {
+    return absl::DataLossError(absl::StrCat(
+        path_,
+        " was removed while the server runs, but was damaged before, so its content cannot be "
+        "written anew; restart the server, which then begins without sessions and jobs"));
   }
+  THUNDERHEAD_RETURN_IF_ERROR(copied);
   THUNDERHEAD_RETURN_IF_ERROR(base::PublishFile(path_));
   THUNDERHEAD_ASSIGN_OR_RETURN(database_, ConnectTo(path_));
   identity_ = identity;

@@ -32,8 +32,9 @@ class StateFile {
   // Checks that the file is still at its path, and locked there. If the file was removed, writes
   // its content anew. If the lock was removed, takes it again. Both are logged. Returns how many
   // times the file was written anew, after which connections must be opened again. Returns
-  // UNAVAILABLE if another file is in its place, or FAILED_PRECONDITION if another process has
-  // taken the lock or the folder cannot be written. Safe from any thread.
+  // UNAVAILABLE if another file is in its place, or if something else than a regular file is in
+  // place of SQLite's journal. Returns FAILED_PRECONDITION if another process has taken the lock or
+  // the folder cannot be written. Safe from any thread.
   absl::StatusOr<int> Check();
 
   const std::string& Path() const { return path_; }

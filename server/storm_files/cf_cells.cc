@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <initializer_list>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "base/status.h"
 #include "glm/vec2.hpp"
 #include "storm_files/cell_columns.h"
+#include "storm_files/cf_mapping.h"
 #include "storm_files/cf_names.h"
 
 namespace thunderhead::storm_files {
@@ -106,7 +108,8 @@ absl::StatusOr<std::vector<glm::dvec2>> ReadPlane(const netcdf::NetcdfFile& file
 }
 
 absl::StatusOr<EvenColumns> PlaceOnEarth(const netcdf::NetcdfFile& file, const std::string& field,
-                                         const std::string& dimension) {
+                                         const std::string& dimension,
+                                         std::vector<std::string>& assumptions) {
   const auto longitude = FindCoordinate(file, field, dimension, CfDirection::kX);
   const auto latitude = FindCoordinate(file, field, dimension, CfDirection::kY);
   if (!longitude.has_value() || !latitude.has_value()) return NoPlaces(file, field, dimension);
@@ -118,6 +121,10 @@ absl::StatusOr<EvenColumns> PlaceOnEarth(const netcdf::NetcdfFile& file, const s
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(places.longitude_deg, ReadCoordinate(file, *longitude));
   THUNDERHEAD_ASSIGN_OR_RETURN(places.latitude_deg, ReadCoordinate(file, *latitude));
+  THUNDERHEAD_ASSIGN_OR_RETURN(LongitudeOrigin origin,
+                               OriginOfLongitudes(file, field, longitude->name));
+  for (double& each : places.longitude_deg) each += origin.meridian_deg;
+  assumptions = std::move(origin.assumptions);
   absl::StatusOr<EvenColumns> even = MakeEvenOfCells(places);
   if (even.ok()) return even;
   return base::Annotate(even.status(),
@@ -143,6 +150,7 @@ absl::StatusOr<CfPlaces> PlaceCells(const netcdf::NetcdfFile& file, const std::s
       absl::AsciiStrToUpper(
           std::string(absl::StripAsciiWhitespace(file.TextOrEmpty("", "on_a_sphere")))) == "NO";
   EvenColumns even;
+  CfPlaces places;
   if (on_plane) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<glm::dvec2> plane_m,
                                  ReadPlane(file, cells.name));
@@ -150,12 +158,11 @@ absl::StatusOr<CfPlaces> PlaceCells(const netcdf::NetcdfFile& file, const std::s
     if (!of_plane.ok()) return base::Annotate(of_plane.status(), file.Path());
     even = *std::move(of_plane);
   } else {
-    THUNDERHEAD_ASSIGN_OR_RETURN(even, PlaceOnEarth(file, field, cells.name));
+    THUNDERHEAD_ASSIGN_OR_RETURN(even, PlaceOnEarth(file, field, cells.name, places.assumptions));
   }
-  CfPlaces places;
   places.dx_m = even.dx_m;
   places.dy_m = even.dy_m;
-  places.assumptions = AssumptionsOf(even);
+  std::ranges::copy(AssumptionsOf(even), std::back_inserter(places.assumptions));
   places.even = std::make_shared<const EvenColumns>(std::move(even));
   return places;
 }

@@ -15,6 +15,7 @@
 #include "base/status.h"
 #include "glm/trigonometric.hpp"
 #include "glm/vec2.hpp"
+#include "storm_files/cf_mapping.h"
 #include "storm_files/cf_origin.h"
 #include "storm_files/grid_mapping.h"
 #include "storm_files/model_columns.h"
@@ -39,6 +40,8 @@ glm::dvec2 Way_m(const EarthPlace& from, const EarthPlace& to) {
 
 // Arrays of latitude and longitude, x fastest, in the order of the storm's axes.
 struct PlaceArrays {
+  std::string longitude;              // the name of the variable
+  std::vector<std::string> meridian;  // a sentence about the longitudes' prime meridian, if any
   bool has_time = false;
   int columns = 0;
   int rows = 0;
@@ -102,6 +105,7 @@ absl::StatusOr<std::optional<PlaceArrays>> ReadPlaceArrays(const netcdf::NetcdfF
   };
   for (float& each : arrays.latitude_deg) each *= degrees(*latitude, CfDirection::kY);
   for (float& each : arrays.longitude_deg) each *= degrees(*longitude, CfDirection::kX);
+  arrays.longitude = longitude->name;
   // Some programs write zeros where the run is idealised.
   const auto [low, high] = std::ranges::minmax(arrays.latitude_deg);
   const auto [west, east] = std::ranges::minmax(arrays.longitude_deg);
@@ -115,6 +119,10 @@ absl::StatusOr<std::optional<PlaceArrays>> ReadPlaceArrays(const netcdf::NetcdfF
         absl::StrCat(file.Path(), ": ", latitude->name, " and ", longitude->name,
                      " have missing or impossible values; every column needs its place"));
   }
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LongitudeOrigin origin,
+                               OriginOfLongitudes(file, field, arrays.longitude));
+  for (float& each : arrays.longitude_deg) each += static_cast<float>(origin.meridian_deg);
+  arrays.meridian = origin.assumptions;
   return std::optional(std::move(arrays));
 }
 
@@ -138,36 +146,23 @@ absl::Status OrientAxes(const netcdf::NetcdfFile& file, const PlaceArrays& array
       y.dimension, "; give both dimensions a coordinate variable with the attribute axis"));
 }
 
-// Returns the attributes of the field's grid mapping, or nothing if it has none.
-std::optional<Attributes> MappingOf(const netcdf::NetcdfFile& file, const std::string& field,
-                                    std::string& name) {
-  const std::vector<std::string> words = NamesIn(file.TextOrEmpty(field, "grid_mapping"));
-  if (words.empty()) return std::nullopt;
-  name = std::string(absl::StripSuffix(words.front(), ":"));
-  if (!file.HasVariable(name)) return std::nullopt;
-  Attributes attributes;
-  for (const std::string& attribute : file.AttributesOf(name)) {
-    if (auto text = file.TextAttribute(name, attribute); text.has_value()) {
-      attributes[attribute] = *std::move(text);
-    } else if (auto numbers = file.NumbersAttribute(name, attribute); !numbers.empty()) {
-      attributes[attribute] = std::move(numbers);
-    }
-  }
-  return attributes;
-}
-
 // Returns the columns of a grid of longitude and latitude.
-ColumnPlaces PlacesInDegrees(const netcdf::NetcdfFile& file, const std::string& field,
-                             const CfAxis& x, const CfAxis& y) {
-  std::string name;
-  const std::optional<Attributes> mapping = MappingOf(file, field, name);
-  std::string earth = mapping.has_value() ? EarthFigureOf(*mapping) : "";
+absl::StatusOr<ColumnPlaces> PlacesInDegrees(const netcdf::NetcdfFile& file,
+                                             const std::string& field, const CfAxis& x,
+                                             const CfAxis& y, CfPlaces& described) {
+  const CfMapping mapping = MappingOf(file, field, x.coordinate);
+  std::string earth = mapping.exists ? EarthFigureOf(mapping.attributes) : "";
   if (earth.empty()) earth = absl::StrFormat("+R=%.10g", kCfEarthRadius_m);
   ColumnPlaces places;
   places.columns = {x.cells, y.cells};
   places.projection = absl::StrCat("+proj=longlat ", earth, " +no_defs");
   places.step = {x.Spacing(), y.Spacing()};
   places.first = glm::dvec2(x.faces.front(), y.faces.front()) + 0.5 * places.step;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const double meridian_deg, PrimeMeridianOf(file, mapping));
+  places.first.x += meridian_deg;
+  if (meridian_deg != 0.0) {
+    described.assumptions.push_back(MeridianSentence(x.coordinate, mapping, meridian_deg));
+  }
   return places;
 }
 
@@ -175,10 +170,10 @@ ColumnPlaces PlacesInDegrees(const netcdf::NetcdfFile& file, const std::string& 
 // named so, or the field's grid mapping says so.
 bool IsEarthDegrees(const netcdf::NetcdfFile& file, const std::string& field, const CfAxis& x,
                     const CfAxis& y) {
-  std::string mapping;
+  const CfMapping mapping = MappingOf(file, field, x.coordinate);
   const bool is_mapped_otherwise =
-      MappingOf(file, field, mapping).has_value() &&
-      absl::StartsWith(file.TextOrEmpty(mapping, "grid_mapping_name"), "rotated_");
+      mapping.exists &&
+      absl::StartsWith(file.TextOrEmpty(mapping.name, "grid_mapping_name"), "rotated_");
   const auto rotated = [&](const CfAxis& axis) {
     const std::string name = absl::AsciiStrToLower(axis.coordinate);
     return is_mapped_otherwise || name == "rlon" || name == "rlat" ||
@@ -189,19 +184,17 @@ bool IsEarthDegrees(const netcdf::NetcdfFile& file, const std::string& field, co
 }
 
 // Places the columns by the field's grid mapping.
-absl::StatusOr<GridMapping> ReadMapping(const netcdf::NetcdfFile& file, const std::string& name,
-                                        const Attributes& attributes, const CfAxis& x,
-                                        const CfAxis& y) {
+absl::StatusOr<GridMapping> ReadMapping(const netcdf::NetcdfFile& file, const CfMapping& from,
+                                        const CfAxis& x, const CfAxis& y) {
   MappedGrid grid;
   if (x.unit == CfAxisUnit::kDegrees) {
     grid.middle = {x.Middle(), y.Middle()};
   } else {
     grid.unit_m = x.units_per_written;
   }
-  auto mapping = ReadGridMapping(attributes, grid);
+  auto mapping = ReadGridMapping(from.attributes, grid);
   if (mapping.ok()) return mapping;
-  return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the grid mapping ", name, " ",
-                                                 std::string(mapping.status().message())));
+  return BadMapping(file, from, mapping.status());
 }
 
 // Returns the columns of a grid that is even on a map.
@@ -218,8 +211,10 @@ ColumnPlaces PlacesOnMap(const GridMapping& mapping, const CfAxis& x, const CfAx
 }
 
 // Returns the largest distance between a column's place on the map and its longitude and latitude,
-// of columns all over the domain. Returns nothing if a column is not on the map.
-std::optional<double> Disagreement_m(const ColumnPlaces& on_map, const PlaceArrays& arrays) {
+// of columns all over the domain. The longitudes count from `meridian_deg` degrees east of those
+// that `arrays` says. Returns nothing if a column is not on the map.
+std::optional<double> Disagreement_m(const ColumnPlaces& on_map, const PlaceArrays& arrays,
+                                     double meridian_deg) {
   const auto columns = ModelColumns::Of(on_map);
   if (!columns.ok()) return std::nullopt;
   constexpr int kSamples = 5;
@@ -229,7 +224,9 @@ std::optional<double> Disagreement_m(const ColumnPlaces& on_map, const PlaceArra
         (on_map.columns - 1) * glm::ivec2(i % kSamples, i / kSamples) / (kSamples - 1);
     const std::optional<EarthPlace> place = columns->PlaceAt(at);
     if (!place.has_value()) return std::nullopt;
-    const glm::dvec2 way_m = Way_m(*place, arrays.At(at.x, at.y));
+    EarthPlace written = arrays.At(at.x, at.y);
+    written.longitude_deg += meridian_deg;
+    const glm::dvec2 way_m = Way_m(*place, written);
     largest_m = std::max(largest_m, std::hypot(way_m.x, way_m.y));
   }
   return largest_m;
@@ -276,12 +273,10 @@ ColumnPlaces PlacesOfArrays(const PlaceArrays& arrays) {
 absl::StatusOr<std::optional<ColumnPlaces>> PlacesByMapping(
     const netcdf::NetcdfFile& file, const std::string& field, const CfAxis& x, const CfAxis& y,
     const std::optional<PlaceArrays>& arrays, CfPlaces& places) {
-  std::string name;
-  const auto attributes = MappingOf(file, field, name);
-  if (!attributes.has_value() || x.unit == CfAxisUnit::kNone) {
-    return std::optional<ColumnPlaces>();
-  }
-  const auto mapping = ReadMapping(file, name, *attributes, x, y);
+  const CfMapping from = MappingOf(file, field, x.coordinate);
+  const std::string& name = from.name;
+  if (!from.exists || x.unit == CfAxisUnit::kNone) return std::optional<ColumnPlaces>();
+  const auto mapping = ReadMapping(file, from, x, y);
   if (!mapping.ok() && !arrays.has_value()) return mapping.status();
   if (!mapping.ok()) {
     places.assumptions.push_back(
@@ -294,9 +289,16 @@ absl::StatusOr<std::optional<ColumnPlaces>> PlacesByMapping(
   if (arrays.has_value()) {
     // The arrays say where each column is. They may be rounded to single precision.
     constexpr double kRounding_m = 3.0;
-    const auto apart_m = Disagreement_m(on_map, *arrays);
     const double allowed_m = kRounding_m + 0.1 * std::min(on_map.step.x, on_map.step.y);
+    const auto apart_m = Disagreement_m(on_map, *arrays, 0.0);
     if (!apart_m.has_value() || *apart_m > allowed_m) {
+      // CF does not say whether the longitudes of all columns count from the map's prime meridian.
+      const double meridian_deg = PrimeMeridianOf(from.attributes).value_or(0.0);
+      const auto shifted_m = Disagreement_m(on_map, *arrays, meridian_deg);
+      if (shifted_m.has_value() && *shifted_m <= allowed_m) {
+        places.assumptions.push_back(MeridianSentence(arrays->longitude, from, meridian_deg));
+        return std::optional(on_map);
+      }
       places.assumptions.push_back(absl::StrFormat(
           "The places are those of the longitudes and latitudes; the grid mapping %s puts columns "
           "up to %.2f km from them.",
@@ -305,6 +307,10 @@ absl::StatusOr<std::optional<ColumnPlaces>> PlacesByMapping(
     }
   }
   for (const std::string& sentence : mapping->assumptions) places.assumptions.push_back(sentence);
+  if (const double meridian_deg = PrimeMeridianOf(from.attributes).value_or(0.0);
+      meridian_deg != 0.0) {
+    places.assumptions.push_back(MeridianSentence("of the map", from, meridian_deg));
+  }
   return std::optional(on_map);
 }
 
@@ -367,10 +373,10 @@ void NoteLostMapping(const netcdf::NetcdfFile& file, const std::string& field, C
   const char* const consequence = places.even == nullptr
                                       ? "so the place on Earth is not known."
                                       : "so the places are those of the coordinates.";
-  std::string name;
-  if (MappingOf(file, field, name).has_value()) return;
-  if (!name.empty()) {
-    places.assumptions.push_back(absl::StrCat("The grid mapping ", name, ", which ", field,
+  const CfMapping mapping = MappingOf(file, field, "");
+  if (mapping.exists) return;
+  if (!mapping.name.empty()) {
+    places.assumptions.push_back(absl::StrCat("The grid mapping ", mapping.name, ", which ", field,
                                               " names, is not in the file, ", consequence));
     return;
   }
@@ -381,6 +387,20 @@ void NoteLostMapping(const netcdf::NetcdfFile& file, const std::string& field, C
                                               " in its attribute grid_mapping, ", consequence));
     return;
   }
+}
+
+// Adds an assumption if the longitudes of all columns count from Greenwich and the grid mapping of
+// x and y does not.
+void NoteOtherMeridian(const netcdf::NetcdfFile& file, const std::string& field, const CfAxis& x,
+                       const PlaceArrays& arrays, CfPlaces& places) {
+  const CfMapping mapping = MappingOf(file, field, x.coordinate);
+  const double meridian_deg = PrimeMeridianOf(mapping.attributes).value_or(0.0);
+  if (meridian_deg == 0.0 || !arrays.meridian.empty()) return;
+  places.assumptions.push_back(
+      absl::StrFormat("The longitudes %s are taken to count from Greenwich, although the prime "
+                      "meridian of the grid "
+                      "mapping %s is %.6g degrees east of it.",
+                      arrays.longitude, mapping.name, meridian_deg));
 }
 
 absl::Status CheckSameUnits(const netcdf::NetcdfFile& file, const CfAxis& x, const CfAxis& y) {
@@ -399,8 +419,9 @@ absl::StatusOr<CfPlaces> PlaceColumns(const netcdf::NetcdfFile& file, const std:
                                       CfAxis& x, CfAxis& y) {
   CfPlaces places;
   if (IsEarthDegrees(file, field, x, y)) {
-    THUNDERHEAD_RETURN_IF_ERROR(
-        MakeColumnsEven(file, PlacesInDegrees(file, field, x, y), at, places));
+    THUNDERHEAD_ASSIGN_OR_RETURN(const ColumnPlaces columns,
+                                 PlacesInDegrees(file, field, x, y, places));
+    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, columns, at, places));
     NoteLostMapping(file, field, places);
     return places;
   }
@@ -411,6 +432,7 @@ absl::StatusOr<CfPlaces> PlaceColumns(const netcdf::NetcdfFile& file, const std:
     THUNDERHEAD_RETURN_IF_ERROR(OrientAxes(file, *arrays, x, y));
     THUNDERHEAD_ASSIGN_OR_RETURN(arrays, ReadPlaceArrays(file, field, dimensions, at.record, x, y));
   }
+  if (arrays.has_value()) places.assumptions = arrays->meridian;
   if (arrays.has_value() && arrays->has_time) {
     places.listed = std::make_shared<const ColumnPlaces>(PlacesOfArrays(*arrays));
   }
@@ -421,6 +443,7 @@ absl::StatusOr<CfPlaces> PlaceColumns(const netcdf::NetcdfFile& file, const std:
     }
   } else if (!columns.has_value() && std::min(x.cells, y.cells) > 1) {
     columns = PlacesOfArrays(*arrays);
+    NoteOtherMeridian(file, field, x, *arrays, places);
   }
   if (columns.has_value()) {
     THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, *columns, at, places));

@@ -12,6 +12,7 @@
 #include "base/status.h"
 #include "netcdf/netcdf_file.h"
 #include "storm_files/grib_air.h"
+#include "storm_files/ground.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -40,6 +41,8 @@ class CfSource final : public LayerSource {
     domain_.fixed_heights = heights.kind != CfHeightKind::kPressure &&
                             (!heights.array.has_value() || heights.array->time < 0);
     domain_.heights_from = heights.name;
+    domain_.ground_from =
+        metadata_.terrain.has_value() ? metadata_.terrain->variable.name : std::string("origin_z");
     for (const CfField& from : metadata_.fields) {
       LayerField& field = domain_.fields.emplace_back();
       field.hydrometeor = from.quantity.hydrometeor;
@@ -115,11 +118,7 @@ absl::StatusOr<std::vector<float>> CfSource::FacesOfArray(
   if (heights.kind == CfHeightKind::kMiddles) {
     heights_m = InterfacesBetween(heights_m, terrain_m, domain_.cells.z, columns);
   }
-  // Layers below the ground get no thickness, so they count as missing.
-  for (std::size_t i = 0; i < heights_m.size() && !terrain_m.empty(); ++i) {
-    const float ground_m = terrain_m[i % columns];
-    if (heights_m[i] < ground_m) heights_m[i] = ground_m;
-  }
+  RaiseToGround(terrain_m, heights_m);
   return heights_m;
 }
 
@@ -152,9 +151,7 @@ absl::StatusOr<std::vector<float>> CfSource::LinearFaces() const {
   for (const CfSurfaceTerm& term : heights.surfaces) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> surface_m, ReadColumns(term.surface));
     for (std::size_t i = 0; i < heights_m.size(); ++i) {
-      const float each_m = surface_m[i % columns];
-      if (std::isnan(each_m)) continue;
-      heights_m[i] += static_cast<float>(term.b[i / columns] * each_m);
+      heights_m[i] += static_cast<float>(term.b[i / columns] * surface_m[i % columns]);
     }
   }
   return heights_m;
@@ -166,7 +163,7 @@ absl::StatusOr<std::vector<float>> CfSource::InterfaceHeights_m() {
   const std::size_t columns = domain_.Columns();
   const std::size_t faces = metadata_.order.cells[2] + 1;
   const auto ground_m = [&](std::size_t column) {
-    return terrain_m.empty() || std::isnan(terrain_m[column]) ? 0.0F : terrain_m[column];
+    return terrain_m.empty() ? 0.0F : terrain_m[column];
   };
   std::vector<float> heights_m;
   switch (heights.kind) {
@@ -274,7 +271,15 @@ absl::StatusOr<std::vector<float>> CfSource::Terrain_m() {
                ? std::vector<float>(domain_.Columns(), static_cast<float>(*ground_m))
                : std::vector<float>();
   }
-  return ReadColumns(*metadata_.terrain);
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> terrain_m, ReadColumns(*metadata_.terrain));
+  // Layers cannot follow a surface that is missing, even if the ground is there.
+  for (const CfSurfaceTerm& term : metadata_.heights.surfaces) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> surface_m, ReadColumns(term.surface));
+    for (std::size_t i = 0; i < terrain_m.size(); ++i) {
+      if (std::isnan(surface_m[i])) terrain_m[i] = surface_m[i];
+    }
+  }
+  return terrain_m;
 }
 
 // Reads a component of the wind, or turbulent energy, at the cells' centres. Values on faces are

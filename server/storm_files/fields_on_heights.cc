@@ -13,6 +13,7 @@
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "storm_files/field_scan.h"
+#include "storm_files/ground.h"
 #include "storm_files/storm_columns.h"
 #include "storm_files/windowed_source.h"
 
@@ -49,7 +50,10 @@ class TimeReader {
   absl::Status CheckSize(const std::string& what, const std::vector<float>& values,
                          std::size_t expected) const;
   absl::StatusOr<VerticalGrid> GridFor(const std::optional<VerticalGrid>& storm_grid) const;
-  absl::Status ReadTerrain(volume::HydrometeorFields& result);
+  std::string GroundOfRecord() const;
+  absl::Status ReadGround();
+  absl::Status CutLayersAtGround();
+  void TakeTerrain(volume::HydrometeorFields& result);
   absl::Status ReadLand(volume::HydrometeorFields& result);
   absl::StatusOr<std::shared_future<void>> ReadAir();
   absl::StatusOr<std::vector<float>> CondensateShare();
@@ -63,6 +67,7 @@ class TimeReader {
   volume::AirDensity MeanDensity(const std::vector<float>& density_kg_per_m3) const;
   double Highest_m() const;
   void SetGrid();
+  std::vector<float> WithoutBuriedParts(const std::vector<float>& values) const;
   std::vector<float> OntoHeights(const std::vector<float>& values) const;
   std::vector<std::uint8_t> BytesOntoGrid(const std::vector<float>& values) const;
   absl::Status ReadMotion(volume::HydrometeorFields& result);
@@ -78,7 +83,11 @@ class TimeReader {
   LayerAir air_;
   VerticalGrid own_grid_;
   VerticalGrid grid_;
-  bool layers_are_cells_ = false;  // true if the layers are the grid's cells, in every column
+  std::vector<float> ground_m_;  // of each column, NaN if missing; empty if the source has none
+  // The bottoms and tops of layers before they were cut at the ground. Empty if none was cut.
+  std::vector<float> uncut_m_;
+  // True if the layers are the grid's cells in every column, before they were cut at the ground.
+  bool layers_are_cells_ = false;
   volume::RegularGrid regular_;
   ReadCheckpoint checkpoint_;
   int steps_done_ = 0;
@@ -134,8 +143,40 @@ double TimeReader::Highest_m() const {
   return is_cloud ? kHighestCloud_m : std::numeric_limits<double>::infinity();
 }
 
+std::string TimeReader::GroundOfRecord() const {
+  return absl::StrCat(domain_.path, ": ", domain_.ground_from, ", the height of the ground, of ",
+                      "record ", domain_.record);
+}
+
+absl::Status TimeReader::ReadGround() {
+  THUNDERHEAD_ASSIGN_OR_RETURN(ground_m_, source_.Terrain_m());
+  if (ground_m_.empty()) return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(CheckSize("the ground", ground_m_, air_.columns));
+  return CheckGround(GroundOfRecord(), ground_m_, static_cast<std::size_t>(domain_.cells.x));
+}
+
+// Empties the layers below the ground, if the layers do not begin there. The grid of heights is
+// chosen before, so it does not depend on the ground.
+absl::Status TimeReader::CutLayersAtGround() {
+  if (domain_.on_terrain || ground_m_.empty()) return absl::OkStatus();
+  uncut_m_ = air_.interface_height_m;
+  if (!RaiseToGround(ground_m_, air_.interface_height_m)) {
+    uncut_m_ = {};
+    return absl::OkStatus();
+  }
+  for (std::size_t i = 0; i + air_.columns < uncut_m_.size(); ++i) {
+    if (air_.interface_height_m[i + air_.columns] > air_.interface_height_m[i]) {
+      return absl::OkStatus();
+    }
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(GroundOfRecord(), " is above all layers (", domain_.heights_from,
+                   "); check whether both heights are above sea level and in their right units"));
+}
+
 absl::StatusOr<VerticalGrid> TimeReader::ReadHeights() {
   THUNDERHEAD_RETURN_IF_ERROR(Advance());
+  THUNDERHEAD_RETURN_IF_ERROR(ReadGround());
   THUNDERHEAD_ASSIGN_OR_RETURN(air_.interface_height_m, source_.InterfaceHeights_m());
   THUNDERHEAD_RETURN_IF_ERROR(
       CheckSize("the layers' heights", air_.interface_height_m, (air_.levels + 1) * air_.columns));
@@ -171,10 +212,10 @@ absl::StatusOr<VerticalGrid> TimeReader::GridFor(
       storm_grid->low_m, " to ", storm_grid->High_m(), " m; give files of one run only"));
 }
 
-// Reads the terrain. In columns without a height, the ground is the lowest interface. If the layers
+// Sets the terrain. In columns without a height, the ground is the lowest interface. If the layers
 // do not follow the terrain, it is at sea level or, if lower, at the bottom of the domain.
-absl::Status TimeReader::ReadTerrain(volume::HydrometeorFields& result) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> terrain, source_.Terrain_m());
+void TimeReader::TakeTerrain(volume::HydrometeorFields& result) {
+  std::vector<float> terrain = ground_m_;
   const auto bottom_m = static_cast<float>(grid_.low_m);
   terrain.resize(air_.columns, std::nanf(""));
   for (std::size_t i = 0; i < air_.columns; ++i) {
@@ -183,7 +224,6 @@ absl::Status TimeReader::ReadTerrain(volume::HydrometeorFields& result) {
     if (std::isnan(terrain[i])) terrain[i] = bottom_m;
   }
   result.terrain_height_m = columns_.Of(std::move(terrain), Beyond::kNearest);
-  return absl::OkStatus();
 }
 
 absl::Status TimeReader::ReadLand(volume::HydrometeorFields& result) {
@@ -354,6 +394,8 @@ absl::Status TimeReader::ReadFields(volume::HydrometeorFields& result) {
     THUNDERHEAD_ASSIGN_OR_RETURN(LayerAmounts amounts, source_.Amounts(i));
     THUNDERHEAD_RETURN_IF_ERROR(
         CheckSize(field.variable, amounts.amounts, air_.levels * air_.columns));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckGroundBelow(GroundOfRecord(), ground_m_, amounts.amounts,
+                                                 static_cast<std::size_t>(domain_.cells.x)));
     THUNDERHEAD_RETURN_IF_ERROR(take());
     pending = std::async(std::launch::async,
                          [this, air_ready, &field, amounts = std::move(amounts)]() mutable {
@@ -386,9 +428,23 @@ volume::AirDensity TimeReader::MeanDensity(const std::vector<float>& density_kg_
   return means.Means();
 }
 
+// Returns the values of layers that are the grid's cells, each times the share of its cell that is
+// above the ground.
+std::vector<float> TimeReader::WithoutBuriedParts(const std::vector<float>& values) const {
+  std::vector<float> kept = values;
+  const std::vector<float>& height_m = air_.interface_height_m;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (height_m[i] == uncut_m_[i]) continue;
+    const std::size_t top = i + air_.columns;
+    kept[i] *= (height_m[top] - height_m[i]) / (uncut_m_[top] - uncut_m_[i]);
+  }
+  return kept;
+}
+
 // Returns values, none below 0 and none NaN, at the heights of the regular grid.
 std::vector<float> TimeReader::OntoHeights(const std::vector<float>& values) const {
-  if (layers_are_cells_) return values;
+  if (layers_are_cells_ && uncut_m_.empty()) return values;
+  if (layers_are_cells_) return WithoutBuriedParts(values);
   return RemapColumns(air_.interface_height_m, values, air_.levels, air_.columns, grid_);
 }
 
@@ -493,11 +549,12 @@ absl::StatusOr<volume::HydrometeorFields> TimeReader::Read(const std::optional<V
   THUNDERHEAD_RETURN_IF_ERROR(ReadHeights().status());
   THUNDERHEAD_ASSIGN_OR_RETURN(grid_, GridFor(grid));
   layers_are_cells_ = LayersAreCells(air_.interface_height_m, air_.levels, air_.columns, grid_);
+  THUNDERHEAD_RETURN_IF_ERROR(CutLayersAtGround());
   SetGrid();
   volume::HydrometeorFields result;
   result.grid = regular_;
   THUNDERHEAD_RETURN_IF_ERROR(Advance());
-  THUNDERHEAD_RETURN_IF_ERROR(ReadTerrain(result));
+  TakeTerrain(result);
   THUNDERHEAD_RETURN_IF_ERROR(ReadLand(result));
   THUNDERHEAD_RETURN_IF_ERROR(ReadFields(result));
   THUNDERHEAD_RETURN_IF_ERROR(ReadMotion(result));

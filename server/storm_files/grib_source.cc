@@ -156,6 +156,7 @@ GribSource::GribSource(std::shared_ptr<const GribStorm> storm, std::size_t recor
   domain_.dy_m = domain_.even->ModelSpacing_m().y;
   domain_.on_terrain =
       layers_.vertical == GribVertical::kHalfHeights || !layers_.surface_height.Empty();
+  domain_.ground_from = layers_.surface_height.name;
   domain_.microphysics = contents.model.microphysics;
   for (const GribHydrometeor& hydrometeor : layers_.hydrometeors) {
     LayerField field;

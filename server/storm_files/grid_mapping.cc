@@ -159,10 +159,33 @@ class Composer {
     } else {
       AddNamedEarth();
     }
-    if (const double meridian = NumberOr("longitude_of_prime_meridian", 0.0); meridian != 0.0) {
-      Add("pm", Within("longitude_of_prime_meridian", meridian, 360.0));
-    }
   }
+
+  // Returns the longitude of the prime meridian, in degrees east of Greenwich.
+  double PrimeMeridian_deg() {
+    const char* const number = "longitude_of_prime_meridian";
+    if (Has(number)) return Within(number, Number(number), 360.0);
+    if (const std::string name = Text("prime_meridian_name"); !name.empty()) {
+      const std::optional<double> known = volume::PrimeMeridianNamed(name);
+      if (!known.has_value()) {
+        Fail(absl::StrCat("has prime_meridian_name '", absl::CEscape(name), "', which is not ",
+                          "known; add ", number, ", its degrees east of Greenwich"));
+      }
+      return known.value_or(0.0);
+    }
+    for (const char* const attribute : {"crs_wkt", "spatial_ref"}) {
+      const std::string text = Text(attribute);
+      if (!text.empty()) return volume::PrimeMeridianOfWellKnownText(text).value_or(0.0);
+    }
+    return 0.0;
+  }
+
+  // Adds the prime meridian from which the map's longitudes count.
+  void AddPrimeMeridian() {
+    if (const double meridian = PrimeMeridian_deg(); meridian != 0.0) Add("pm", meridian);
+  }
+
+  std::string Problem() const { return problem_; }
 
   // Adds a sphere, for mappings that have no other figure of the Earth. Returns its radius.
   double AddSphere() {
@@ -319,9 +342,7 @@ void AddLatitudeLongitude(Composer& map) {
   map.Add("lat_0", middle.y);
   map.Add("lon_0", std::remainder(middle.x, 360.0));
   const double per_degree_m = map.AddSphere() * kRadian;
-  if (map.NumberOr("longitude_of_prime_meridian", 0.0) != 0.0) {
-    map.Add("pm", map.Number("longitude_of_prime_meridian"));
-  }
+  map.AddPrimeMeridian();
   map.Mapping().axes = GridAxes::kDegrees;
   map.Mapping().metres_per_unit = {per_degree_m * std::cos(glm::radians(middle.y)), per_degree_m};
   map.Mapping().origin = middle;
@@ -332,7 +353,9 @@ void AddRotatedPole(Composer& map) {
   map.Start("ob_tran +o_proj=eqc");
   map.Add("o_lat_p", map.Latitude("grid_north_pole_latitude"));
   map.Add("o_lon_p", std::remainder(map.NumberOr("north_pole_grid_longitude", 0.0), 360.0));
-  map.Add("lon_0", std::remainder(map.Longitude("grid_north_pole_longitude") + 180.0, 360.0));
+  map.Add("lon_0",
+          std::remainder(
+              map.Longitude("grid_north_pole_longitude") + 180.0 + map.PrimeMeridian_deg(), 360.0));
   map.Within("the middle grid_latitude", middle_latitude, 90.0);
   map.Add("lat_ts", middle_latitude);
   const double per_degree_m = map.AddSphere() * kRadian;
@@ -403,6 +426,7 @@ absl::StatusOr<GridMapping> ReadGridMapping(const Attributes& attributes, const 
   if (!kind->in_degrees) {
     map.AddFalseOrigin();
     map.AddEarth();
+    map.AddPrimeMeridian();
   }
   return map.Finish();
 }
@@ -417,6 +441,15 @@ std::string EarthFigureOf(const Attributes& attributes) {
   earth.AddEarth();
   const absl::StatusOr<GridMapping> mapping = earth.Finish();
   return mapping.ok() ? EarthOf(mapping->projection) : "";
+}
+
+absl::StatusOr<double> PrimeMeridianOf(const Attributes& attributes) {
+  Composer mapping(attributes, {});
+  const double meridian_deg = mapping.PrimeMeridian_deg();
+  if (std::string problem = mapping.Problem(); !problem.empty()) {
+    return absl::InvalidArgumentError(problem);
+  }
+  return meridian_deg;
 }
 
 }  // namespace thunderhead::storm_files

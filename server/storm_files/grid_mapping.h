@@ -67,4 +67,10 @@ absl::StatusOr<GridMapping> ReadGridMapping(const Attributes& attributes, const 
 // notation, such as "+a=6378137 +rf=298.25". It is empty if they give none that can be used.
 std::string EarthFigureOf(const Attributes& attributes);
 
+// Returns the longitude of the prime meridian from which a grid mapping's longitudes count, in
+// degrees east of Greenwich. It is longitude_of_prime_meridian, or else that of the name in
+// prime_meridian_name, or else that of the well-known text, or else 0. Returns INVALID_ARGUMENT,
+// which names the attribute, for a number that is missing or impossible and for an unknown name.
+absl::StatusOr<double> PrimeMeridianOf(const Attributes& attributes);
+
 }  // namespace thunderhead::storm_files

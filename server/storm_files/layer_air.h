@@ -39,7 +39,9 @@ struct LayerState {
   std::vector<float> potential_temperature_K;
   std::vector<float> vapour_kg_per_kg;  // per kg of dry air; empty if the air is dry
   std::vector<float> temperature_K;
-  std::vector<float> air_density_kg_per_m3;  // of dry air and vapour together
+  // The density of the whole air. The density of dry air follows by subtracting the vapour, but not
+  // the condensate, which is at most 2 % of the mass.
+  std::vector<float> air_density_kg_per_m3;
 };
 
 // Returns the temperature of every layer, or an empty array if the file has only the density. It

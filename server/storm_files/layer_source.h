@@ -55,6 +55,7 @@ struct LayerDomain {
   bool on_terrain = false;     // true if the lowest interface is the ground
   bool fixed_heights = false;  // true if the heights are the same at all times
   std::string heights_from;    // the variables of the heights, for errors
+  std::string ground_from;     // the variable of the ground's height, for errors; empty if none
   physics::Microphysics microphysics = physics::Microphysics::kUnknown;
   std::vector<LayerField> fields;  // in the order of physics::kHydrometeors
 

@@ -167,9 +167,9 @@ absl::StatusOr<const StormFormat*> StormFormats::FormatOf(const UnknownFile& fil
   const auto append_name = [](std::string* out, const StormFormat* format) {
     out->append(format->Name());
   };
-  return absl::InvalidArgumentError(
-      absl::StrCat(file.Path(), ": could be any of ", absl::StrJoin(fitting, ", ", append_name),
-                   ", which are read differently; give a file with the marks of one only"));
+  return absl::InvalidArgumentError(absl::StrCat(
+      file.Path(), ": could be any of ", absl::StrJoin(fitting, ", ", append_name),
+      ", which are read differently; give a file that matches only one of these formats"));
 }
 
 absl::StatusOr<StormFile> StormFormats::Describe(const std::string& path) const {
@@ -211,7 +211,8 @@ absl::Status StormFormats::NoneFits(const UnknownFile& file) const {
     const char* first = formats_.size() > 1 ? "neither " : "not ";
     absl::StrAppend(&message, i == 0 ? first : " nor ", std::string(formats_[i]->Requirement()));
   }
-  return absl::InvalidArgumentError(absl::StrCat(message, "; give a file that is"));
+  const char* formats = formats_.size() > 1 ? "one of these formats" : "this format";
+  return absl::InvalidArgumentError(absl::StrCat(message, "; give a file in ", formats));
 }
 
 std::string StormFormats::Examples() const {

@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "base/status.h"
+#include "netcdf/netcdf_file.h"
 #include "storm_files/date_time.h"
 #include "storm_files/even_columns.h"
 #include "storm_files/fields_on_heights.h"
@@ -52,6 +53,10 @@ class WrfFormat final : public StormFormat {
   std::string_view Example() const override { return "wrfout_..."; }
   std::string_view Requirement() const override {
     return "WRF output (it has no dimensions west_east, south_north, bottom_top)";
+  }
+
+  bool MayBegin(std::string_view start) const override {
+    return netcdf::NetcdfFile::BeginsLikeNetcdf(start);
   }
 
   absl::Status PrepareBeforeConfinement() const override { return LoadUnits(); }

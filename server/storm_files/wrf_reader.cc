@@ -13,6 +13,7 @@
 #include "netcdf/netcdf_file.h"
 #include "storm_files/even_columns.h"
 #include "storm_files/fields_on_heights.h"
+#include "storm_files/ground.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -37,6 +38,7 @@ class WrfSource final : public LayerSource {
     domain_.even = std::move(even);
     domain_.on_terrain = !metadata_.heights.middles.per_level;
     domain_.heights_from = HeightsFrom();
+    domain_.ground_from = "HGT";
     domain_.microphysics = metadata_.microphysics;
     for (const physics::Hydrometeor hydrometeor : metadata_.fields) {
       LayerField& field = domain_.fields.emplace_back();
@@ -89,9 +91,9 @@ absl::Status WrfSource::ReadVariable(const std::string& variable, std::size_t va
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::size_t length,
                                ValuesOfTime(file_, variable, kRankOfLayers));
   if (length != values_expected) {
-    return absl::DataLossError(absl::StrCat(file_.Path(), ": ", variable, " now has ", length,
-                                            " values a time where it had ", values_expected,
-                                            "; the file was replaced: restart to read it anew"));
+    return absl::DataLossError(absl::StrCat(
+        file_.Path(), ": ", variable, " now has ", length, " values a time where it had ",
+        values_expected, "; the file was replaced: restart the server to read the new file"));
   }
   THUNDERHEAD_RETURN_IF_ERROR(
       ReadTime(file_, variable, kRankOfLayers, domain_.record, changes, values, huge));
@@ -111,7 +113,7 @@ absl::Status WrfSource::ReadTerm(const WrfTerm& term, Changes changes, std::vect
     if (levels.size() * Columns() != Cells()) {
       return absl::DataLossError(
           absl::StrCat(file_.Path(), ": ", term.variable, " now has ", levels.size(),
-                       " values; the file was replaced: ", "restart to read it anew"));
+                       " values; the file was replaced: restart the server to read the new file"));
     }
     values.clear();
     for (const double level : levels) {
@@ -156,7 +158,9 @@ absl::StatusOr<std::vector<float>> WrfSource::HeightsFromMiddles_m() {
   if (domain_.on_terrain) {
     THUNDERHEAD_ASSIGN_OR_RETURN(ground_m, Terrain_m());
   }
-  return InterfacesBetween(middles_m, ground_m, domain_.cells.z, Columns());
+  std::vector<float> heights_m = InterfacesBetween(middles_m, ground_m, domain_.cells.z, Columns());
+  RaiseToGround(ground_m, heights_m);
+  return heights_m;
 }
 
 // Turns the potential temperature of moist air into that of dry air.

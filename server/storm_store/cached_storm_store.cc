@@ -99,6 +99,11 @@ std::vector<StormInfoPtr> CachedStormStore::Storms() const {
 absl::StatusOr<StormInfoPtr> CachedStormStore::Add(const std::string& path) {
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<CataloguedStorm> found,
                                FindStorms({path}, options_.formats));
+  if (found.size() > 1) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "cannot add ", path, ": it has ", found.size(), " storms, from '", found.front().info.id,
+        "' to '", found.back().info.id, "', and a file that is added must have one; split it"));
+  }
   CataloguedStorm& storm = found.front();
   const Lock lock(mutex_);
   if (owners_.contains(storm.info.id)) {

@@ -71,8 +71,9 @@ ReadMemory MemoryFor(const storm_files::StormFile& file,
 absl::Status Hangs(const HungRead& hung) {
   return base::WithDetails(
       absl::DeadlineExceededError(
-          absl::StrCat(hung.file, ": nothing has come for ", std::lround(hung.seconds),
-                       " s, its storage does not answer; what is in memory can still be shown")),
+          absl::StrCat(hung.file, ": no data has arrived for ", std::lround(hung.seconds),
+                       " s because its storage does not respond; check the storage; times in "
+                       "memory can still be shown")),
       {.reason = "STORAGE_HANGS", .metadata = {{"file", hung.file}}, .retry_after = kRetryAfter});
 }
 
@@ -84,7 +85,9 @@ absl::Status CheckNotReplaced(const storm_files::StormFile& file,
   if (!now.has_value() || now->Id() == file.id) return absl::OkStatus();
   return base::WithDetails(
       absl::UnavailableError(absl::StrCat(
-          file.path, ": another file has taken its place and is not described yet; try again")),
+          file.path,
+          ": was replaced by another file, which has not been read yet; try again in a "
+          "few seconds")),
       {.reason = std::string(kReplaced),
        .metadata = {{"file", file.path}},
        .retry_after = retry_after});
@@ -241,7 +244,8 @@ std::optional<HungRead> CachedStormStore::HungIn(const Activity& activity) const
 std::optional<HungRead> CachedStormStore::NoteHang(Activity& activity) const {
   std::optional<HungRead> hung = HungIn(activity);
   if (hung.has_value() && !std::exchange(activity.told_of_hang, true)) {
-    spdlog::error("{}: its storage does not answer; what needs it is refused", hung->file);
+    spdlog::error("{}: its storage does not respond; requests for it are refused until it does",
+                  hung->file);
   }
   return hung;
 }
@@ -320,7 +324,7 @@ void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   const TimeKey key = read.place.key;
   const bool is_asked = read.purpose == Purpose::kAsked;
   // The caller may have stopped waiting meanwhile.
-  Fields fields = absl::CancelledError("nobody waits for it any more");
+  Fields fields = absl::CancelledError("no caller waits for this read any more");
   if (!is_asked || read.waiters > 0) {
     const storm_files::StormFile& file = FileOf(*read.place.storm, read.place.time);
     activity = {
@@ -329,7 +333,7 @@ void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
     changed_.notify_all();  // waiting callers must check from now on whether the read hangs
     fields = ReadFile(lock, read, activity);
     activity.reads = false;
-    if (activity.told_of_hang) spdlog::info("{}: its storage answers again", file.path);
+    if (activity.told_of_hang) spdlog::info("{}: its storage responds again", file.path);
   }
   if (is_asked) --asked_reads_;
   // Fields of a time that was removed meanwhile are returned to callers but not cached.
@@ -337,7 +341,8 @@ void CachedStormStore::Read(Lock& lock, PendingRead& read, Activity& activity) {
   if (keep && (is_asked || read.waiters > 0)) {
     cache_.Insert(key, *fields);
   } else if (keep) {
-    cache_.InsertAhead(key, *fields);
+    // The cache must have the only reference, so that it can drop fields that do not fit.
+    cache_.InsertAhead(key, *std::exchange(fields, nullptr));
   }
   pending_.erase(key);
   read.result = std::move(fields);

@@ -22,12 +22,12 @@ constexpr std::chrono::seconds kLongestCourtesy{10};
 void Log(const StormChange& change) {
   const auto times = [](const StormInfoPtr& storm) { return storm->times.size(); };
   if (change.before == nullptr) {
-    spdlog::info("{} has come, with {} times", change.after->id, times(change.after));
+    spdlog::info("storm {} was added, with {} times", change.after->id, times(change.after));
   } else if (change.after == nullptr) {
-    spdlog::info("{} has gone", change.before->id);
+    spdlog::info("storm {} was removed", change.before->id);
   } else {
-    spdlog::info("{} has changed: {} times, {} before", change.after->id, times(change.after),
-                 times(change.before));
+    spdlog::info("storm {} was changed: it has {} times and had {}", change.after->id,
+                 times(change.after), times(change.before));
   }
 }
 

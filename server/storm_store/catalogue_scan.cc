@@ -73,7 +73,7 @@ absl::StatusOr<CatalogueScan::Result> CatalogueScan::Scan(Time now) {
       .most_entries = options_.most_entries};
   absl::StatusOr<std::vector<CataloguedStorm>> storms = FindStorms(options_.paths, search);
   // A scan that was stopped has not seen every file, so its storms must not replace the others.
-  if (stopping_) return absl::CancelledError("the search for storms was told to stop");
+  if (stopping_) return absl::CancelledError("the search for storms was stopped");
   THUNDERHEAD_ASSIGN_OR_RETURN(result.storms, std::move(storms));
   result.changed = ForgetUnseen() || changed_;
   EndTurn(result);
@@ -243,7 +243,7 @@ std::vector<absl::StatusOr<storm_files::StormFile>> CatalogueScan::Descriptions(
   for (const std::string& path : paths) {
     const auto known = known_.find(path);
     if (known == known_.end() || known->second.scan != scans_) {
-      files.emplace_back(absl::CancelledError("it has just gone"));
+      files.emplace_back(absl::CancelledError("it was just removed"));
     } else if (known->second.description.has_value()) {
       files.emplace_back(*known->second.description);
     } else {
@@ -256,7 +256,7 @@ std::vector<absl::StatusOr<storm_files::StormFile>> CatalogueScan::Descriptions(
 
 absl::StatusOr<storm_files::StormFile> CatalogueScan::DescribeTogether(
     const std::vector<std::string>& paths) {
-  if (stopping_) return absl::CancelledError("the search was told to stop");
+  if (stopping_) return absl::CancelledError("the search was stopped");
   std::vector<std::uint64_t> versions;
   versions.reserve(paths.size());
   for (const std::string& path : paths) versions.push_back(known_[path].description->version);
@@ -264,7 +264,7 @@ absl::StatusOr<storm_files::StormFile> CatalogueScan::DescribeTogether(
   known.scan = scans_;
   if (known.versions != versions) DescribeTogether(paths, std::move(versions), known);
   // An error is logged once.
-  if (!known.description.ok()) return absl::CancelledError("it is still not whole");
+  if (!known.description.ok()) return absl::CancelledError("its files are still incomplete");
   return *known.description;
 }
 

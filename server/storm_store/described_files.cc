@@ -62,7 +62,7 @@ std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(
     const std::vector<std::string>& paths, const storm_files::StormFormats& formats,
     const std::function<bool()>& before) {
   const absl::StatusOr<storm_files::StormFile> stopped =
-      absl::CancelledError("the search was told to stop");
+      absl::CancelledError("the search was stopped");
   std::vector<absl::StatusOr<storm_files::StormFile>> described;
   for (std::size_t first = 0, last = 0; first < paths.size(); first = last) {
     last = EndOfBatch(paths, first);

@@ -203,8 +203,8 @@ class StormStore {
   // storms.
   virtual std::vector<StormInfoPtr> Storms() const = 0;
 
-  // Adds the storm of a file, or the first storm if the file has several. Returns ALREADY_EXISTS if
-  // another storm has its id. Other errors are those of Open.
+  // Adds the storm of a file. Returns ALREADY_EXISTS if another storm has its id, and
+  // INVALID_ARGUMENT if the file has several storms. Other errors are those of Open.
   virtual absl::StatusOr<StormInfoPtr> Add(const std::string& path) = 0;
 
   // Removes a storm from the store, so that it is no longer listed, found or read. Its files stay.

@@ -110,8 +110,9 @@ std::string Expose(const Metrics& metrics, const std::vector<Gauge>& gauges) {
                "Times that the device was reset, or could not be opened again after that", kCounter,
                metrics.device_losses),
       FamilyOf("thunderhead_reader_failures_total",
-               "Readers of storm files that failed: crashed, killed, time or nonsense", kCounter,
-               "reason", metrics.reader_failures)};
+               "Readers of storm files that failed: crashed, killed, too slow, or with an "
+               "implausible answer",
+               kCounter, "reason", metrics.reader_failures)};
   for (const Gauge& gauge : gauges) {
     if (families.back().name != gauge.name) {
       families.push_back(Family(gauge.name, gauge.help, MetricType::Gauge));

@@ -114,7 +114,8 @@ class RunningPort final : public OperatorPort {
     if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
     if (error) {
       return absl::UnavailableError(absl::StrCat("cannot listen for operators on ", host, ":", port,
-                                                 " (", error.message(), "); choose another"));
+                                                 " (", error.message(),
+                                                 "); choose another address or port"));
     }
     port_ = acceptor_.local_endpoint().port();
     Accept();

@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "base/status.h"
@@ -261,9 +263,45 @@ absl::StatusOr<std::string> ProjectionOfWellKnownText(const std::string& text) {
   std::erase_if(words, [](const std::string& word) {
     return word == "+type=crs" || absl::StartsWith(word, "+towgs84=");
   });
+  for (std::string& word : words) {
+    constexpr std::string_view kMeridian = "+pm=";
+    if (!absl::StartsWith(word, std::string(kMeridian))) continue;
+    const auto named = PrimeMeridianNamed(std::string_view(word).substr(kMeridian.size()));
+    if (named.has_value()) word = absl::StrFormat("+pm=%.12g", *named);
+  }
   std::string composed = absl::StrJoin(words, " ");
   THUNDERHEAD_RETURN_IF_ERROR(ProjectionText::Parse(composed).status());
   return composed;
+}
+
+std::optional<double> PrimeMeridianNamed(std::string_view name) {
+  const std::string id = absl::AsciiStrToLower(absl::string_view(name.data(), name.size()));
+  for (const PJ_PRIME_MERIDIANS* known = proj_list_prime_meridians(); known->id != nullptr;
+       ++known) {
+    if (id == known->id) return glm::degrees(proj_dmstor(known->defn, nullptr));
+  }
+  return std::nullopt;
+}
+
+std::optional<double> PrimeMeridianOfWellKnownText(const std::string& text) {
+  const ProjContext context = NewContext();
+  ProjObject system(proj_create_from_wkt(context.get(), text.c_str(), nullptr, nullptr, nullptr));
+  if (system != nullptr && proj_get_type(system.get()) == PJ_TYPE_COMPOUND_CRS) {
+    system.reset(proj_crs_get_sub_crs(context.get(), system.get(), 0));
+  }
+  if (system != nullptr && proj_get_type(system.get()) == PJ_TYPE_BOUND_CRS) {
+    system.reset(proj_get_source_crs(context.get(), system.get()));
+  }
+  if (system == nullptr) return std::nullopt;
+  const ProjObject meridian(proj_get_prime_meridian(context.get(), system.get()));
+  double longitude = 0.0;
+  double radians_per_unit = 0.0;
+  if (meridian == nullptr ||
+      proj_prime_meridian_get_parameters(context.get(), meridian.get(), &longitude,
+                                         &radians_per_unit, nullptr) == 0) {
+    return std::nullopt;
+  }
+  return glm::degrees(longitude * radians_per_unit);
 }
 
 }  // namespace thunderhead::volume

@@ -84,4 +84,12 @@ class MapProjection {
 // Returns INVALID_ARGUMENT if it is not a projection that ProjectionText accepts.
 absl::StatusOr<std::string> ProjectionOfWellKnownText(const std::string& text);
 
+// Returns the longitude of a prime meridian that has a name, such as "Paris", in degrees east of
+// Greenwich. Returns nothing if PROJ does not know the name. Letters may be of either case.
+std::optional<double> PrimeMeridianNamed(std::string_view name);
+
+// Returns the longitude of the prime meridian of a coordinate reference system in well-known text,
+// in degrees east of Greenwich. Returns nothing if PROJ cannot parse the text.
+std::optional<double> PrimeMeridianOfWellKnownText(const std::string& text);
+
 }  // namespace thunderhead::volume

@@ -1,7 +1,7 @@
 """The expected results for the CF files that people report trouble with.
 
-Each row has the members of run_cases.Check: the folder of the case, the program's arguments, the exit code, words that
-the output must contain, and words that it must not contain.
+Each row has the members of run_cases.Check: the folder of the case, the program's arguments, and the exit code. Then
+follow the words that the output must contain, and those that it must not contain.
 """
 
 NOT_CUT_SHORT = ("cut short", "still be writing", "still being written")

@@ -66,7 +66,7 @@ test("a presenter leaves: a request that nobody answers ends, and control is fre
   await presenter.context().close();
   await until("a presenter who is gone", async () => (await said(viewer)) === "Waiting for Presenter to come back");
   await room.whileWaiting({ come_back: 0 }, () =>
-    until("a presenter who is away", async () => (await said(viewer)) === "Nobody steers"),
+    until("a presenter who is away", async () => (await said(viewer)) === "No one steers"),
   );
   const keptForPresenter = async () => {
     assert.match(await viewer.getByTestId("edit-block").innerText(), /away, and keeps control/);
@@ -230,7 +230,7 @@ test("control that the teacher lets go is free: one of two who ask at once steer
   await teacher.getByTestId("take-control").waitFor();
   const focused = await teacher.evaluate(() => document.activeElement?.dataset.testid);
   assert.equal(focused, "take-control", "the keyboard's place is lost");
-  assert.equal(await said(teacher), "Nobody steers");
+  assert.equal(await said(teacher), "No one steers");
   assert.equal(await exposure(teacher).isDisabled(), true);
   for (const page of [student, classmate])
     await until("free control", async () => (await controlLabel(page)) === "Steer");
@@ -255,11 +255,11 @@ test("control that the teacher lets go is free: one of two who ask at once steer
 test("where viewers may not steer, whoever asks for free control waits for the teacher", async () => {
   await setRule(teacher, "viewersMaySteer", false);
   await teacher.getByTestId("let-go").click();
-  await until("nobody", async () => (await said(classmate)) === "Nobody steers");
+  await until("nobody", async () => (await said(classmate)) === "No one steers");
   assert.equal(await controlLabel(classmate), "Ask to steer");
   await classmate.getByTestId("ask-control").click();
   await teacher.getByTestId("asks-give").waitFor();
-  assert.equal(await said(student), "Nobody steers");
+  assert.equal(await said(student), "No one steers");
   await teacher.getByTestId("asks-give").click();
   await classmate.getByTestId("give-back").waitFor();
   await teacher.getByTestId("take-control").click();
@@ -498,8 +498,8 @@ test("a colleague presents by the presenter's link; of two who steer at once nob
     return one.revision === other.revision && other.refined === "true" && values[0] === values[1];
   });
   const mine = await exposure(teacher).inputValue();
-  if (mine === "0.9") assert.doesNotMatch(await noticesOf(teacher), /last change was not taken/);
-  else assert.match(await noticesOf(teacher), /last change was not taken|is in control/);
+  if (mine === "0.9") assert.doesNotMatch(await noticesOf(teacher), /last change was not made/);
+  else assert.match(await noticesOf(teacher), /last change was not made|is in control/);
 
   await changing(() => setNumber(colleague, "exposure", 0.3), colleague);
   await until("the colleague's change", async () => (await exposure(teacher).inputValue()) === "0.3");
@@ -523,7 +523,7 @@ test("no error reached the browsers' consoles", () => {
 test("the teacher ends the session for everybody", async () => {
   await teacher.getByTestId("share").click();
   await teacher.getByTestId("end-session").click();
-  assert.match(await teacher.getByTestId("end-session").innerText(), /everybody/);
+  assert.match(await teacher.getByTestId("end-session").innerText(), /everyone/);
   await teacher.getByTestId("end-session").click();
   await student.getByTestId("session-ended").waitFor();
   await screenshot("28-ended", student);

@@ -157,7 +157,7 @@ test("a student who steers is lost for longer: the teacher is told and has contr
     await far.getByTestId("connection-lost").waitFor({ state: "detached" });
     await until("the teacher's change", async () => (await exposure(far).inputValue()) === "0.8");
     await until("a word about the own change", async () =>
-      /Your last change was not taken. Presenter steers/.test(await noticesOf(far)),
+      /Your last change was not made. Presenter steers/.test(await noticesOf(far)),
     );
     assert.equal(await exposure(far).isDisabled(), true);
     assert.equal(await exposure(teacher).inputValue(), "0.8");

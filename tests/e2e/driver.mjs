@@ -21,14 +21,18 @@ export const HANG_MS = 600_000;
 export const PICTURE_TIMEOUT_MS = HANG_MS;
 const POLL_MS = 50;
 
+// Few pixels, because the server and the browser draw in software. The layout is that of the viewport, whatever this
+// is. A test of the picture's size gives its own.
+const PIXELS_PER_CSS_PIXEL = 0.5;
+
 // Starts a browser. Every wait of its pages ends after HANG_MS.
 export async function launchBrowser(more = []) {
   mkdirSync(OUTPUT, { recursive: true });
   const options = { executablePath: CHROMIUM, args: [...CHROMIUM_ARGS, ...more], timeout: HANG_MS };
   const browser = await chromium.launch(options);
   const newContext = browser.newContext.bind(browser);
-  browser.newContext = async (...args) => {
-    const context = await newContext(...args);
+  browser.newContext = async (options) => {
+    const context = await newContext({ deviceScaleFactor: PIXELS_PER_CSS_PIXEL, ...options });
     context.setDefaultTimeout(HANG_MS);
     return context;
   };

@@ -33,7 +33,7 @@ import { freePort, startServer } from "./server_process.mjs";
 
 const VIEWPORT = { width: 1280, height: 620 };
 // Pictures have a quarter of the window's pixels: they cost less, and the page's layout is the same.
-const WINDOW = { viewport: VIEWPORT, deviceScaleFactor: 0.5 };
+const WINDOW = { viewport: VIEWPORT };
 const RUNS = [
   { start: 0, times: [0, 6, 7, 8], radiusM: 1800 },
   { start: 6, times: [6, 7, 8], radiusM: 3200 },

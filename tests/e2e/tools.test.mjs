@@ -36,7 +36,7 @@ const SAMPLE = fileURLToPath(new URL("../../samples/supercell.nc", import.meta.u
 // With a tool open, the picture has even sides, like a movie's.
 const VIEWPORT = { width: 1002, height: 620 };
 // Pictures have a quarter of the window's pixels: they cost less, and the page's layout is the same.
-const WINDOW = { viewport: VIEWPORT, deviceScaleFactor: 0.5 };
+const WINDOW = { viewport: VIEWPORT };
 // Longer than the time within which the page treats several changes as one step of undo
 // (client-web/src/core/history.ts).
 const GESTURE_MS = 1000;
@@ -428,7 +428,7 @@ test("a file that is no scene is refused where it was opened", async () => {
   await openPanel(page, "keep");
   await page.getByTestId("keep-scene").locator("summary").click();
   await page.getByTestId("file").setInputFiles({ name: "notes.json", mimeType: "application/json", buffer: Buffer.from("[]") });
-  assert.match(await text("keep-refused"), /^notes.json is not opened: ./i);
+  assert.match(await text("keep-refused"), /^notes.json cannot be opened: ./i);
   assert.equal(await page.locator("[data-testid=keep-scene] [data-testid=keep-refused]").count(), 1);
   assert.equal(await page.getByTestId("notices").innerText(), "");
   await page.getByTestId("keep-scene").locator("summary").click();
@@ -439,7 +439,7 @@ test("a file that is no scene is refused where it was opened", async () => {
     data.items.add(new File(["[]"], "dropped.json", { type: "application/json" }));
     window.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true }));
   });
-  await page.getByText("dropped.json is not opened").waitFor();
+  await page.getByText("dropped.json cannot be opened").waitFor();
   await page.getByTestId("notices").getByRole("button").click();
 });
 
@@ -457,7 +457,7 @@ test("a browser without H.264 says what it puts into an MP4", async () => {
     await other.getByTestId("keep-movie").locator("summary").click();
     assert.equal(await other.getByTestId("movie-codec").count(), 0);
     await other.getByTestId("movie-format").selectOption("mp4");
-    assert.match(await other.getByTestId("movie-codec").innerText(), /encodes no H.264 of that size: the MP4 holds VP9/);
+    assert.match(await other.getByTestId("movie-codec").innerText(), /cannot encode H.264 at this size, so the MP4 file contains VP9/);
   } finally {
     await other.context().close();
   }
@@ -472,7 +472,7 @@ test("a page without an encoder says at the button that it makes no movie", asyn
     await rested(other);
     await openPanel(other, "keep");
     await other.getByTestId("keep-movie").locator("summary").click();
-    assert.match(await other.getByTestId("movie-impossible").innerText(), /only on pages by HTTPS or from localhost/);
+    assert.match(await other.getByTestId("movie-impossible").innerText(), /only on pages loaded by HTTPS or from localhost/);
     assert.equal(await other.getByTestId("save-movie").isDisabled(), true);
     assert.equal(await other.getByTestId("save-picture").isEnabled(), true);
   } finally {

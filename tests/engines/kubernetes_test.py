@@ -54,7 +54,7 @@ class Kubernetes(unittest.TestCase):
             for thing in objects(file.name):
                 self.assertEqual(errors(thing), [], file.name)
                 kinds.append(thing["kind"])
-        self.assertEqual(sorted(kinds), ["Deployment", "Job", "Job", "PersistentVolumeClaim", "PersistentVolumeClaim", "Service"])
+        self.assertEqual(sorted(kinds), ["Deployment", "Job", "Job"] + 3 * ["PersistentVolumeClaim"] + ["Service"])
 
     @unittest.skipUnless(shutil.which("node") and (VALIDATE.parent / "node_modules/kubernetes-models").is_dir(),
                          "the npm package kubernetes-models is not installed; ./dev test does that")
@@ -104,9 +104,12 @@ class Kubernetes(unittest.TestCase):
         self.assertEqual(pods[0]["volumes"], pods[1]["volumes"])
         self.assertEqual(movie["volumeMounts"], pictures["volumeMounts"])
         self.assertNotIn("JOB_COMPLETIONS", str(movie["env"]), "the movie's job is no share")
-        claims = {claim["metadata"]["name"] for claim in objects("claims.yaml")}
-        self.assertEqual({volume["persistentVolumeClaim"]["claimName"] for volume in pods[0]["volumes"]
-                          if "persistentVolumeClaim" in volume}, claims)
+
+    def test_every_claim_is_defined_and_used(self) -> None:
+        pods = [objects(name)[0]["spec"]["template"]["spec"] for name in ("sequence.yaml", "movie.yaml", "serve.yaml")]
+        used = {volume["persistentVolumeClaim"]["claimName"] for pod in pods for volume in pod["volumes"]
+                if "persistentVolumeClaim" in volume}
+        self.assertEqual(used, {claim["metadata"]["name"] for claim in objects("claims.yaml")})
 
     def test_its_exit_codes_are_the_programs(self) -> None:
         rules = objects("sequence.yaml")[0]["spec"]["podFailurePolicy"]["rules"]

@@ -84,6 +84,24 @@ TEST_F(FrameCounterTest, BytesMayComeInAnyPieces) {
   EXPECT_FALSE(taken);
 }
 
+TEST_F(FrameCounterTest, CloseCodesAbove4999AreRefused) {
+  const auto close_with = [](int code) {
+    std::string frame = FrameOf(0x88, 2);
+    frame[6] = static_cast<char>((code >> 8) ^ 'm');
+    frame[7] = static_cast<char>((code & 0xff) ^ 'm');
+    return frame;
+  };
+  EXPECT_TRUE(Take(close_with(4999)));
+  EXPECT_FALSE(counter_.HasForbiddenCode());
+  // A message or a ping may contain any bytes.
+  EXPECT_TRUE(Take(FrameOf(kBinary, 2)));
+  EXPECT_TRUE(Take(FrameOf(kPing, 2)));
+  EXPECT_TRUE(Take(FrameOf(0x88, 0)));
+  for (const char byte : close_with(5000).substr(0, 7)) EXPECT_TRUE(Take(std::string(1, byte)));
+  EXPECT_FALSE(Take(close_with(5000).substr(7)));
+  EXPECT_TRUE(counter_.HasForbiddenCode());
+}
+
 class FloodedWebSocketTest : public test::EchoTest {
  protected:
   // Upgrades, then sends `frames` repeatedly, at most `most` times, until the server accepts none.

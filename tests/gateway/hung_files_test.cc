@@ -160,6 +160,13 @@ TEST_F(HungFilesTest, PartsOfResultsAreSent) {
   EXPECT_EQ(part.result(), http::status::partial_content);
   EXPECT_EQ(part.body(), "ctu");
   EXPECT_EQ(part["Content-Range"], "bytes 2-4/7");
+  // Numbers have no sign, and a wrong range asks for the whole file.
+  for (const std::string range : {"bytes=+2-4", "bytes=2-+4", "bytes=-+4", "bytes= 2-4"}) {
+    const Response whole =
+        RawClient(Site().Port()).Ask("GET", "/results/fine/0", {{"Range", range}});
+    EXPECT_EQ(whole.result(), http::status::ok) << range;
+    EXPECT_EQ(whole.body().size(), 7U) << range;
+  }
   // Only GET supports ranges.
   for (const std::string range : {"bytes=2-4", "bytes=7-"}) {
     const Response head =

@@ -370,6 +370,27 @@ TEST_F(WebSocketTest, BrokenFramesAndCloseFramesEndTheCall) {
   }
 }
 
+// RFC 6455, 7.4.2, ends the range of close codes at 4999. Each of these is answered with 1002.
+TEST_F(WebSocketTest, ForbiddenCloseCodesAreProtocolErrors) {
+  DriveTime();  // no timeout ends it
+  const auto answer_to = [&](int code) {
+    RawClient client(Site().Port());
+    Upgrade(client);
+    // The mask differs in each byte, and 'x' is the first byte of a reason.
+    std::string frame = "\x88\x83\x11\x22\x33\x44";
+    frame += {static_cast<char>((code >> 8) ^ 0x11), static_cast<char>((code & 0xff) ^ 0x22),
+              static_cast<char>('x' ^ 0x33)};
+    client.Send(frame);
+    const std::string closing = client.ReadToEnd();
+    if (closing.size() < 4 || closing.front() != '\x88') return -1;
+    return static_cast<unsigned char>(closing[2]) * 256 + static_cast<unsigned char>(closing[3]);
+  };
+  for (const int allowed : {1000, 1001, 1011, 3000, 4999}) EXPECT_EQ(answer_to(allowed), allowed);
+  for (const int forbidden : {0, 999, 1004, 1005, 1006, 1015, 2999, 5000, 32768, 65535}) {
+    EXPECT_EQ(answer_to(forbidden), 1002) << forbidden;
+  }
+}
+
 // Returns a masked client frame of at most 125 bytes.
 std::string ClientFrame(const std::string& payload) {
   return std::string("\x82") + static_cast<char>(0x80 | payload.size()) + std::string(4, '\0') +
@@ -440,6 +461,33 @@ TEST_F(UpgradeTest, TheSubprotocolMustBeOffered) {
   }
   EXPECT_EQ(Upgrade({}, "Converse", "a, grpc-websocket.v1")["Sec-WebSocket-Protocol"],
             "grpc-websocket.v1");
+}
+
+TEST_F(UpgradeTest, OneKeyOfSixteenBytesIsNeeded) {
+  const auto answer_to = [&](const std::vector<std::string>& keys) {
+    Headers headers = {{"Connection", "Upgrade"},
+                       {"Upgrade", "websocket"},
+                       {"Sec-WebSocket-Version", "13"},
+                       {"Sec-WebSocket-Protocol", "grpc-websocket.v1"}};
+    for (const std::string& key : keys) headers.emplace_back("Sec-WebSocket-Key", key);
+    return RawClient(Site().Port()).Ask("GET", "/thunderhead.gateway.test.Echo/Converse", headers);
+  };
+  const std::string key = "dGhlIHNhbXBsZSBub25jZQ==";  // that of RFC 6455, 1.3
+  EXPECT_EQ(answer_to({key})["Sec-WebSocket-Accept"], "s3pPLMBiTxaQ9kYGzzhZRbK+xOo=");
+  for (const std::vector<std::string>& wrong :
+       std::vector<std::vector<std::string>>{{},
+                                             {""},
+                                             {"abc"},
+                                             {key, key},
+                                             {key + "AAAA"},
+                                             {"dGhlIHNhbXBsZSBub25jZQ"},
+                                             {"dGhlIHNhbXBsZSBub25jZWQ="},
+                                             {"dGhlIHNhbXBsZSBub25jZ!=="},
+                                             {"dGhlIHNhbXBs ZSBub25jZ=="}}) {
+    const Response response = answer_to(wrong);
+    EXPECT_EQ(response.result(), http::status::bad_request) << ::testing::PrintToString(wrong);
+    EXPECT_THAT(response.body(), HasSubstr("Sec-WebSocket-Key")) << ::testing::PrintToString(wrong);
+  }
 }
 
 TEST_F(UpgradeTest, OtherRequestsHaveTheirUsualAnswers) {

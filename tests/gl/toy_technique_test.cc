@@ -189,10 +189,9 @@ TEST_F(ToyTechniqueTest, AnUnknownNameGetsTheListOfThoseThatDraw) {
   Choose("voxels");
   const absl::Status status = renderer_->Draw(scene_, fields_, {}).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
-  EXPECT_EQ(
-      std::string(status.message()),
-      "there is no technique 'voxels' that draws; the techniques are light_volume, half_angle, "
-      "metaball, cumulus, toy, toy_of_medium");
+  EXPECT_EQ(std::string(status.message()),
+            "no renderer draws the technique 'voxels'; choose one of: light_volume, half_angle, "
+            "metaball, cumulus, toy, toy_of_medium");
   scene_.rendering.technique = scene::Reference{};  // traced, not drawn
   EXPECT_EQ(renderer_->Draw(scene_, fields_, {}).status().code(),
             absl::StatusCode::kInvalidArgument);

@@ -1,15 +1,15 @@
 #!/usr/bin/python3
 """One storm as WRF output, as CF netCDF and as GRIB2 makes the same picture.
 
-Columns of the sample storm are placed on a Lambert map and written in each format by netCDF's own library or, for GRIB2,
-octet by octet with 24 bits a value. Each picture's radiance is compared with that of the WRF file.
+Columns of the sample storm are placed on a Lambert map and written in each format. The netCDF library writes the netCDF
+files. GRIB2 is written octet by octet, with 24 bits a value. Each picture's radiance is compared with that of the WRF file.
 
 What a format cannot say is excluded:
 
 - The scene takes the particle sizes of the papers, because only WRF names a microphysics scheme, and HRRR implies another.
 - Two files have the heights of the layers' faces, as ICON has. The other two have those of the layers' middles, as HRRR
-  and many CF files have. Faces half-way between middles are up to 5 m off, and the storm's cells, which are as high as the
-  thinnest layer, become 300.3 m high instead of 300.0 m. The turbulent detail follows the cells, so these files are
+  and many CF files have. Faces half-way between middles are up to 5 m off. The storm's cells are as high as the thinnest layer,
+  so they become 300.3 m high instead of 300.0 m. The turbulent detail follows the cells, so these files are
   compared without it.
 - No file has winds or turbulent energy, so that the detail of all comes from contrasts of the fields.
 

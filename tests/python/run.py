@@ -39,6 +39,7 @@ def main() -> int:
             [*mypy, "-p", "thunderhead"],
             [*mypy, *map(str, sorted((ROOT / "client-python/examples").glob("*.py")))],
             [sys.executable, str(ROOT / "client-python/tests/test_cases.py")],
+            [sys.executable, str(ROOT / "client-python/tests/test_session.py")],
             [sys.executable, str(ROOT / "client-python/tests/test_client.py"), *sys.argv[1:]],
         ]
         return max(subprocess.run(step, env=environment, cwd=folder).returncode for step in steps)

@@ -2,18 +2,24 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include "comparisons.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
+#include "gmock/gmock.h"
 #include "picture/exr_file.h"
 
 namespace thunderhead::reference {
 namespace {
 
 using picture::LinearPicture;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -385,6 +391,30 @@ TEST(ExrFile, SaysWhatIsWrong) {
   EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
   EXPECT_NE(status.message().find("/nonexistent-folder/image.exr"), std::string::npos);
   EXPECT_FALSE(picture::ReadExr("/nonexistent-folder/image.exr").ok());
+}
+
+// Returns an EXR file whose header claims another size than its picture has.
+std::string ExrThatClaims(const glm::ivec2& size_px) {
+  std::string exr = *picture::EncodeExr(SmallPicture(2, {2}));
+  // The attribute is its name, type and size, then the window's first and last pixel.
+  using std::string_literals::operator""s;
+  const std::string before = "dataWindow\0box2i\0\x10\0\0\0"s;
+  const glm::ivec2 last_px = size_px - 1;
+  std::memcpy(exr.data() + exr.find(before) + before.size() + sizeof(last_px), &last_px,
+              sizeof(last_px));
+  return exr;
+}
+
+TEST(ExrFile, APictureLargerThanItsFileIsRefusedBeforeItsMemoryIsAllocated) {
+  const auto message = [](const glm::ivec2& size_px) {
+    const absl::Status status = picture::DecodeExr(ExrThatClaims(size_px), "a.exr").status();
+    EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument) << status;
+    return std::string(status.message());
+  };
+  EXPECT_THAT(message({60'000, 1000}),
+              HasSubstr("too few for its 60000 x 1000 pixels; give a complete file"));
+  EXPECT_THAT(message({500'000'000, 8}),
+              AllOf(HasSubstr("exceeds the maximum width"), Not(HasSubstr("bad_alloc"))));
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ TEST_F(AccuracyTest, UnreachableErrorsGetTheNearestAndSaySo) {
   const v1::AccuracyReport report = watcher.NewestFrame().accuracy();
   EXPECT_EQ(report.slices(), 100U);
   EXPECT_THAT(report.unmet().message(),
-              HasSubstr("out of reach for orbit views; the nearest is 0.2"));
+              HasSubstr("no setting reaches an error of 0.01 for orbit views; the best has 0.2"));
 }
 
 TEST_F(AccuracyTest, TimesAreCorrectedByWhatThisMachineTakes) {

@@ -700,13 +700,43 @@ TEST_F(CommandLineTest, ExportWritesGridsAndTheView) {
 
 TEST_F(CommandLineTest, ExportNamesWhatIsWrong) {
   const std::string vdb = folder_.File("storm.vdb");
-  ExpectError("export " + kSample + " -o storm.nc", 64, "must end in .vdb");
+  ExpectError("export " + kSample + " -o storm.nc", 64,
+              "-o is 'storm.nc'; its name must end in .vdb");
+  ExpectError("export " + kSample + " -o " + vdb + " --view " + vdb, 64,
+              "--view is '" + vdb + "'; its name must end in .json");
   ExpectError("export " + kSample + " --time 9 -o " + vdb, 64, "9");
   ExpectError("export " + folder_.File("none.nc") + " -o " + vdb, 75, "none.nc");
   ExpectError("export " + kSample + " -o " + folder_.File("no/storm.vdb"), 78,
               "no/storm.vdb cannot be written");
   ExpectError("export " + kSample + " -o " + vdb + " --view " + folder_.File("no/storm.json"), 78,
               "no/storm.json");
+}
+
+TEST_F(CommandLineTest, FitNamesWhatIsWrongWithItsOutputs) {
+  const std::string fit = "fit " + kSample + " --balls 1 -o ";
+  const std::string balls = folder_.File("storm.balls");
+  ExpectError(fit + "storm.nc", 64, "-o is 'storm.nc'; its name must end in .balls");
+  ExpectError(fit + balls + " --volume " + balls, 64,
+              "--volume is '" + balls + "'; its name must end in .nc");
+  ExpectError(fit + balls + " --volume /dev/full", 64, "must end in .nc");
+  EXPECT_FALSE(std::filesystem::exists(balls));
+}
+
+TEST_F(CommandLineTest, AnOutputDoesNotReplaceItsStorm) {
+  const std::string storm = folder_.File("storm.nc");
+  std::filesystem::copy_file(kSample, storm);
+  ExpectError("render " + storm + " -o " + storm, 64, "-o would replace the storm file");
+  ExpectError(
+      "fit " + storm + " --balls 1 -o " + folder_.File("storm.balls") + " --volume " + storm, 64,
+      "--volume would replace the storm file");
+  EXPECT_EQ(Contents(storm), Contents(kSample));
+}
+
+// A file in place of a device would stop other programs that use it.
+TEST_F(CommandLineTest, AnOutputReplacesNoDevice) {
+  std::filesystem::create_symlink("/dev/null", picture_);
+  ExpectError(render_, 78, picture_ + " is not a regular file and is not replaced by one");
+  EXPECT_TRUE(std::filesystem::is_symlink(picture_));
 }
 
 TEST_F(CommandLineTest, AnInterruptedExportLeavesNoFile) {

@@ -208,8 +208,10 @@ TEST(SceneMessages, LightsAreWhatTheMessageSaysAndWhiteWhereItIsSilent) {
 
 TEST(Limits, AGivenRadiusIsAFieldsAlone) {
   EXPECT_EQ(Complaint(SceneFrom(R"({"particleSizes": "PARTICLE_SIZES_PAPERS"})")), "");
-  EXPECT_THAT(Complaint(SceneFrom(R"({"particleSizes": "PARTICLE_SIZES_GIVEN"})")),
-              HasSubstr("scene.particle_sizes is PARTICLE_SIZES_GIVEN, which is for a field"));
+  EXPECT_THAT(
+      Complaint(SceneFrom(R"({"particleSizes": "PARTICLE_SIZES_GIVEN"})")),
+      HasSubstr(
+          "scene.particle_sizes is PARTICLE_SIZES_GIVEN, which is allowed only in scene.fields"));
 }
 
 }  // namespace

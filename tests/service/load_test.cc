@@ -11,6 +11,7 @@
 #include <stop_token>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "base/whole_file.h"
 #include "gateway/gateway.h"
@@ -26,6 +27,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::Each;
 using ::testing::Ge;
 using ::testing::Gt;
 using ::testing::HasSubstr;
@@ -214,6 +216,18 @@ TEST_P(LoadTest, ARateWithoutANumberThrottlesAllViewers) {
   EXPECT_EQ(report->throttled_first.count, 3U);
   EXPECT_THAT(shown_fps, Gt(0.0));
   EXPECT_TRUE(std::isfinite(shown_fps));
+}
+
+TEST_P(LoadTest, WithoutViewersWhoReadTheShownRateIs0) {
+  options_.viewers = 0;
+  options_.stalled = 1;
+  std::vector<double> shown_fps;
+  const auto report = RunUntil([&](const Progress& progress) {
+    shown_fps.push_back(progress.frames_per_s);
+    return shown_fps.size() >= 3;
+  });
+  ASSERT_TRUE(report.ok()) << report.status();
+  EXPECT_THAT(shown_fps, Each(0.0));
 }
 
 TEST_P(LoadTest, PassingViewersComeAndGetAFrameEachTime) {

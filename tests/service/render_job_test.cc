@@ -239,6 +239,9 @@ TEST_F(RenderJobTest, DrawsEveryPictureOnceAndKeepsItUntilItIsFetched) {
   }
   EXPECT_EQ(pictures[0].name(), "a");
   EXPECT_EQ(service.machine->Log().size(), 3U);
+  for (const char* other : {"/+0", "/00", "/-0", "/ 0", "/0 ", "/01", "/0x0", "/", ""}) {
+    EXPECT_FALSE(service.server().FindResult(job.result_path() + other).has_value()) << other;
+  }
   EXPECT_FALSE(service.server().FindResult(absl::StrCat("/results/", job.id(), "/0")).has_value())
       << "the id is no key";
   EXPECT_EQ(jobs.Get(job.id()).job().state(), v1::RenderJob::STATE_DONE);

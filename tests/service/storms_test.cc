@@ -124,7 +124,7 @@ TEST(StormsTest, UnknownStormIsNotFoundAndNamesThoseThereAre) {
   v1::StormDescription storm;
   const grpc::Status status = Describe(service, "hurricane", 0, &storm);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::NOT_FOUND);
-  EXPECT_EQ(status.error_message(), "no storm has the id 'hurricane'; there is anvil, clear");
+  EXPECT_EQ(status.error_message(), "no storm has the id 'hurricane'; the server has anvil, clear");
 }
 
 TEST(StormsTest, TimeBeyondTheLastNamesTheRange) {

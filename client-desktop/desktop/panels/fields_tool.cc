@@ -106,7 +106,7 @@ void FieldsTool(Ui& ui) {
   }
   DrawParticleSizes(ui);
   ImGui::EndDisabled();
-  Quiet("Radius, albedo and phase function of each field are among every setting (X).");
+  Quiet("Radius, albedo and phase function of each field are under Every setting (X).");
 }
 
 }  // namespace thunderhead::desktop

@@ -30,7 +30,7 @@ void LightTool(Ui& ui) {
     Setting(ui, "sun.clock.latitude_deg", "Degrees north");
     Setting(ui, "sun.clock.longitude_deg", "Degrees east");
   } else {
-    Setting(ui, "sun.azimuth_deg", "Stands in, from the grid's north");
+    Setting(ui, "sun.azimuth_deg", "Azimuth from the grid's north");
     Setting(ui, "sun.elevation_deg", "Height");
   }
   ImGui::Spacing();

@@ -29,10 +29,10 @@ std::string WordsOf(const v1::Scene& scene, v1::Preset preset) {
     case v1::PRESET_BALANCED:
       return "Fine detail; traced light while it rests.";
     case v1::PRESET_ACCURATE:
-      return "As Balanced; files wait for traced light.";
+      return "Four times the samples of Balanced; files wait for traced light.";
     case v1::PRESET_UNSPECIFIED:
       return scene.accuracy().limit_case() == v1::Accuracy::LIMIT_NOT_SET
-                 ? "Custom: as every setting (X) says."
+                 ? "Custom: as set under Every setting (X)."
                  : "Set by the goal below.";
     default:
       return absl::StrCat("As in the paper: ", NameOf(preset), ".");
@@ -61,9 +61,9 @@ void DrawQuality(Ui& ui, v1::Preset preset) {
 void DrawGoal(Ui& ui) {
   int goal = ui.state.scene.accuracy().limit_case();
   if (Choice("Accuracy",
-             {{v1::Accuracy::LIMIT_NOT_SET, "As the quality above"},
+             {{v1::Accuracy::LIMIT_NOT_SET, "Same as the quality above"},
               {v1::Accuracy::kMaxError, "At most this error"},
-              {v1::Accuracy::kMaxMilliseconds, "At most this time a frame"}},
+              {v1::Accuracy::kMaxMilliseconds, "At most this time per frame"}},
              goal)) {
     ui.Edit("accuracy", [=](v1::Scene& scene) {
       ChooseGoal(scene, static_cast<v1::Accuracy::LimitCase>(goal));

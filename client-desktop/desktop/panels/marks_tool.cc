@@ -25,7 +25,7 @@ void MarksTool(Ui& ui) {
           "the camera turns.");
       break;
     case Hand::kPointer:
-      Quiet("Everybody sees where you point.");
+      Quiet("Everyone sees where you point.");
       break;
   }
   ImGui::Spacing();

@@ -56,9 +56,9 @@ struct Rule {
 };
 
 constexpr std::array<Rule, 5> kRules{{
-    {"Viewers who ask may steer while nobody does", &v1::SessionRules::viewers_may_steer,
+    {"A viewer who asks may steer while no one steers", &v1::SessionRules::viewers_may_steer,
      &v1::SessionRules::set_viewers_may_steer},
-    {"Nobody may ask to steer", &v1::SessionRules::control_locked,
+    {"No one may ask to steer", &v1::SessionRules::control_locked,
      &v1::SessionRules::set_control_locked},
     {"Viewers see what the presenter shows", &v1::SessionRules::following_locked,
      &v1::SessionRules::set_following_locked},
@@ -109,8 +109,11 @@ void PeoplePanel(Ui& ui) {
   ImGui::Spacing();
   DrawRules(ui);
   ImGui::Spacing();
-  DrawKey("Viewers' key: --key, or …/?session= in a browser", ui.state.viewer_key);
-  DrawKey("Presenter's key, for yourself alone", ui.state.presenter_key);
+  DrawKey("Viewers' key", ui.state.viewer_key);
+  if (!ui.state.viewer_key.empty()) {
+    Quiet("Join with --key KEY, or open http://SERVER/?session=KEY.");
+  }
+  DrawKey("Presenter's key, only for you", ui.state.presenter_key);
 }
 
 }  // namespace thunderhead::desktop

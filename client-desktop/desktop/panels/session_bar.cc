@@ -20,7 +20,7 @@ std::string WhoSteers(const client::SessionState& state) {
   if (state.Steers()) return "You steer";
   const v1::Person* const steerer = state.Steerer();
   if (steerer != nullptr) return absl::StrCat(state.NameOf(*steerer), " steers");
-  if (!state.presence.has_awaited()) return "Nobody steers";
+  if (!state.presence.has_awaited()) return "No one steers";
   return absl::StrCat("Waiting for ", state.NameOf(state.presence.awaited()), " to come back");
 }
 
@@ -36,7 +36,7 @@ void DisabledButton(const char* label, const char* reason = nullptr) {
 void ControlButton(Ui& ui) {
   const client::SessionState& state = ui.state;
   if (state.Steers()) {
-    if (ImGui::Button(state.Presents() ? "Let control go" : "Give control back")) {
+    if (ImGui::Button(state.Presents() ? "Release control" : "Give control back")) {
       ui.session.GiveControl(0);
     }
   } else if (state.Presents()) {

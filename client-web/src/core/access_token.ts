@@ -1,30 +1,22 @@
 // The token that a server with --auth requires. The browser keeps it for this tab only, until the
 // tab is closed.
-import type { TextStore } from "./own_keys";
+import { KeptText, type TextStore } from "./kept_text";
 
 const TOKEN_ITEM = "thunderhead.token";
 
 export class AccessToken {
-  readonly #store: TextStore | undefined;
-  // The token, used if it could not be written to the browser's storage.
-  #token: string | undefined;
+  readonly #kept: KeptText;
 
   constructor(store: TextStore | undefined) {
-    this.#store = store;
+    this.#kept = new KeptText(store, TOKEN_ITEM);
   }
 
   get value(): string | undefined {
-    const stored = this.#store?.getItem(TOKEN_ITEM) ?? undefined;
-    return stored ?? this.#token;
+    return this.#kept.read();
   }
 
   set(text: string): void {
-    this.#token = text.trim();
-    try {
-      this.#store?.setItem(TOKEN_ITEM, this.#token);
-    } catch {
-      // Writing fails if the storage is full. The token then lasts only as long as the page.
-    }
+    this.#kept.write(text.trim());
   }
 }
 

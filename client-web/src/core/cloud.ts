@@ -82,7 +82,7 @@ function ellipsoidsOf(text: string): GenerateCloudRequest_Ellipsoid[] {
     const numbers = line.split(",").map((part) => (part.trim() === "" ? Number.NaN : Number(part)));
     if ((numbers.length !== 6 && numbers.length !== 9) || !numbers.every(Number.isFinite)) {
       throw new Error(
-        `Line ${index + 1} of the ellipsoids is "${line}"; it must be six numbers, or nine with a rotation, with commas`,
+        `Line ${index + 1} of the ellipsoids is "${line}"; it must be six numbers, or nine with a rotation, separated by commas`,
       );
     }
     const [xM, yM, zM, radiusXM, radiusYM, radiusZM, rotationXDeg, rotationYDeg, rotationZDeg] =

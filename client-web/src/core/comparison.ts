@@ -72,7 +72,7 @@ export function timeOfB(
 export function awayInWords({ awayS }: TimeOfB): string | undefined {
   if (awayS === 0) return undefined;
   if (awayS === undefined)
-    return "The dates of A and B cannot be compared: B shows the time of the same number.";
+    return "The dates of A and B cannot be compared, so B shows the time with the same number.";
   const duration = formatElapsed(Math.abs(awayS)).slice(1);
-  return `B has no such valid time: it shows the nearest, ${duration} ${awayS < 0 ? "earlier" : "later"}.`;
+  return `B has no such valid time, so it shows the nearest one, ${duration} ${awayS < 0 ? "earlier" : "later"}.`;
 }

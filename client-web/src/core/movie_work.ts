@@ -1,8 +1,9 @@
 // A list of the movies whose pictures are drawn by jobs on the server, at most one movie for each
 // storm. The browser keeps the list for this tab. After a reload the page continues the movie of
 // the storm that it shows.
+
+import type { TextStore } from "./kept_text";
 import type { MovieDraft } from "./movie_plan";
-import type { TextStore } from "./own_keys";
 
 export interface MovieWork {
   readonly jobId: string;

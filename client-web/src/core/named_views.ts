@@ -3,8 +3,8 @@ import { fromJson, toJson } from "@bufbuild/protobuf";
 import { signal } from "@preact/signals-core";
 import { type Camera, CameraSchema } from "../gen/thunderhead/v1/scene_pb";
 import type { StormTime } from "../gen/thunderhead/v1/storm_pb";
+import { KeptText, type TextStore } from "./kept_text";
 import { timeLike } from "./nearest_time";
-import type { TextStore } from "./own_keys";
 
 export interface NamedView {
   readonly name: string;
@@ -20,14 +20,14 @@ export const VIEWS_ITEM = "thunderhead.views";
 export const MAX_VIEWS = 24;
 
 export class NamedViews {
-  readonly #storage: TextStore | undefined;
+  readonly #kept: KeptText;
   readonly #domain: () => string;
   readonly all = signal<readonly NamedView[]>([]);
 
   // `domain` returns the domain that is shown. It returns an empty text while the domain is
   // unknown; the list then has no views.
   constructor(storage: TextStore | undefined, domain: () => string) {
-    this.#storage = storage;
+    this.#kept = new KeptText(storage, VIEWS_ITEM);
     this.#domain = domain;
   }
 
@@ -69,19 +69,12 @@ export class NamedViews {
   #write(views: readonly NamedView[]): boolean {
     this.all.value = views;
     const stored = views.map((view) => ({ ...view, camera: toJson(CameraSchema, view.camera) }));
-    try {
-      const all = { ...this.#read(), [this.#domain()]: stored };
-      this.#storage?.setItem(VIEWS_ITEM, JSON.stringify(all));
-      return this.#storage !== undefined;
-    } catch {
-      // Writing fails if the storage is full.
-      return false;
-    }
+    return this.#kept.write(JSON.stringify({ ...this.#read(), [this.#domain()]: stored }));
   }
 
   #read(): Record<string, unknown> {
     try {
-      const parsed = JSON.parse(this.#storage?.getItem(VIEWS_ITEM) ?? "{}");
+      const parsed = JSON.parse(this.#kept.read() ?? "{}");
       return typeof parsed === "object" && parsed !== null ? parsed : {};
     } catch {
       return {};

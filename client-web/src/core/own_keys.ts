@@ -1,12 +1,7 @@
 // Keeps the person's name and the presenter keys of this browser's sessions in the browser's
 // storage. Each presenter key is found by its session's viewer key. A presenter's link contains a
 // presenter key, which the page removes from the address at once.
-
-// The part of the DOM's Storage that the page uses.
-export interface TextStore {
-  getItem(name: string): string | null;
-  setItem(name: string, text: string): void;
-}
+import { KeptText, type TextStore } from "./kept_text";
 
 const KEYS_ITEM = "thunderhead.presenter-keys";
 const NAME_ITEM = "thunderhead.name";
@@ -16,13 +11,12 @@ export const LONGEST_NAME = 40;
 type Entry = readonly [viewerKey: string, presenterKey: string];
 
 export class OwnKeys {
-  readonly #store: TextStore | undefined;
-  // These members are used if the browser denies access to its storage.
-  #name = "";
-  #entries: readonly Entry[] = [];
+  readonly #name: KeptText;
+  readonly #entries: KeptText;
 
   constructor(store: TextStore | undefined) {
-    this.#store = store;
+    this.#name = new KeptText(store, NAME_ITEM);
+    this.#entries = new KeptText(store, KEYS_ITEM);
   }
 
   presenterKey(viewerKey: string): string | undefined {
@@ -39,41 +33,25 @@ export class OwnKeys {
   }
 
   get name(): string {
-    try {
-      return this.#store?.getItem(NAME_ITEM) ?? this.#name;
-    } catch {
-      return this.#name;
-    }
+    return this.#name.read() ?? "";
   }
 
   set name(name: string) {
-    this.#name = trimmedName(name);
-    this.#set(NAME_ITEM, this.#name);
+    this.#name.write(trimmedName(name));
   }
 
   #read(): readonly Entry[] {
     try {
-      const text = this.#store?.getItem(KEYS_ITEM);
-      if (text === null || text === undefined) return this.#entries;
-      const parsed: unknown = JSON.parse(text);
+      const parsed: unknown = JSON.parse(this.#entries.read() ?? "[]");
       return Array.isArray(parsed) ? parsed.filter(isEntry) : [];
     } catch {
-      return this.#entries;
+      // Another program may have written a text that is not JSON.
+      return [];
     }
   }
 
   #write(entries: readonly Entry[]): void {
-    this.#entries = entries;
-    this.#set(KEYS_ITEM, JSON.stringify(entries));
-  }
-
-  #set(item: string, text: string): void {
-    try {
-      this.#store?.setItem(item, text);
-    } catch {
-      // Writing fails if the storage is full or denied. The text then lasts only as long as the
-      // page.
-    }
+    this.#entries.write(JSON.stringify(entries));
   }
 }
 

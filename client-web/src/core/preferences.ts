@@ -2,7 +2,7 @@
 // over the picture.
 import type { Signal } from "@preact/signals-core";
 import { type AnnotationChoice, FIRST_ANNOTATIONS } from "./annotations";
-import type { TextStore } from "./own_keys";
+import type { TextStore } from "./kept_text";
 import type { LengthUnits } from "./units";
 
 const ITEM = "thunderhead.preferences";

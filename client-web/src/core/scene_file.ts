@@ -14,7 +14,7 @@ export function sceneOfText(text: string): Scene {
   try {
     return fromJson(SceneSchema, JSON.parse(text), { ignoreUnknownFields: true });
   } catch (error) {
-    throw new Error(`it is no scene of Thunderhead (${(error as Error).message})`);
+    throw new Error(`the file is not a Thunderhead scene (${(error as Error).message})`);
   }
 }
 
@@ -27,6 +27,7 @@ export function withScene(png: Uint8Array, scene: Scene): Uint8Array<ArrayBuffer
 export function sceneOfFile(bytes: Uint8Array): Scene {
   const inside = pngText(bytes, KEYWORD);
   if (inside !== undefined) return sceneOfText(inside);
-  if (bytes[0] === 0x89) throw new Error("this picture has no scene in it");
+  if (bytes[0] === 0x89)
+    throw new Error("this picture contains no scene; use a PNG that Thunderhead saved");
   return sceneOfText(new TextDecoder().decode(bytes));
 }

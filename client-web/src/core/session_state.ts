@@ -108,7 +108,7 @@ export class SessionState {
     const awaited = this.awaited.value;
     if (awaited !== undefined) return `Control waits for ${this.nameOf(awaited)} to come back.`;
     if (this.presenterAway.value) return "The presenter is away, and keeps control.";
-    return "Nobody steers.";
+    return "No one steers.";
   });
 
   person(viewerId: bigint): Person | undefined {

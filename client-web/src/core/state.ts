@@ -229,13 +229,20 @@ export class PageState {
     return settingsOf(picked?.rendering) ?? this.settings.value;
   });
   readonly output = computed(() => this.#scene.value.output);
-  readonly timeIndex = computed(() => this.#scene.value.timeIndex ?? 0);
+  // The index of the time that is shown. If the scene has no index, the server shows the storm's last
+  // time. The index is then 0 until the storm is listed or described.
+  readonly timeIndex = computed(() => this.#scene.value.timeIndex ?? this.#lastTimeIndex.value);
   readonly stormId = computed(() => this.#scene.value.stormId);
   // The description of the storm that is shown; undefined while only the previous storm's
   // description is known.
   readonly #describedStorm = computed(() => {
     const storm = this.storm.value;
     return storm?.id === this.stormId.value ? storm : undefined;
+  });
+  readonly #lastTimeIndex = computed(() => {
+    const listed = this.storms.value.find(({ id }) => id === this.stormId.value);
+    const count = this.#describedStorm.value?.times.length ?? listed?.timeCount ?? 0;
+    return Math.max(0, count - 1);
   });
   // The domain that is shown; empty until its storm is described.
   readonly domain = computed(() => domainOf(this.#describedStorm.value));

@@ -7,14 +7,14 @@ export interface StrokePoint {
 
 const FINEST_TOLERANCE_PX = 0.75;
 const COARSER = 1.5;
+const ENDS = 2;
 
-// Returns at most `most` of the points, including both ends. `most` must be at least 2. The
-// tolerance starts at FINEST_TOLERANCE_PX and grows by the factor COARSER until few enough points
-// are left.
+// Returns at most `most` of the points, but always both ends. The tolerance starts at
+// FINEST_TOLERANCE_PX and grows by the factor COARSER until few enough points are left.
 export function simplifiedStroke<P extends StrokePoint>(points: readonly P[], most: number): P[] {
   for (let tolerancePx = FINEST_TOLERANCE_PX; ; tolerancePx *= COARSER) {
     const kept = withinTolerance(points, tolerancePx);
-    if (kept.length <= most) return kept;
+    if (kept.length <= Math.max(most, ENDS)) return kept;
   }
 }
 

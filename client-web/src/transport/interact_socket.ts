@@ -167,7 +167,7 @@ function percentDecoded(text: string): string {
 }
 
 function whyClosed(code: number, reason: string): string {
-  if (code === GOING_AWAY) return "The server is going away";
+  if (code === GOING_AWAY) return "The server is stopping";
   if (reason !== "") return `The server closed the connection: ${reason}`;
   return "The server cannot be reached";
 }

@@ -48,7 +48,7 @@ export class RenderCalls {
         return { bytes: whole(chunks), drawn: event.value };
       }
     }
-    throw new ConnectError("the server ended without a picture", Code.Internal);
+    throw new ConnectError("the server ended the call without sending a picture", Code.Internal);
   }
 
   // Requests the scenes' pictures in order, one after another.
@@ -136,7 +136,8 @@ export class RenderCalls {
       picture ??= part.picture;
       chunks.push(part.chunk);
     }
-    if (picture === undefined) throw new ConnectError("a picture came without its description");
+    if (picture === undefined)
+      throw new ConnectError("the server sent a picture without its description");
     return { bytes: whole(chunks), drawn: picture };
   }
 }

@@ -227,7 +227,7 @@ export class SessionClient {
     const { attempts } = this.#backOff;
     const delayMs = this.#backOff.next();
     if (this.#reopened) {
-      const reason = "The server loses its sessions";
+      const reason = "The server keeps losing its sessions";
       this.#listener.connection({ kind: "lost", reason, attempts, retryInMs: delayMs });
       await this.#wait(delayMs);
     }
@@ -427,7 +427,7 @@ export class SessionClient {
 
 const UNREACHABLE = "The server cannot be reached";
 const NO_WEBSOCKET =
-  "The server answers, but no WebSocket to it opens: a proxy or a filter may block it";
+  "The server answers, but no WebSocket connection to it can be opened: a proxy or a filter may block it";
 
 // Status codes of a server that does not accept the token, or does not allow the token's role to
 // make the call.
@@ -445,7 +445,7 @@ function outcomeOfStatus(end: CallEnd): Outcome {
   if (end.code === Code.NotFound)
     return {
       kind: "gone",
-      message: "The server does not have this session any more",
+      message: "The server no longer has this session",
       forgotten: true,
     };
   if (LOCKED_CODES.has(end.code as Code)) return { kind: "locked", reason: end.message };

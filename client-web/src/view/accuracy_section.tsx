@@ -22,9 +22,9 @@ import { Choice, Section, Slider } from "./controls";
 type Goal = "none" | "maxError" | "maxMilliseconds";
 
 const GOALS = [
-  ["none", "As the quality above"],
+  ["none", "Same as the quality above"],
   ["maxError", "At most this error"],
-  ["maxMilliseconds", "At most this time a frame"],
+  ["maxMilliseconds", "At most this time per frame"],
 ] as const;
 
 // Initial values of the two sliders: a relative error (0.5 is 50 %) that every view can reach, and

@@ -32,8 +32,8 @@ export function App({ page }: { page: Page }) {
       <Annotations state={state} comparing={page.comparing.choice.value !== undefined} />
       <Overlay state={state} marking={page.marking} marked={page.comparing.markedView.value} />
       <p id="storm-keys" class="visually-hidden">
-        Arrow keys turn it, with shift they move it, plus and minus come nearer and go farther.
-        Question mark lists the keys.
+        Arrow keys turn the view, and with Shift they move it. Plus comes nearer, and minus goes
+        farther away. Question mark lists the keys.
       </p>
       <TopBar page={page} />
       <ToolRail page={page} />

@@ -18,7 +18,7 @@ export class CanvasPainter {
 
   constructor(canvas: HTMLCanvasElement) {
     const context = canvas.getContext("2d", { alpha: false });
-    if (context === null) throw new Error("this browser draws no 2D canvas");
+    if (context === null) throw new Error("this browser cannot draw on a canvas");
     this.#canvas = canvas;
     this.#context = context;
   }

@@ -103,8 +103,8 @@ function OwnShape({ cloud, change }: OwnShapeProps) {
         onChange={(interpolation) => change({ interpolation })}
       />
       <label class="lines">
-        Ellipsoids in place of the kind's, one a line: center x, y, z, radii x, y, z in m, rotation
-        x, y, z in degrees
+        Ellipsoids instead of those of the kind, one per line: center x, y, z and radii x, y, z in
+        m, then, if needed, rotation x, y, z in degrees
         <textarea
           rows={3}
           data-testid="cloud-ellipsoids"

@@ -25,9 +25,9 @@ async function whyNotVideo(window: Probed): Promise<string | undefined> {
   if (typeof VideoDecoder === "undefined") return "this browser has no WebCodecs";
   try {
     const { supported } = await VideoDecoder.isConfigSupported(VIDEO_CONFIG);
-    return supported ? undefined : "this browser decodes no VP9";
+    return supported ? undefined : "this browser cannot decode VP9";
   } catch {
-    return "this browser decodes no VP9";
+    return "this browser cannot decode VP9";
   }
 }
 

@@ -53,7 +53,7 @@ export function ErrorLine({ state }: { state: PageState }) {
 function sourceTitle(accuracy: AccuracyReport): string {
   return accuracy.measured
     ? "Measured on this picture by tracing light through it; the true error is in this range in 95 of 100 cases"
-    : "The error that the same settings had on other storms; this picture's own is measured while it rests";
+    : "The error that the same settings had on other storms; this picture's own error is measured while the view rests";
 }
 
 // The progress of the reference (the path tracer that refines its picture continually). It is
@@ -65,7 +65,7 @@ function RefinementBrief({ refinement }: { refinement: Refinement }) {
       data-testid="refinement"
       data-samples-per-pixel={samplesPerPixel}
       data-relative-error={relativeError}
-      title="Samples a pixel, and the standard error of a pixel over the mean radiance"
+      title="Samples per pixel, and a pixel's standard error divided by the mean radiance"
     >
       {samplesPerPixel} samples a pixel
       {relativeError !== undefined && ` ± ${formatNumber(100 * relativeError)} %`}

@@ -19,9 +19,9 @@ const FIRST_COLORS = ["#ff9a4d", "#4d8dff", "#ffffff", "#c04dff"];
 export function LightsSection({ state }: { state: PageState }) {
   const lights = state.lights.value;
   return (
-    <Section title="Lights besides the sun" testId="lights-section">
+    <Section title="Lights other than the sun" testId="lights-section">
       <p class="quiet" data-testid="lights-shown">
-        They light the storm alone. {whereShown(state)}
+        These lights illuminate only the storm. {whereShown(state)}
       </p>
       {lights.map((light, index) => (
         <LightSettings key={index} state={state} light={light} index={index} />

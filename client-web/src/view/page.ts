@@ -7,11 +7,12 @@ import { AccessToken } from "../core/access_token";
 import { BackOff } from "../core/back_off";
 import type { CameraKind, Pose } from "../core/camera";
 import { isSameDomain, laterByS } from "../core/domain";
+import type { TextStore } from "../core/kept_text";
 import { Marking } from "../core/marking";
 import { type NamedView, NamedViews, VIEWS_ITEM } from "../core/named_views";
 import { timeLike } from "../core/nearest_time";
 import type { Later } from "../core/newest";
-import { OwnKeys, type TextStore } from "../core/own_keys";
+import { OwnKeys } from "../core/own_keys";
 import { Participant } from "../core/participant";
 import { Playback } from "../core/playback";
 import { keepPreferences, loadPreferences } from "../core/preferences";
@@ -355,7 +356,9 @@ export class Page {
     const copied = await this.addresses.copy(link);
     this.notes.say(
       "link",
-      copied ? "Presenter's link copied" : "This browser lets the page copy nothing: copy the text",
+      copied
+        ? "Presenter's link copied"
+        : "The browser does not allow copying. Select the link and copy it yourself.",
     );
   }
 

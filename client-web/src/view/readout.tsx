@@ -115,8 +115,8 @@ function Costs({ state }: { state: PageState }) {
 // time while the session's view also moves (server/drawing/turns.h).
 function ownView({ session }: PageState): string {
   const count = session.othersLookingAround.value + 1;
-  if (count === 1) return "Your own, drawn for you alone";
-  return `Your own; ${count} people look around and share the server's time for that, so pictures may come more slowly`;
+  if (count === 1) return "Your own, rendered only for you";
+  return `Your own; ${count} people look around and share the server's rendering time, so pictures may arrive more slowly`;
 }
 
 function Row({ name, text, testId }: { name: string; text: string; testId?: string }) {

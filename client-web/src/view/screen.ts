@@ -148,7 +148,7 @@ export class Screen {
 
   // Shows a notice that the frame could not be decoded.
   #undecodable(frame: Frame): void {
-    const text = `Frame ${frame.sequence} is no picture that this browser can read`;
+    const text = `This browser cannot decode frame ${frame.sequence}. If it happens again, reload the page.`;
     this.#state.notify({ subject: "decode", text, severity: "problem" });
   }
 

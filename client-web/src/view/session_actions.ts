@@ -65,7 +65,7 @@ export class SessionActions {
     try {
       await this.#calls.closeSession(presenterKey);
     } catch (error) {
-      const text = `Ending the session: ${ConnectError.from(error).rawMessage}`;
+      const text = `The session could not be ended: ${ConnectError.from(error).rawMessage}`;
       this.#state.notify({ subject: "session", text, severity: "problem" });
     }
   }

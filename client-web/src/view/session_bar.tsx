@@ -5,7 +5,7 @@ import type { SessionState } from "../core/session_state";
 import type { Page } from "./page";
 
 const WHY_SLOWER =
-  "The server draws for each who looks around singly; those who follow share one picture";
+  "The server renders a separate picture for each person who looks around. People who follow share one picture.";
 
 export function SessionBar({ page }: { page: Page }) {
   const { session } = page.state;
@@ -67,10 +67,10 @@ function controlStep({ state: { session }, actions }: Page): ControlStep {
   if (session.steering.value && session.presenting.value)
     return {
       testId: "let-go",
-      label: "Let control go",
+      label: "Release control",
       title: session.rules.value.viewersMaySteer
-        ? "Nobody steers then, and who asks first gets control"
-        : "Nobody steers then, until you give or take control",
+        ? "No one steers then, and the first person who asks gets control"
+        : "No one steers then until you give or take control",
       act: letGo,
     };
   if (session.steering.value)
@@ -94,7 +94,11 @@ function controlStep({ state: { session }, actions }: Page): ControlStep {
     };
   if (asked) return { ...ask, label: "Asked to steer …", disabled: true };
   if (session.steersWhoAsks.value)
-    return { ...ask, label: "Steer", title: "Nobody steers: who asks first does" };
+    return {
+      ...ask,
+      label: "Steer",
+      title: "No one steers. The first person who asks gets control.",
+    };
   return { ...ask, label: "Ask to steer" };
 }
 
@@ -104,23 +108,24 @@ function whoSteers(session: SessionState): string {
   if (steerer !== undefined) return `${session.nameOf(steerer)} steers`;
   const awaited = session.awaited.value;
   return awaited === undefined
-    ? "Nobody steers"
+    ? "No one steers"
     : `Waiting for ${session.nameOf(awaited)} to come back`;
 }
 
 // Describes why control is reserved for a person; undefined if it is not reserved.
 function whyWaiting(session: SessionState): string | undefined {
   if (session.awaited.value === undefined) return undefined;
-  const who = "Whoever steered and has left or lost the connection has some seconds to come back.";
+  const who =
+    "A person who steered and has left, or has lost the connection, has some seconds to come back.";
   return session.presenting.value
-    ? `${who} Then control is the presenter's; you need not wait to take it`
-    : `${who} Then control is the presenter's`;
+    ? `${who} After that, the presenter has control; you need not wait to take it`
+    : `${who} After that, the presenter has control`;
 }
 
 function lookingAround(others: number): string {
   return others === 0
     ? "Looking around"
-    : `${others + 1} look around: pictures may come more slowly`;
+    : `${others + 1} look around: pictures may arrive more slowly`;
 }
 
 function announcement(page: Page): string {

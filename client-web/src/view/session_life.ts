@@ -291,7 +291,7 @@ export class SessionLife implements SessionListener {
       else if (resumption === "lost")
         this.#sync.discard(() => {
           const why = session.editBlock.peek() ?? "";
-          notes.say("control", `Your last change was not taken. ${why}`);
+          notes.say("control", `Your last change was not made. ${why}`);
         });
     }
     this.#opened = false;

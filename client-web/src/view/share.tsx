@@ -11,14 +11,18 @@ import { Popover } from "./popover";
 type RuleName = Exclude<keyof SessionRules, "$typeName" | "$unknown">;
 
 const RULES: readonly (readonly [RuleName, string, string])[] = [
-  ["viewersMaySteer", "Viewers may steer", "Who asks while nobody steers gets control at once."],
+  [
+    "viewersMaySteer",
+    "Viewers may steer",
+    "While no one steers, a viewer who asks gets control at once.",
+  ],
   [
     "controlLocked",
     "Control locked",
-    "Nobody can ask for control, and viewers give it to presenters alone.",
+    "No one can ask for control, and viewers can give it only to presenters.",
   ],
-  ["followingLocked", "Following locked", "Everybody sees your view; nobody looks around."],
-  ["viewersMayMark", "Viewers may point and draw", "Everybody sees their pointers and lines."],
+  ["followingLocked", "Following locked", "Everyone sees your view, and no one can look around."],
+  ["viewersMayMark", "Viewers may point and draw", "Everyone sees their pointers and lines."],
   ["freeWhenAway", "Free when away", "Control becomes free once you have been away for a minute."],
 ];
 
@@ -31,7 +35,7 @@ export function Share({ page }: { page: Page }) {
   if (link === undefined) return null;
   return (
     <Popover page={page} name="share" title="Share" label="Share this session">
-      <p class="quiet">Anyone with this link watches with you. Click the code to enlarge it.</p>
+      <p class="quiet">Anyone with this link can watch with you. Click the code to enlarge it.</p>
       <OnlyHere host={page.addresses.loopbackHost} />
       <QrCode text={link} />
       <LinkRow who="viewers" link={link} copyId="copy-link" copy={() => void page.copyLink()} />
@@ -96,8 +100,8 @@ function PresentersLink({ page }: { page: Page }) {
       {open && (
         <>
           <p class="quiet">
-            Who opens it presents as you do: takes control, sets the rules, ends the session. For
-            your second device or a colleague, not for the class.
+            Anyone who opens it can present as you do: take control, set the rules and end the
+            session. It is for your second device or a colleague, not for the class.
           </p>
           <LinkRow
             who="presenters"
@@ -188,7 +192,7 @@ function EndSession({ page }: { page: Page }) {
       onBlur={() => setAsked(false)}
       onClick={() => (asked ? void page.actions.endSession() : setAsked(true))}
     >
-      {asked ? "End it for everybody?" : "End session"}
+      {asked ? "End it for everyone?" : "End session"}
     </button>
   );
 }

@@ -63,7 +63,7 @@ export class StormMap {
       // The old map belongs to another time or storm.
       this.#state.stormMap.value = undefined;
       const why = error instanceof ConnectError ? error.rawMessage : String(error);
-      this.#state.mapProblem.value = `The server sends no map: ${why}`;
+      this.#state.mapProblem.value = `The server could not send the map: ${why}`;
     }
   }
 }

@@ -90,7 +90,11 @@ export class StormsOnServer {
     } catch (error) {
       if (making.signal.aborted) return undefined;
       const text = error instanceof ConnectError ? error.rawMessage : String(error);
-      this.#state.notify({ subject: "cloud", text: `No cloud: ${text}`, severity: "problem" });
+      this.#state.notify({
+        subject: "cloud",
+        text: `The cloud could not be made: ${text}`,
+        severity: "problem",
+      });
       return undefined;
     } finally {
       this.#state.makingCloud.value = false;
@@ -104,7 +108,7 @@ export class StormsOnServer {
       this.#state.dismiss("cloud");
     } catch (error) {
       const why = error instanceof ConnectError ? error.rawMessage : String(error);
-      const text = `The cloud is not deleted: ${why}`;
+      const text = `The cloud could not be deleted: ${why}`;
       this.#state.notify({ subject: "cloud", text, severity: "problem" });
     }
     await this.learn();

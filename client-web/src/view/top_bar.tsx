@@ -66,7 +66,7 @@ function Assumptions({ page }: { page: Page }) {
   return (
     <details class="assumptions" data-testid="assumptions">
       <summary
-        title="What was assumed because the files do not say it"
+        title="What the server assumed because the files do not say it"
         aria-label={`${assumptions.length} ${word}`}
       >
         <span class="count">{assumptions.length}</span>

@@ -34,7 +34,7 @@ export class VideoPictures {
     return new Promise((resolve, reject) => {
       try {
         if (isKey) this.#decoder ??= this.#newDecoder();
-        if (this.#decoder === undefined) throw new Error("the key picture is missing");
+        if (this.#decoder === undefined) throw new Error("the key frame is missing");
         const timestamp = this.#count;
         this.#count += 1;
         const type = isKey ? "key" : "delta";

@@ -87,7 +87,7 @@ export class Viewpoint {
     const { session, connection } = this.#state;
     if (session.ended.peek() !== undefined || connection.peek().kind !== "live") return false;
     if (session.mayLookAround.peek()) return true;
-    this.#notes.say("locked", "The presenter has locked the view: everybody sees the same");
+    this.#notes.say("locked", "The presenter has locked the view: everyone sees the same");
     return false;
   }
 

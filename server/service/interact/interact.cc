@@ -44,15 +44,15 @@ absl::Status NotJoined() {
 
 absl::Status JoinedTooLate(std::chrono::milliseconds limit) {
   return base::WithDetails(
-      absl::DeadlineExceededError(
-          absl::StrCat("no join came within ", limit.count(), " ms; it must be the first message")),
+      absl::DeadlineExceededError(absl::StrCat("the client sent no Join within ", limit.count(),
+                                               " ms; send it as the first message")),
       {.reason = "NOT_JOINED"});
 }
 
 absl::Status Replaced() {
   return base::WithDetails(
-      absl::AbortedError("another connection has joined with this connection's participant_key, "
-                         "because this one did not answer CheckAlive; join again"),
+      absl::AbortedError("this connection did not answer CheckAlive, so another one with its "
+                         "participant_key replaced it; join again"),
       {.reason = "CONNECTION_REPLACED"});
 }
 

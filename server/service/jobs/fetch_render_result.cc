@@ -121,7 +121,8 @@ class ResultFile {
       const ssize_t bytes = pread(file_.Get(), chunk.data() + filled, chunk.size() - filled,
                                   static_cast<off_t>(read_));
       if (bytes < 0 && errno == EINTR) continue;
-      if (bytes < 0) return absl::UnavailableError("the picture's file cannot be read now");
+      if (bytes < 0)
+        return absl::UnavailableError("the picture's file cannot be read now; try again");
       if (bytes == 0) return Damaged(place_, "it has become shorter");
       filled += static_cast<std::size_t>(bytes);
       read_ += static_cast<std::uint64_t>(bytes);

@@ -1,10 +1,12 @@
 #include "service/jobs/job_messages.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
@@ -44,6 +46,13 @@ void SetProblem(const jobs::Problem& problem, v1::RenderJobProblem& message) {
   message.set_message(rpc_port::SendableMessage(status));
 }
 
+// Reads digits without leading zeros, so each picture has one path only.
+bool ReadPlace(const std::string& text, std::size_t& place) {
+  const bool has_leading_zero = text.size() > 1 && text.front() == '0';
+  return std::ranges::all_of(text, [](char c) { return absl::ascii_isdigit(c); }) &&
+         !has_leading_zero && absl::SimpleAtoi(text, &place);
+}
+
 }  // namespace
 
 std::string ResultPathOf(const std::string& result_key) {
@@ -54,7 +63,7 @@ std::optional<ResultPath> ParseResultPath(std::string_view path) {
   const std::vector<std::string> parts =
       absl::StrSplit(absl::string_view(path.data(), path.size()), '/');
   ResultPath result;
-  if (parts.size() != 4 || parts[1] != "results" || !absl::SimpleAtoi(parts[3], &result.place)) {
+  if (parts.size() != 4 || parts[1] != "results" || !ReadPlace(parts[3], result.place)) {
     return std::nullopt;
   }
   result.key = parts[2];

@@ -26,7 +26,8 @@ jobs::PictureOrder OrderOf(const storm_store::StormStore& store,
 // Returns the path of a job's results on the HTTP port: "/results/KEY".
 std::string ResultPathOf(const std::string& result_key);
 
-// The job's key and the picture's index from a path such as "/results/KEY/7".
+// The job's key and the picture's index from a path such as "/results/KEY/7". The index has neither
+// a sign nor leading zeros.
 struct ResultPath {
   std::string key;
   std::size_t place = 0;

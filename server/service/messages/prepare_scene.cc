@@ -42,11 +42,12 @@ absl::StatusOr<storm_store::StormInfoPtr> FindStorm(const storm_store::StormStor
         {.reason = "SEARCHING_STORMS", .retry_after = std::chrono::seconds(2)});
   }
   if (storms.empty()) {
-    return base::WithDetails(absl::NotFoundError("the server has no storms"),
-                             {.reason = kStormNotFound});
+    return base::WithDetails(
+        absl::NotFoundError("the server has no storms; ask its operator to add a storm folder"),
+        {.reason = kStormNotFound});
   }
   return base::WithDetails(absl::NotFoundError(absl::StrCat("no storm has the id '", id,
-                                                            "'; there is ", NamesOf(storms))),
+                                                            "'; the server has ", NamesOf(storms))),
                            {.reason = kStormNotFound, .metadata = {{"storm_id", id}}});
 }
 

@@ -230,9 +230,10 @@ v1::Hydrometeor ToMessage(physics::Hydrometeor hydrometeor) {
 absl::Status CheckScene(const v1::Scene& scene) {
   THUNDERHEAD_RETURN_IF_ERROR(CheckSun(scene.sun()));
   if (scene.particle_sizes() == v1::PARTICLE_SIZES_GIVEN) {
-    return base::InvalidField("scene.particle_sizes",
-                              "is PARTICLE_SIZES_GIVEN, which is for a field with its radius_m",
-                              "VALUE_UNKNOWN");
+    return base::InvalidField(
+        "scene.particle_sizes",
+        "is PARTICLE_SIZES_GIVEN, which is allowed only in scene.fields, with radius_m",
+        "VALUE_UNKNOWN");
   }
   for (int i = 0; i < scene.fields_size(); ++i) {
     const v1::Hydrometeor hydrometeor = scene.fields(i).hydrometeor();

@@ -3,11 +3,10 @@
 // meets the slices. Points in empty bricks are skipped. The method is Riley et al. 2003 (Vis), eq. 5 with the phase of
 // eq. 18. The light comes from carry.comp.
 //
-// Variants: GROUND (the parts of the medium behind the ground are omitted), GROUPS, DETAILS,
-// COLORED (groups have colours), EVEN_ALBEDO (all groups have the same albedo and no colours),
-// TRANSLUCENT, CONSISTENT (consistent transport), ORDER. ORDER is 1 if all rays meet the slices in
-// the order of sunlight, 0 if all meet them in the reverse order, and 2 if a wide view has both
-// kinds.
+// Variants: GROUND, GROUPS, DETAILS, COLORED, EVEN_ALBEDO, TRANSLUCENT, CONSISTENT, ORDER. With GROUND the parts of the
+// medium behind the ground are omitted. With COLORED groups have colours. With EVEN_ALBEDO all groups have the same
+// albedo and no colours. CONSISTENT is consistent transport. ORDER is 1 if all rays meet the slices in the order of
+// sunlight, and 0 if all meet them in the reverse order. It is 2 if a wide view has both kinds.
 #include "common/medium.glsl"
 #include "common/bricks.glsl"
 #include "common/ground_distance.glsl"

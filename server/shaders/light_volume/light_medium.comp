@@ -13,9 +13,8 @@ uniform vec4 light_weights[PLANES];  // from the medium's texel to the stored va
 uniform vec4 transport_weights[PLANES];
 
 #if DETAILS > 0
-// Corners of a tetrahedron. For a trilinear function, the mean of these four samples differs from
-// that of samples at a cube's eight corners only by the term with the product of all three
-// coordinates.
+// Corners of a tetrahedron. For a trilinear function, the mean of samples at these four corners is nearly that of samples
+// at a cube's eight corners. Only the term with the product of all three coordinates differs.
 const vec3 kWithin[4] = vec3[4](vec3(-0.25, -0.25, -0.25), vec3(0.25, 0.25, -0.25), vec3(0.25, -0.25, 0.25),
                                 vec3(-0.25, 0.25, 0.25));
 #else

@@ -27,7 +27,7 @@ vec3 film(vec3 x) {
   return mix(mix(toe, x, smoothstep(0.0, m, x)), shoulder, greaterThan(x, vec3(s)));
 }
 
-// Increases the contrast. Photographs have more contrast than their subjects, to compensate for glare and for the
+// Increases the contrast. Photographs have more contrast than their subjects. This compensates for glare and for the
 // surroundings in which they are viewed (Bartleson and Breneman 1967 on the contrast of prints and slides). Half of the
 // contrast is applied to the luminance, half to each colour. Applied to each colour alone, it would make a blue sky too
 // saturated. Applied to the luminance alone, it would make the sky grey.

@@ -253,7 +253,7 @@ class Server:
 
 
 def work(rpcs: list, ports: dict[str, int], seed: str, calls: int, out: multiprocessing.connection.Connection) -> None:
-    """Makes calls in a process of its own. Sends its counts now and then.
+    """Makes calls in a separate process. Sends its counts now and then.
 
     If something is wrong or the server has ended, it sends its last calls and ends.
     """

@@ -237,13 +237,14 @@ TEST_F(OffersTest, SaysWhatIsOutOfReachAndWhatIsNearest) {
   scene_.accuracy = MaxError{0.05};
   scene::Scene decided = *desk_.Decide(scene_);
   EXPECT_EQ(desk_.estimator.Report(decided, {}, {})->unmet->message,
-            "an error of 0.05 is out of reach for top-down views; the nearest is 0.2, in 20 ms a "
-            "frame. The reference refines to any error");
+            "no setting reaches an error of 0.05 for top-down views; the best has 0.2 in 20 ms a "
+            "frame; for a smaller error, choose the technique reference");
   scene_.accuracy = MaxMilliseconds{1.0};
   decided = *desk_.Decide(scene_);
-  EXPECT_EQ(desk_.estimator.Report(decided, {}, {})->unmet->message,
-            "1 ms a frame are out of reach for top-down views of 200x100 on this machine; the "
-            "nearest is 5 ms, with an error of 0.4");
+  EXPECT_EQ(
+      desk_.estimator.Report(decided, {}, {})->unmet->message,
+      "no setting reaches 1 ms a frame for top-down views of 200x100 on this machine; the best "
+      "takes 5 ms, with an error of 0.4; for less time, choose a smaller picture");
 }
 
 TEST_F(OffersTest, FramesThatAskForNothingAreReportedWhereTheTableKnowsThem) {

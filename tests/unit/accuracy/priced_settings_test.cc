@@ -70,7 +70,7 @@ TEST(PricedSettings, WhatIsNotUnderstoodIsRefusedAndNamed) {
   EXPECT_THAT(Complaint(kHead + "light_color," + kNames + "blue," + kRow),
               HasSubstr("column 'light_color' is unknown"));
   EXPECT_THAT(Complaint(kHead + "renderer,mode\n"), HasSubstr("no column 'transport'"));
-  EXPECT_THAT(Complaint(kNames + kRow), HasSubstr("size"));
+  EXPECT_THAT(Complaint(kNames + kRow), HasSubstr("add one such as '# size: 160x107'"));
   EXPECT_THAT(Complaint("# size: large\n" + kNames + kRow), HasSubstr("'large'"));
   EXPECT_THAT(Complaint(kHead + kNames), HasSubstr("no rows"));
   EXPECT_THAT(Complaint(""), HasSubstr("size"));

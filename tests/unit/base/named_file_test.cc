@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <future>
 #include <string>
@@ -44,6 +45,18 @@ TEST(NamedFile, OnlyRegularFilesUpToTheLimitAreRead) {
   EXPECT_THAT(ErrorOf(folder.File("none")), HasSubstr("none cannot be read (No such file"));
   EXPECT_THAT(ErrorOf(folder.File("")), HasSubstr("is neither a regular file nor a pipe"));
   EXPECT_THAT(ErrorOf("/dev/zero"), HasSubstr("/dev/zero is neither a regular file"));
+}
+
+TEST(NamedFile, ReadRegularFileWaitsForNoPipe) {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.File("fifo");
+  ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+  EXPECT_EQ(ReadRegularFile(path, 2048).status().message(),
+            path + " is not a regular file; check the path");
+  std::ofstream(folder.File("file")) << "sun";
+  std::filesystem::create_symlink(folder.File("file"), folder.File("link"));
+  EXPECT_EQ(ReadRegularFile(folder.File("link"), 3).value(), "sun");
+  EXPECT_FALSE(ReadRegularFile(folder.File("link"), 2).ok());
 }
 
 TEST(NamedFile, PipesAreReadToTheirEnd) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -102,6 +103,52 @@ TEST(WholeFile, AFifoIsNotPublished) {
   MakeFifo(PartialPath(path));
   EXPECT_FALSE(PublishFile(path).ok());
   EXPECT_TRUE(std::filesystem::is_empty(folder.Path()));
+}
+
+// Expects that no file replaces what is at `path`.
+void ExpectStays(const std::string& path, std::filesystem::file_type type) {
+  const std::string partial = PartialPath(path);
+  std::ofstream(partial) << "a whole file";
+  const absl::Status published = PublishFile(path);
+  for (const absl::Status& refusal :
+       {published, WriteWholeFile(path, "new"), StartPartial(path).status()}) {
+    EXPECT_EQ(refusal.code(), absl::StatusCode::kFailedPrecondition) << refusal;
+    EXPECT_EQ(refusal.message(),
+              path + " is not a regular file and is not replaced by one; choose another name");
+  }
+  EXPECT_EQ(std::filesystem::symlink_status(path).type(), type);
+  EXPECT_FALSE(std::filesystem::exists(partial));
+}
+
+TEST(WholeFile, OnlyARegularFileIsReplaced) {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.File("picture.png");
+  MakeFifo(path);
+  ExpectStays(path, std::filesystem::file_type::fifo);
+  const std::string link = folder.File("link");
+  std::filesystem::create_symlink(path, link);
+  ExpectStays(link, std::filesystem::file_type::symlink);
+  std::filesystem::create_symlink("/dev/null", folder.File("null"));
+  ExpectStays(folder.File("null"), std::filesystem::file_type::symlink);
+  if (const std::string device = folder.File("device");
+      mknod(device.c_str(), S_IFCHR | 0600, makedev(1, 3)) == 0) {  // only root can make one
+    ExpectStays(device, std::filesystem::file_type::character);
+  }
+}
+
+TEST(WholeFile, ALinkToAFileOrToNothingIsReplacedAndNotFollowed) {
+  const testing::TemporaryFolder folder;
+  const std::string target = folder.File("target");
+  const std::string path = folder.File("picture.png");
+  std::ofstream(target) << "kept";
+  for (const std::string& leads_to : {target, folder.File("nothing")}) {
+    std::filesystem::remove(path);
+    std::filesystem::create_symlink(leads_to, path);
+    ASSERT_TRUE(WriteWholeFile(path, "new").ok());
+    EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(path)));
+  }
+  EXPECT_EQ(ReadWholeFile(target).value(), "kept");
+  EXPECT_FALSE(std::filesystem::exists(folder.File("nothing")));
 }
 
 TEST(WholeFile, WhatAnInterruptedWriteLeftIsReplaced) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <vector>
 
 #include "clouds/cauliflower.h"
 #include "clouds/inscribed_balls.h"
@@ -189,6 +191,28 @@ TEST(InscribedBalls, ALayerIsOfFlatOnes) {
   EXPECT_NEAR(first.semi_axes_m[0][0] / first.semi_axes_m[2][2], 3.0, 0.01);
   // There are eight cells, so the cloud's middle lies between two of them.
   EXPECT_NEAR(first.semi_axes_m[2][2], 400.0, 51.0);
+}
+
+TEST(Sprout, KeepsToTheLimitAndSpreadsTheBubbles) {
+  constexpr int kParents = 12;
+  CumulusSurface lonely;
+  for (int i = 0; i < kParents; ++i)
+    lonely.bubbles.push_back(BallOf({1000.0 * i, 0.0, 0.0}, 100.0));
+  LayOnLarger(&lonely);
+  for (const int room : {0, 1, 4, 11, 12, 30}) {
+    CumulusSurface surface = lonely;
+    Sprouting sprouting;
+    sprouting.max_bubbles = kParents + room;
+    Sprout(sprouting, 0, &surface);
+    std::vector<int> children(kParents, 0);
+    for (std::size_t i = kParents; i < surface.bubbles.size(); ++i) {
+      ++children[static_cast<std::size_t>(surface.bubbles[i].parent)];
+    }
+    const int sum = static_cast<int>(surface.bubbles.size()) - kParents;
+    EXPECT_EQ(sum, room < kParents ? room : room / kParents * kParents) << room;
+    const auto half = std::accumulate(children.begin(), children.begin() + kParents / 2, 0);
+    EXPECT_NEAR(half, sum / 2.0, 0.5) << room << ": both halves get equally many";
+  }
 }
 
 TEST(InscribedBalls, StayInsideAndCoverWhatIsThere) {

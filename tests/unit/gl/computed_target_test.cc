@@ -6,8 +6,8 @@
 namespace thunderhead::gl {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 TEST(ComputedTarget, StoresEachOutputInTheImageOfItsLocation) {
   const std::string text = AsComputedPixel(

@@ -6,8 +6,8 @@
 namespace thunderhead::gl {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr char kVertex[] =
     "#version 450 core\n"

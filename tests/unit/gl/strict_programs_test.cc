@@ -6,8 +6,8 @@
 namespace thunderhead::gl {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 TEST(DeclaredUniforms, AreThoseOfAllVariants) {
   EXPECT_THAT(DeclaredUniforms("uniform vec3 tint;  // of light; of air\n"

@@ -210,12 +210,13 @@ TEST(GaussianGrid, ContradictionsAreNamed) {
               HasSubstr("which no Gaussian grid of 639 parallels has"));
   EXPECT_THAT(ErrorOf(with(68, Number(0, 4))), HasSubstr("without a number of parallels"));
   EXPECT_THAT(ErrorOf(with(68, Number(5000, 4))), HasSubstr("more than 4000"));
-  EXPECT_THAT(ErrorOf(with(72, Number(0x40, 1))), HasSubstr("run in another direction"));
+  EXPECT_THAT(ErrorOf(with(72, Number(0x40, 1))),
+              HasSubstr("rows whose direction contradicts its first and last latitude"));
   Gaussian fewer;
   fewer.rows = 39;
   std::string rows = Gaussian().Section3();
   rows.replace(56 - 6, 4, fewer.Section3().substr(56 - 6, 4));
-  EXPECT_THAT(ErrorOf(rows), HasSubstr("has 40 rows where its corners say 39"));
+  EXPECT_THAT(ErrorOf(rows), HasSubstr("has 40 rows, but its first and last latitude say 39"));
   EXPECT_THAT(ErrorOf(good.substr(0, 60)), HasSubstr("too few numbers"));
 }
 
@@ -268,7 +269,7 @@ TEST(ReducedGaussianGrid, ContradictionsAreNamed) {
   };
   const auto points = static_cast<std::int64_t>(layout.Places().size());
   EXPECT_THAT(ErrorOf(layout.Section3(points - 1)),
-              HasSubstr("which are not those of its rows between its corners"));
+              HasSubstr("which is not the number in its rows"));
   EXPECT_THAT(ErrorOf(with(12, Number(2, 1))), HasSubstr("not described as full circles"));
   EXPECT_THAT(ErrorOf(with(15, Number(5, 1))), HasSubstr("other than a sphere of 6371229 m"));
   EXPECT_THAT(ErrorOf(with(72, Number(0x80, 1))), HasSubstr("do not all run eastwards"));

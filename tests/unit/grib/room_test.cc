@@ -674,9 +674,9 @@ TEST(GribGrid, ReadsRotatedGridsByTheirMiddle) {
   // The distance of two columns in the middle is that of two rows everywhere.
   EXPECT_NEAR(even->longest_m.x, 6'371'229.0 * 0.1218 * std::numbers::pi / 180.0, 15.0);
   EXPECT_THAT(std::string(ReadGrid(section(-46'591'976, 0x40)).status().message()),
-              HasSubstr("degrees apart, but its corners say"));
+              HasSubstr("degrees apart, but its first and last point say"));
   EXPECT_THAT(std::string(ReadGrid(section(46'591'976, 0)).status().message()),
-              HasSubstr("but its corners say -0.12"));
+              HasSubstr("but its first and last point say -0.12"));
 }
 
 }  // namespace

@@ -76,6 +76,7 @@ TEST(TradeTable, EveryRowHasAMark) {
   const std::string svg = TradeSvg(kTitle, rows);
   EXPECT_THAT(svg, HasSubstr("1 slices"));
   EXPECT_THAT(svg, HasSubstr("3 slices"));
+  EXPECT_THAT(svg, HasSubstr("violet: cumulus surfaces"));
   EXPECT_THAT(TradeJson(kTitle, rows), HasSubstr("a \\\"machine\\\""));
 }
 

@@ -140,6 +140,42 @@ TEST_F(NetcdfValues, PackingAttributesMustBeOneFiniteNumber) {
   }
 }
 
+// With a limit that is NaN, the other limit must not be lost.
+TEST_F(NetcdfValues, LimitsMustBeNumbers) {
+  const float nan = std::nanf("");
+  const float most = 1.0F;
+  const float range[] = {nan, most};
+  for (const nc_type type : {NC_FLOAT, NC_SHORT}) {
+    for (const char* name : {"valid_min", "valid_max", "valid_range"}) {
+      if (file_ < 0) Must(nc_create(path_.c_str(), NC_NETCDF4, &file_));
+      const int v = Define(type, file_);
+      const bool is_range = std::string(name) == "valid_range";
+      if (std::string(name) == "valid_min") {
+        Must(nc_put_att_float(file_, v, "valid_max", NC_FLOAT, 1, &most));
+      }
+      Must(nc_put_att_float(file_, v, name, NC_FLOAT, is_range ? 2 : 1, is_range ? range : &nan));
+      Close();
+      EXPECT_THAT(
+          std::string(Problem().message()),
+          HasSubstr(std::string("values.nc: v: its attribute ") + name + " is not a number (NaN)"));
+      EXPECT_FALSE(NetcdfFile::Open(path_)->ReadDoubles("v").ok());
+    }
+  }
+}
+
+// An infinite limit limits nothing, and the other limit holds.
+TEST_F(NetcdfValues, LimitsMayBeInfinite) {
+  const int v = Define(NC_FLOAT, file_);
+  const float least = -std::numeric_limits<float>::infinity();
+  const float most = 1.0F;
+  Must(nc_put_att_float(file_, v, "valid_min", NC_FLOAT, 1, &least));
+  Must(nc_put_att_float(file_, v, "valid_max", NC_FLOAT, 1, &most));
+  const float values[] = {-888.0F, 2.0F, 1.0F, -0.5F};
+  Must(nc_put_var_float(file_, v, values));
+  Close();
+  EXPECT_THAT(Read(), ElementsAre(-888.0F, IsNan(), 1.0F, -0.5F));
+}
+
 TEST_F(NetcdfValues, OneUndeclaredHugeNumberIsACodeForMissingValues) {
   const int v = Define(NC_FLOAT, file_);
   const float values[] = {1e30F, 2.0F, NC_FILL_FLOAT, 1e30F};

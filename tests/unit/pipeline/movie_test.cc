@@ -134,6 +134,11 @@ TEST(Movie, WhatFailsLeavesNothing) {
   });
   EXPECT_EQ(sizes.code(), absl::StatusCode::kInvalidArgument);
   EXPECT_TRUE(std::filesystem::is_empty(folder.Path()));
+  const absl::Status tiny = WriteMovie(
+      path, {1}, 8, {}, [](std::size_t) { return absl::StatusOr<frame::RgbImage>(Grey(1, 1, 9)); });
+  EXPECT_THAT(std::string(tiny.message()),
+              ::testing::StartsWith(path + " cannot be made: the VP9 encoder failed ("));
+  EXPECT_THAT(std::string(tiny.message()), ::testing::Not(::testing::HasSubstr("folder")));
   const absl::Status nowhere =
       WriteMovie(folder.File("no/movie.webm"), {1}, 8, {},
                  [](std::size_t) { return absl::StatusOr<frame::RgbImage>(Grey(64, 36, 9)); });

@@ -157,6 +157,14 @@ TEST(Annotation, TheLegendHasEachColourWithItsName) {
   EXPECT_EQ(Changed(image, kUpperLeft), 0);
 }
 
+TEST(Annotation, ALongNameInTheLegendEndsBeforeTheEdge) {
+  const frame::RgbImage image =
+      Annotated({.legend = {{std::string(300, 'W'), {1.0F, 0.0F, 0.0F}}}});
+  EXPECT_GT(Changed(image, {500, 250, 600, kHeight_px}), 100) << "as far as there is room";
+  EXPECT_EQ(Changed(image, {kWidth_px - 7, 0, kWidth_px, kHeight_px}), 0) << "a margin";
+  EXPECT_GT(Colored(image, kLowerLeft, 255, 0, 0), 40) << "the colour";
+}
+
 TEST(Annotation, SmallPicturesKeepTheirSizeAndNothingBreaks) {
   for (const int size_px : {1, 2, 16, 64}) {
     frame::RgbImage image{size_px, size_px,

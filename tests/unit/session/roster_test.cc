@@ -86,6 +86,10 @@ TEST(RosterTest, ARequestEndsUnanswered) {
 TEST(RosterTest, ARefusedRequestEnds) {
   Class group;
   ASSERT_TRUE(group.roster.AskControl(group.ana, kOpenedAt).ok());
+  const absl::Status denied = group.roster.RefuseControl(group.ben, group.ana);
+  EXPECT_EQ(ReasonOf(denied), "NOT_STEERING");
+  EXPECT_EQ(denied.message(),
+            "only a presenter or the person in control can give or refuse control");
   ASSERT_TRUE(group.roster.RefuseControl(group.presenter, group.ana).ok());
   EXPECT_FALSE(group.roster.Find(group.ana)->asks);
   EXPECT_EQ(group.roster.steering(), group.presenter);

@@ -233,6 +233,41 @@ TEST_F(StateFileTest, ALinkThatIsPutInPlaceOfTheFileIsNotFollowed) {
   EXPECT_FALSE(store::Database::Open(path_).ok());
 }
 
+// SQLite would open them. Opening such a FIFO waits for another process, forever.
+TEST_F(StateFileTest, WhatIsPutInPlaceOfSqlitesFilesIsReportedAndNotOpened) {
+  Open();
+  for (const std::string& file : {path_ + "-journal", path_ + "-wal"}) {
+    ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+    const absl::Status saved = sessions_->Save({MarkedSession("a")});
+    EXPECT_EQ(saved.code(), absl::StatusCode::kUnavailable) << saved;
+    EXPECT_THAT(MessageOf(saved), AllOf(HasSubstr(file), HasSubstr("not a regular file")));
+    EXPECT_FALSE(jobs_->Add(JobOfOne('a')).ok());
+    fs::remove(file);
+    fs::create_symlink(folder_.File("target"), file);
+    EXPECT_THAT(MessageOf(sessions_->Save({MarkedSession("a")})),
+                AllOf(HasSubstr(file), HasSubstr("is a link")));
+    fs::remove(file);
+    EXPECT_TRUE(sessions_->Save({MarkedSession("a")}).ok());
+  }
+  ExpectKept(1, 0);
+}
+
+TEST_F(StateFileTest, ADamagedFileThatIsRemovedNeedsARestart) {
+  Open();
+  ASSERT_TRUE(sessions_->Save({MarkedSession("a")}).ok());
+  std::fstream(path_, std::ios::in | std::ios::out | std::ios::binary) << std::string(100, '\0');
+  EXPECT_TRUE(absl::IsDataLoss(sessions_->Save({MarkedSession("b")})));
+  fs::remove(path_);
+  for (int i = 0; i < 2; ++i) {
+    const absl::Status saved = sessions_->Save({MarkedSession("b")});
+    EXPECT_TRUE(absl::IsDataLoss(saved)) << saved;
+    EXPECT_THAT(MessageOf(saved), AllOf(HasSubstr("was removed"), HasSubstr("restart the server")));
+  }
+  sessions_.reset();
+  jobs_.reset();
+  ExpectKept(0, 0);
+}
+
 TEST_F(StateFileTest, AFolderThatOthersMayWriteIsRefused) {
   EXPECT_TRUE(store::CheckFolder(state_).ok());
   for (const auto more : {fs::perms::group_write, fs::perms::others_write}) {
@@ -286,7 +321,7 @@ TEST_F(StateFileTest, ASessionWithoutItsMarksIsRestoredAndCounted) {
   ::testing::internal::CaptureStdout();
   const auto loaded = sessions_->Load();
   EXPECT_THAT(::testing::internal::GetCapturedStdout(),
-              HasSubstr("session a is restored without its marks: they are missing"));
+              HasSubstr("session a is restored without its marks: its marks are missing"));
   ASSERT_TRUE(loaded.ok()) << loaded.status();
   SessionRecord without_marks = MarkedSession("a");
   without_marks.marks.clear();

@@ -62,6 +62,8 @@ TEST_F(CfLayouts, TerrainLiesInAnyOrderOfDimensions) {
 
 TEST_F(CfLayouts, HeightIsAboveTheSurfaceAndAltitudeAboveSeaLevel) {
   SyntheticCf file = Cloud();
+  // Cloud in all layers up to 2 km, of which the lowest three are below the ground as altitudes.
+  file.variables[0].value = [](const Index&) { return 1e-4; };
   file.variables.push_back(Terrain({"y", "x"}));
   file.variables.back().value = [](const Index&) { return 1500.0; };
   for (const auto& [name, low_m] : {std::pair{"altitude", 0.0}, {"height", 1500.0}}) {
@@ -69,7 +71,7 @@ TEST_F(CfLayouts, HeightIsAboveTheSurfaceAndAltitudeAboveSeaLevel) {
     const auto fields = Read(file);
     ASSERT_TRUE(fields.ok()) << fields.status();
     EXPECT_DOUBLE_EQ((*fields)->grid.low_corner_m.z, low_m) << name;
-    EXPECT_EQ((*fields)->condensate.low.z, 0);
+    EXPECT_EQ((*fields)->condensate.low.z, name == std::string("height") ? 0 : 3);
   }
   EXPECT_THAT(info_.assumptions, Contains(HasSubstr("above the surface")));
   file.variables.pop_back();

@@ -85,6 +85,7 @@ class BlobSource final : public LayerSource {
     domain_.dx_m = even.mean_m.x;
     domain_.dy_m = even.mean_m.y;
     domain_.even = std::make_shared<const EvenColumns>(even);
+    domain_.on_terrain = true;  // so the ground, whose height has its own rules, cuts no layer
     LayerField cloud;
     cloud.variable = "qc";
     cloud.quantity = volume::Quantity::kMassConcentration;

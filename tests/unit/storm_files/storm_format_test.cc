@@ -8,6 +8,8 @@
 #include <fstream>
 
 #include "absl/strings/str_cat.h"
+#include "storm_files/cf_format.h"
+#include "storm_files/wrf_format.h"
 #include "storm_store/storm_catalogue.h"
 #include "storm_store/storm_store.h"
 #include "tests/support/synthetic_cf.h"
@@ -25,7 +27,7 @@ using testing::TemporaryFolder;
 using testing::WrfCell;
 
 // A reader of toy files. A toy file is the text "toy N C": a cube of N cells a side with C kg/m3 of
-// rain in each.
+// rain in each. A file that begins with "toys" has two such storms.
 class ToyReader final : public RecordReader {
  public:
   explicit ToyReader(std::string path) : path_(std::move(path)) {}
@@ -86,6 +88,11 @@ class ToyFormat final : public StormFormat {
     file.fields = {physics::Hydrometeor::kRain};
     file.about = "of the test";
     file.reader = std::make_shared<ToyReader>(unknown.Path());
+    if (word == "toys") {
+      file.member = "a";
+      file.others.push_back(file);
+      file.others.back().member = "b";
+    }
     return file;
   }
 };
@@ -171,6 +178,26 @@ TEST_F(StormFormatTest, AStoreTakesAFileOfItLaterToo) {
   EXPECT_TRUE(store->Get((*added)->id, 0, {}).ok());
 }
 
+TEST_F(StormFormatTest, AStoreTakesNoFileOfSeveralStormsLater) {
+  WriteToy("two.toy", "toys 2 0.001");
+  const auto store =
+      storm_store::StormStore::Open({WriteWrf()}, {.formats = With(std::make_shared<ToyFormat>())})
+          .value();
+  const auto added = store->Add(folder_.File("two.toy"));
+  EXPECT_EQ(added.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(added.status().message()), HasSubstr("it has 2 storms"));
+  EXPECT_EQ(store->Storms().size(), 1U);
+}
+
+// A process that only reads WRF output needs the database of units, too.
+TEST_F(StormFormatTest, EachFormatOfNetcdfIsPreparedForIt) {
+  for (const auto& format : {MakeWrfFormat(), MakeCfFormat()}) {
+    EXPECT_TRUE(format->MayBegin("CDF\x01")) << format->Name();
+    EXPECT_TRUE(format->MayBegin("\x89HDF\r\n\x1a\n")) << format->Name();
+    EXPECT_FALSE(format->MayBegin("GRIB")) << format->Name();
+  }
+}
+
 TEST_F(StormFormatTest, ItsErrorsReachWhoAsks) {
   WriteToy("no_cells.toy", "toy");
   WriteToy("no_rain.toy", "toy 2");
@@ -231,7 +258,7 @@ TEST_F(StormFormatTest, AFileOfNoFormatIsToldWhatEachWouldNeed) {
       "nor a MYSTIC cloud file (it does not begin with three numbers of cells and a flag) "
       "nor an AT3D cloud field (it does not begin with its grid and the names of its columns)";
   const std::string toy = " nor a toy (it does not begin so)";
-  const std::string advice = "; give a file that is";
+  const std::string advice = "; give a file in one of these formats";
   EXPECT_EQ(message(StormFormats::BuiltIn()), built_in + advice);
   EXPECT_EQ(message(With(std::make_shared<ToyFormat>())), built_in + toy + advice);
 }

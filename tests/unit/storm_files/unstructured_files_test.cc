@@ -314,6 +314,21 @@ TEST_F(UnstructuredFiles, TheFieldNamesItsCoordinates) {
   ExpectCloud(**fields, triangles_);
 }
 
+TEST_F(UnstructuredFiles, CellsCountFromThePrimeMeridianOfTheirMapping) {
+  SyntheticCf file = Icon(triangles_);
+  ASSERT_TRUE(Read(file).ok());
+  const double from_greenwich_deg = info_.longitude_deg.value();
+  for (CfContent& variable : file.variables) {
+    if (variable.dimensions.size() > 2) variable.attributes["grid_mapping"] = "crs";
+  }
+  file.variables.push_back(
+      OfOneValue("crs", {}, {{"grid_mapping_name", "latitude_longitude"}}, 0.0));
+  file.number_attributes["crs"] = {{"longitude_of_prime_meridian", 2.5}};
+  ASSERT_TRUE(Read(file).ok());
+  EXPECT_NEAR(info_.longitude_deg.value(), from_greenwich_deg + 2.5, 1e-6);
+  EXPECT_THAT(info_.assumptions, Contains(HasSubstr("The longitudes clon count from")));
+}
+
 // ICON's files often have pressure and temperature, but no density.
 TEST_F(UnstructuredFiles, TheDensityFollowsFromPressureAndTemperature) {
   constexpr double kTemperature_K = 280.0;

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "absl/strings/str_format.h"
+#include "storm_files/storm_format.h"
 #include "storm_store/fields_cache.h"
 #include "tests/support/synthetic_wrf.h"
 #include "tests/support/temporary_folder.h"
@@ -194,6 +195,61 @@ TEST_F(StormSeries, NeverPushesOutTheTimeInViewByReadingAhead) {
   EXPECT_NE(store->Peek("series", 0), nullptr);
   EXPECT_NE(store->Peek("series", 1), nullptr);
   EXPECT_LE(store->CachedBytes(), 2 * one_time_);
+}
+
+// A reader that counts the ends of its reads.
+class CountingReader final : public storm_files::RecordReader {
+ public:
+  CountingReader(std::shared_ptr<const storm_files::RecordReader> reader, std::atomic<int>& ended)
+      : reader_(std::move(reader)), ended_(ended) {}
+
+  absl::StatusOr<volume::HydrometeorFields> Read(
+      const storm_files::RecordPart& part, const std::optional<storm_files::VerticalGrid>& grid,
+      const storm_files::ReadCheckpoint& checkpoint) const override {
+    auto fields = reader_->Read(part, grid, checkpoint);
+    ++ended_;
+    return fields;
+  }
+  absl::StatusOr<storm_files::VerticalGrid> ReadVerticalGrid(std::size_t record) const override {
+    return reader_->ReadVerticalGrid(record);
+  }
+
+ private:
+  std::shared_ptr<const storm_files::RecordReader> reader_;
+  std::atomic<int>& ended_;
+};
+
+// The next time is larger than the one in view, because only it has a cloud.
+TEST_F(StormSeries, DropsATimeThatWasReadAheadAndDoesNotFit) {
+  SyntheticWrf file;
+  file.nx = 24;
+  file.ny = 20;
+  file.times = {"2013-05-20_00:00:00", "2013-05-20_01:00:00"};
+  file.mixing_ratios["QCLOUD"] = [](const WrfCell& cell) { return cell.record * 1e-3; };
+  const std::string path = folder_.File("wrfout_growing");
+  testing::WriteWrf(file, path);
+  std::atomic<int> ended{0};
+  StormStoreOptions options = {.read_ahead = 0};
+  options.formats.LeaveTo(
+      {.describe =
+           [&ended](const std::string& described) -> absl::StatusOr<storm_files::StormFile> {
+        auto found = storm_files::StormFormats::BuiltIn().Describe(described);
+        if (found.ok()) found->reader = std::make_shared<CountingReader>(found->reader, ended);
+        return found;
+      }});
+  const auto in_view = StormStore::Open({path}, options).value();
+  const std::string id = in_view->Storms()[0]->id;
+  const std::size_t small = in_view->Get(id, 0, {}).value()->Bytes();
+  const std::size_t large = in_view->Get(id, 1, {}).value()->Bytes();
+  ASSERT_GT(large, 2 * small);
+  options.byte_budget = 2 * small;
+  options.read_ahead = 1;
+  ended = 0;
+  const auto store = StormStore::Open({path}, options).value();
+  ASSERT_TRUE(store->Get(id, 0, {}).ok());
+  ASSERT_TRUE(WaitFor([&] { return ended == 2 && store->PendingReads() == 0; }));
+  EXPECT_EQ(store->CachedBytes(), small);
+  EXPECT_NE(store->Peek(id, 0), nullptr);
 }
 
 // A broken next time harms neither the time in view nor the read-ahead thread.

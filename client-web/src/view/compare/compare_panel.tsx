@@ -19,7 +19,9 @@ export function Compare({ page }: { page: Page }) {
   const times = (choice?.stormId === undefined ? state.storm.value : comparing.other.value)?.times;
   return (
     <Popover page={page} name="compare" title="Compare" label="Compare with another picture">
-      <p class="quiet">A is the picture on the screen. B has the same camera, and its own:</p>
+      <p class="quiet">
+        A is the picture on the screen. B has the same camera. Choose how B differs:
+      </p>
       <Choice
         label="Storm or run of B"
         testId="compare-storm"

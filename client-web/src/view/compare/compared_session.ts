@@ -53,7 +53,10 @@ export class ComparedSession implements SessionListener {
       acknowledge: (sequence, ownView, lost) => this.#client.acknowledge(sequence, ownView, lost),
       wantsOwnView: () => false,
       painted: (frame) => this.#painted(frame),
-      undecodable: () => steps.problem("B sent a picture that this browser cannot read"),
+      undecodable: () =>
+        steps.problem(
+          "This browser cannot decode a picture of B. If it happens again, reload the page.",
+        ),
       onNextPaint: (callback) => steps.onNextPaint(callback),
     });
     this.#sync = new SceneSync({

@@ -2,7 +2,7 @@
 // movies need not be loaded.
 
 export const NO_VIDEO_ENCODER =
-  "the browser encodes video only on pages by HTTPS or from localhost";
+  "the browser encodes video only on pages loaded by HTTPS or from localhost";
 
 export function encodesVideo(): boolean {
   return "VideoEncoder" in globalThis;

@@ -124,8 +124,8 @@ function Picture({ page }: { page: Page }) {
     <Section title="Picture (PNG)" open testId="keep-picture">
       <SizeChoice testId="picture-size" chosen={chosen} />
       <p class="quiet">
-        With marks, title, time and scales as chosen under Look. The scene is in the file: drop it
-        on the page, and the view is back.
+        The picture has the marks, title, time and scales that are chosen under Look. The file
+        contains the scene: drop it on this page to see the view again.
       </p>
       <button
         type="button"
@@ -176,7 +176,7 @@ function Movie({ page }: { page: Page }) {
       />
       {draft.alongViews ? (
         <NumberInput
-          label="Pictures from view to view"
+          label="Pictures between views"
           testId="movie-per-view"
           value={draft.picturesPerView}
           onChange={(value) => change({ picturesPerView: Math.min(240, Math.max(1, value)) })}
@@ -255,13 +255,14 @@ function Mp4Codec({ page, widthPx, heightPx }: { page: Page } & PictureSize) {
   if (!lacksH264) return null;
   return (
     <p class="quiet" role="status" data-testid="movie-codec">
-      This browser encodes no H.264 of that size: the MP4 holds VP9, which some players do not open.
+      This browser cannot encode H.264 at this size, so the MP4 file contains VP9, which some
+      players cannot open.
     </p>
   );
 }
 
 function lengthInWords(pictures: number, picturesPerSecond: number): string {
-  if (pictures === 1) return "One picture: nothing moves.";
+  if (pictures === 1) return "The movie has only one picture, so nothing moves.";
   return `${pictures} pictures, ${formatNumber(pictures / picturesPerSecond)} s.`;
 }
 

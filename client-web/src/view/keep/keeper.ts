@@ -5,10 +5,10 @@ import { ConnectError } from "@connectrpc/connect";
 import { signal } from "@preact/signals-core";
 import type { AnnotationChoice } from "../../core/annotations";
 import { type PictureSize, poseOfCamera } from "../../core/camera";
+import type { TextStore } from "../../core/kept_text";
 import { type MovieDraft, movieScenes } from "../../core/movie_plan";
 import { type MovieWork, RememberedMovies } from "../../core/movie_work";
 import type { NamedView } from "../../core/named_views";
-import type { TextStore } from "../../core/own_keys";
 import { projectionOf } from "../../core/projection";
 import { outputSize, withOutput } from "../../core/scene";
 import { sceneOfFile, sceneToText, withScene } from "../../core/scene_file";
@@ -154,7 +154,7 @@ export class Keeper {
       this.#state.restore(scene);
       this.#notes.say("file", `The view of ${file.name}`);
     } catch (error) {
-      this.#refuse("file", "File", `${file.name} is not opened: ${(error as Error).message}`);
+      this.#refuse("file", "File", `${file.name} cannot be opened: ${(error as Error).message}`);
     }
   }
 
@@ -303,7 +303,7 @@ async function annotate(
   const bitmap = await createImageBitmap(new Blob([bytes]));
   const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
   const context = canvas.getContext("2d");
-  if (context === null) throw new Error("this browser draws no pictures");
+  if (context === null) throw new Error("this browser cannot draw on a canvas");
   context.drawImage(bitmap, 0, 0);
   bitmap.close();
   const projection = projectionOf(drawn.view);

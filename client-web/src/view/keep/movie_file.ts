@@ -43,7 +43,7 @@ export async function startMovie(draft: MovieDraft): Promise<MovieFile> {
   const codec = await codecOf(draft);
   const canvas = new OffscreenCanvas(width, height);
   const context = canvas.getContext("2d", { alpha: false });
-  if (context === null) throw new Error("this browser draws no pictures");
+  if (context === null) throw new Error("this browser cannot draw on a canvas");
   const target = new BufferTarget();
   const format = draft.format === "webm" ? new WebMOutputFormat() : new Mp4OutputFormat();
   const output = new Output({ format, target });
@@ -60,7 +60,8 @@ export async function startMovie(draft: MovieDraft): Promise<MovieFile> {
     },
     async finish() {
       await output.finalize();
-      if (target.buffer === null) throw new Error("the encoder gave no file");
+      if (target.buffer === null)
+        throw new Error("the video encoder returned no file; try the other format");
       return new Uint8Array(target.buffer);
     },
     cancel: () => output.cancel(),
@@ -75,5 +76,7 @@ async function encodable(
   if (!encodesVideo()) throw new Error(NO_VIDEO_ENCODER);
   for (const codec of CODECS[format])
     if (await canEncodeVideo(codec, { width, height })) return codec;
-  throw new Error(`this browser encodes no ${format === "webm" ? "WebM" : "MP4"} of that size`);
+  throw new Error(
+    `this browser cannot encode ${format === "webm" ? "WebM" : "MP4"} at this size; try a smaller size or the other format`,
+  );
 }

@@ -45,7 +45,7 @@ export function InsetMap({ state, steps }: { state: PageState; steps: MapSteps }
     <div
       class="inset-map"
       role="application"
-      // biome-ignore lint/a11y/noNoninteractiveTabindex: an application is interactive, with keys of its own.
+      // biome-ignore lint/a11y/noNoninteractiveTabindex: an application is interactive and has its own keys.
       tabIndex={0}
       aria-label="Map of the storm. Arrow keys move a cross, Enter stands there, O turns around that place."
       data-testid="inset-map"

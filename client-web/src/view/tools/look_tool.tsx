@@ -61,13 +61,13 @@ function Colours({ state }: { state: PageState }) {
 }
 
 const OVERLAYS: readonly (readonly [keyof AnnotationChoice, string])[] = [
-  ["title", "Storm and run, in what is saved"],
+  ["title", "Storm and run (only in saved files)"],
   ["time", "Valid time"],
   ["legend", "Legend of false colours"],
   ["scale", "Scale bar"],
   ["compass", "Degrees along the horizon, from the ground"],
   ["rings", "Rings of distance"],
-  ["marks", "Marks, in what is saved"],
+  ["marks", "Marks (only in saved files)"],
 ];
 
 function OverThePicture({ state }: { state: PageState }) {

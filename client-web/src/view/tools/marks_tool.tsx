@@ -11,7 +11,7 @@ const IN_HAND: readonly (readonly [InHand, string, string])[] = [
   ["pen", "Pen", "Draw on the storm."],
   ["arrow", "Arrow", "Drag from its tail to its tip."],
   ["text", "Text", "Click where it begins."],
-  ["pointer", "Pointer", "Everybody sees where you point."],
+  ["pointer", "Pointer", "Everyone sees where you point."],
 ];
 
 const IN_THE_MIDDLE: Readonly<Record<InHand, string>> = {
@@ -50,7 +50,7 @@ export function MarksTool({ page }: { page: Page }) {
       </fieldset>
       <p class="quiet" role="status">
         {IN_HAND.find(([tool]) => tool === inHand)?.[2] ??
-          "Everybody in the session sees them, at their places in the world."}
+          "Everyone in the session sees the marks, which stay at their places on the storm or the ground."}
       </p>
       {inHand === "text" && (
         <input

@@ -22,7 +22,7 @@ export function NamedViews({ page }: { page: Page }) {
     if (!kept)
       page.notes.say(
         "view",
-        "This browser has no room for it: the view lasts as long as this page",
+        "The browser's storage is full, so the view is lost when you close this page",
       );
     setName(undefined);
   };

@@ -22,8 +22,8 @@ export function ProbeTool({ page }: { page: Page }) {
   return (
     <>
       <p class="quiet">
-        Click on the picture: what is there? A second click measures from the first. By keys: turn
-        the picture until the cross is on it, then Enter.
+        Click a point in the picture to see what is there. A second click measures from the first.
+        With the keyboard, turn the picture until the cross is on the point, then press Enter.
       </p>
       <div class="buttons">
         <button

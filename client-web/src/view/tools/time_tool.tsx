@@ -32,7 +32,7 @@ export function TimeTool({ page }: { page: Page }) {
           </>
         )}
         <dt>Run</dt>
-        <dd>{run.value === "" ? "not told by the file" : run.value}</dd>
+        <dd>{run.value === "" ? "not given in the file" : run.value}</dd>
         <dt>Lead time</dt>
         <dd>{formatElapsed(leadS.value)}</dd>
       </dl>
