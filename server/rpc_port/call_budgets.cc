@@ -26,6 +26,26 @@ class CallCounter final : public grpc::experimental::ServerInterceptorFactoryInt
       grpc::experimental::ServerRpcInfo* call) override {
     const std::optional<std::string> connection = ConnectionOf(*call->server_context());
     if (connection.has_value()) budgets_->Begin(*connection);
+    if (dynamic_cast<grpc::CallbackServerContext*>(call->server_context()) != nullptr) {
+      budgets_->EndWaiting();
+    }
+    return nullptr;
+  }
+
+ private:
+  const std::shared_ptr<CallBudgets> budgets_;
+};
+
+class ReceivedCounter final : public grpc::ContextAllocator {
+ public:
+  explicit ReceivedCounter(std::shared_ptr<CallBudgets> budgets) : budgets_(std::move(budgets)) {}
+
+  grpc::CallbackServerContext* NewCallbackServerContext() override {
+    budgets_->Receive();
+    return nullptr;
+  }
+  grpc::GenericCallbackServerContext* NewGenericCallbackServerContext() override {
+    budgets_->Receive();
     return nullptr;
   }
 
@@ -57,6 +77,21 @@ void CallBudgets::Begin(const std::string& peer) {
   until = now + kBlocked;
   if (was_blocked) return;
   newly_blocked_.push_back(peer);
+  Notify();
+}
+
+void CallBudgets::Receive() {
+  constexpr std::int64_t kNotifyEvery = 512;
+  const std::int64_t waiting = ++waiting_;
+  if (waiting > kMostWaiting && waiting % kNotifyEvery == 0) Notify();
+}
+
+void CallBudgets::Block(const std::string& peer) {
+  const std::lock_guard lock(mutex_);
+  blocked_until_[base::NetworkOf(peer)] = time_.Now() + kBlocked;
+}
+
+void CallBudgets::Notify() const {
   const std::uint64_t one = 1;
   (void)!write(signal_.Get(), &one, sizeof(one));
 }
@@ -79,6 +114,10 @@ std::vector<std::string> CallBudgets::TakeNewlyBlocked() {
 std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> CountCalls(
     std::shared_ptr<CallBudgets> budgets) {
   return std::make_unique<CallCounter>(std::move(budgets));
+}
+
+std::unique_ptr<grpc::ContextAllocator> CountReceived(std::shared_ptr<CallBudgets> budgets) {
+  return std::make_unique<ReceivedCounter>(std::move(budgets));
 }
 
 }  // namespace thunderhead::rpc_port

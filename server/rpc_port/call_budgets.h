@@ -3,9 +3,12 @@
 // would take all memory: gRPC keeps the memory of a reset call until its handler has run.
 #pragma once
 
+#include <grpcpp/server_context.h>
 #include <grpcpp/support/server_interceptor.h>
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -32,19 +35,36 @@ class CallBudgets {
                                                            base::TrustedProxies proxies,
                                                            const base::TimeSource& time);
 
+  // Receive() counts a call whose handler has not begun yet, and EndWaiting() ends that. gRPC's few
+  // threads read connections before they run handlers. A flood of calls can therefore keep all
+  // handlers waiting.
+  void Receive();
+  void EndWaiting() { --waiting_; }
+  // Returns whether so many calls wait for their handlers that their memory is a danger. The
+  // network that sends most must then be blocked.
+  bool HasBacklog() const { return waiting_ > kMostWaiting; }
+
   // Counts a call that begins on the connection with this peer, such as "1.2.3.4:80". If its
   // network has exceeded its budget, the network is blocked until one second after its last such
   // call.
   void Begin(const std::string& peer);
   bool IsBlocked(const std::string& peer) const;
+  // Blocks the network of this peer for one second.
+  void Block(const std::string& peer);
   // Returns one peer of each network that was blocked since the last call of this method. Its
   // connections must be closed.
   std::vector<std::string> TakeNewlyBlocked();
-  // Returns a descriptor that is readable when TakeNewlyBlocked() has something to return.
+  // Returns a descriptor that is readable when TakeNewlyBlocked() has something to return, and when
+  // HasBacklog() is true and calls were received since then.
   int Signal() const { return signal_.Get(); }
 
  private:
+  // The calls that may wait for their handlers, some 17 kB each.
+  static constexpr std::int64_t kMostWaiting = 4096;
+
   using Time = base::TimeSource::Clock::time_point;
+
+  void Notify() const;
 
   CallBudgets(double per_second, base::TrustedProxies proxies, const base::TimeSource& time,
               base::FileDescriptor signal)
@@ -56,6 +76,7 @@ class CallBudgets {
   const base::TrustedProxies proxies_;
   const base::TimeSource& time_;
   const base::FileDescriptor signal_;  // an eventfd
+  std::atomic<std::int64_t> waiting_ = 0;
   mutable std::mutex mutex_;
   base::Allowances budgets_;
   std::map<std::string, Time> blocked_until_;  // by network
@@ -66,5 +87,9 @@ class CallBudgets {
 // unknown methods. The calls get no interceptor.
 std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> CountCalls(
     std::shared_ptr<CallBudgets> budgets);
+
+// Returns the object by which gRPC's server tells `budgets` each call that it has received, except
+// calls of services without callbacks. gRPC itself allocates the contexts.
+std::unique_ptr<grpc::ContextAllocator> CountReceived(std::shared_ptr<CallBudgets> budgets);
 
 }  // namespace thunderhead::rpc_port

@@ -6,18 +6,24 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <limits>
+#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "base/client_network.h"
+#include "rpc_port/bytes_received.h"
 
 namespace thunderhead::rpc_port {
 namespace {
 
 constexpr std::chrono::milliseconds kLookPause{100};
+constexpr std::chrono::milliseconds kMeasurement{10};
+// A client with ordinary calls sends less in that time, a flood of calls more.
+constexpr std::uint64_t kMuch_bytes = 4096;
 
 // A connection counts as used until this long after its last call, because some handlers release
 // the caller before they respond.
@@ -105,6 +111,24 @@ bool OpenSockets::CloseLeastNeeded(const std::string* network, Clock::time_point
   if (least == candidates.end()) return false;
   Close(least->open);
   return true;
+}
+
+std::optional<std::string> OpenSockets::WhoSendsMost() const {
+  std::map<int, std::uint64_t> before;
+  for (const auto& [socket, open] : open_) before[socket] = BytesReceived(socket);
+  std::this_thread::sleep_for(kMeasurement);
+  std::map<std::string, std::uint64_t> by_network;
+  std::optional<std::string> most;
+  std::uint64_t most_bytes = kMuch_bytes;
+  for (const auto& [socket, open] : open_) {
+    if (proxies_.Holds(open.peer) || peer_of_(socket) != open.peer) continue;
+    std::uint64_t& bytes = by_network[open.network];
+    bytes += BytesReceived(socket) - before[socket] + BytesUnread(socket);
+    if (bytes <= most_bytes) continue;
+    most_bytes = bytes;
+    most = open.peer;
+  }
+  return most;
 }
 
 void OpenSockets::AbortNetworkOf(const std::string& peer) {

@@ -45,6 +45,11 @@ class OpenSockets {
   // second.
   bool Take(int socket, const std::string& peer, Clock::time_point now);
 
+  // Returns a peer of the network that sends most, or nothing if none sends much. Counts what
+  // arrives within some milliseconds, and what gRPC has not read by then. Addresses in `proxies`
+  // are left out.
+  std::optional<std::string> WhoSendsMost() const;
+
   // Resets all connections of this peer's network. What they have sent is dropped if gRPC has not
   // read it yet.
   void AbortNetworkOf(const std::string& peer);

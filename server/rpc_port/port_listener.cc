@@ -129,7 +129,14 @@ absl::Status PortListener::Start(Acceptor acceptor, OpenSockets open, const Opti
   };
   auto tend = [sockets, calls = options.calls, unused = options.unused, &time = *options.time,
                refused] {
-    for (const std::string& peer : calls->TakeNewlyBlocked()) {
+    std::vector<std::string> blocked = calls->TakeNewlyBlocked();
+    if (blocked.empty() && calls->HasBacklog()) {
+      if (auto most = sockets->WhoSendsMost(); most.has_value()) {
+        calls->Block(*most);
+        blocked.push_back(*std::move(most));
+      }
+    }
+    for (const std::string& peer : blocked) {
       sockets->AbortNetworkOf(peer);
       (*refused)(peer, base::TooManyCalls());
     }

@@ -1,6 +1,7 @@
 #include "service/server.h"
 
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/generic/async_generic_service.h>
 #include <grpcpp/grpcpp.h>
 
 #include <chrono>
@@ -124,6 +125,8 @@ class RunningServer final : public Server {
     std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> counters;
     counters.push_back(rpc_port::CountCalls(call_budgets));
     builder.experimental().SetInterceptorCreators(std::move(counters));
+    builder.SetContextAllocator(rpc_port::CountReceived(call_budgets));
+    builder.RegisterCallbackGenericService(&unknown_methods_);
     rpc_port::PortListener::Acceptor acceptor;
     if (!address.empty()) {
       THUNDERHEAD_ASSIGN_OR_RETURN(
@@ -261,6 +264,8 @@ class RunningServer final : public Server {
   std::unique_ptr<jobs::Jobs> jobs_;  // null if the server keeps no render jobs
   std::unique_ptr<grpc::Service> service_;
   std::unique_ptr<RenderJobService> job_service_;
+  // Answers calls of unknown methods with UNIMPLEMENTED, so that they are counted, too.
+  grpc::CallbackGenericService unknown_methods_;
   rpc_port::HealthService health_{v1::ThunderheadService::service_full_name()};
   std::unique_ptr<rpc_port::GrpcCertificate> certificate_;  // null without TLS
   std::unique_ptr<grpc::Server> server_;

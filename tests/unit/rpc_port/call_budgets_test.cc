@@ -105,5 +105,30 @@ TEST_F(CallBudgetsTest, ZeroMeansNoLimit) {
   EXPECT_FALSE(budgets->IsBlocked("192.0.2.1:1"));
 }
 
+TEST_F(CallBudgetsTest, ManyCallsThatWaitForTheirHandlersAreABacklog) {
+  const auto budgets = Open();
+  for (int i = 0; i < 4096; ++i) budgets->Receive();
+  EXPECT_FALSE(budgets->HasBacklog());
+  EXPECT_FALSE(Signals(*budgets));
+  for (int i = 0; i < 512; ++i) budgets->Receive();
+  EXPECT_TRUE(budgets->HasBacklog());
+  EXPECT_TRUE(Signals(*budgets));
+  budgets->TakeNewlyBlocked();
+  EXPECT_FALSE(Signals(*budgets));
+  for (int i = 0; i < 512; ++i) budgets->Receive();
+  EXPECT_TRUE(Signals(*budgets)) << "again, while calls arrive";
+  for (int i = 0; i < 1024; ++i) budgets->EndWaiting();
+  EXPECT_FALSE(budgets->HasBacklog());
+}
+
+TEST_F(CallBudgetsTest, ANetworkCanBeBlockedForASecond) {
+  const auto budgets = Open();
+  budgets->Block("192.0.2.1:1");
+  EXPECT_TRUE(budgets->IsBlocked("192.0.2.1:2"));
+  EXPECT_FALSE(budgets->IsBlocked("192.0.2.2:1"));
+  time_.Advance(std::chrono::seconds(1));
+  EXPECT_FALSE(budgets->IsBlocked("192.0.2.1:2"));
+}
+
 }  // namespace
 }  // namespace thunderhead::rpc_port

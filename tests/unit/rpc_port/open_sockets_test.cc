@@ -172,6 +172,28 @@ TEST_F(OpenSocketsTest, AllOfANetworkAreAbortedAndWhatTheySentIsDropped) {
   EXPECT_EQ(other.ServerReads(), 3);
 }
 
+TEST_F(OpenSocketsTest, TheNetworkThatSendsMostIsFound) {
+  const base::TrustedProxies proxies = *base::TrustedProxies::Parse({"192.0.2.3"});
+  OpenSockets open(9, 9, proxies, calls_, [this](int socket) { return PeerOf(socket); });
+  const Connected little;
+  const Connected much;
+  const Connected proxy;
+  const std::string text(5000, 'x');
+  for (const Connected* const connected : {&much, &proxy, &proxy}) {
+    EXPECT_EQ(send(connected->client.Get(), text.data(), text.size(), 0), 5000);
+  }
+  EXPECT_FALSE(open.WhoSendsMost().has_value());
+  const auto take = [&](const Connected& connected, const std::string& peer) {
+    peers_[connected.server.Get()] = peer;
+    EXPECT_TRUE(open.Take(connected.server.Get(), peer, now_));
+  };
+  take(little, "192.0.2.1:1");
+  EXPECT_FALSE(open.WhoSendsMost().has_value()) << "too little for a flood";
+  take(much, "192.0.2.2:1");
+  take(proxy, "192.0.2.3:1");
+  EXPECT_EQ(open.WhoSendsMost(), "192.0.2.2:1");
+}
+
 TEST_F(OpenSocketsTest, ADescriptorThatAnotherConnectionHasGotIsNotAborted) {
   OpenSockets open = Of(4, 4);
   const Connected connected;
