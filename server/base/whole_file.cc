@@ -165,7 +165,7 @@ absl::Status WriteWholeFile(const std::string& path, std::string_view bytes) {
 
 absl::Status PublishFile(const std::string& path) {
   const std::string partial = PartialPath(path);
-  if (const absl::Status replaceable = CheckReplaceable(path); !replaceable.ok()) {
+  if (absl::Status replaceable = CheckReplaceable(path); !replaceable.ok()) {
     unlink(partial.c_str());
     return replaceable;
   }
