@@ -190,7 +190,7 @@ TEST_F(OffersTest, ReportsWhatItBelieves) {
   report = *desk_.estimator.Report(decided, {}, {0, 0.4});
   EXPECT_DOUBLE_EQ(report.estimated_error, 0.5);
   EXPECT_EQ(report.discretisation_error, 0.4);
-  EXPECT_THAT(report.unmet->message, HasSubstr("the nearest is 0.5"));
+  EXPECT_THAT(report.unmet->message, HasSubstr("the best has 0.5"));
 }
 
 TEST_F(OffersTest, MeasuredErrorsCountForTheSameLightAndGuessOthers) {
@@ -316,7 +316,7 @@ TEST_F(TracedOffersTest, TheErrorIsThatOfThePathsSoFar) {
   scene_.accuracy = MaxError{0.01};
   const scene::Scene nearest = *desk_.Decide(scene_);
   EXPECT_THAT(desk_.estimator.Report(nearest, {}, {})->unmet->message,
-              HasSubstr("the nearest is 0.05"));
+              HasSubstr("the best has 0.05"));
 }
 
 TEST_F(TracedOffersTest, APictureWaitsForTheFewestPathsThatItsErrorNeeds) {

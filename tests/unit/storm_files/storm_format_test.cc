@@ -225,7 +225,7 @@ TEST_F(StormFormatTest, AFileThatTwoFormatsFitEquallyIsAnError) {
     const auto file = With(std::make_shared<Greedy>(fit)).Describe(path);
     EXPECT_TRUE(absl::IsInvalidArgument(file.status())) << file.status();
     EXPECT_THAT(std::string(file.status().message()),
-                AllOf(HasSubstr(path), HasSubstr("any netCDF"), HasSubstr("one only")));
+                AllOf(HasSubstr(path), HasSubstr("any netCDF"), HasSubstr("only one of these formats")));
   }
 }
 
