@@ -551,6 +551,22 @@ TEST_F(GribStormTest, NamesHeightsThatCannotBeKnown) {
               HasSubstr("pressure (0/3/0) of hybrid level 1 and the others is missing"));
 }
 
+TEST_F(GribStormTest, TheHeightOfTheGroundMustBeThereAndPossible) {
+  const auto is_ground = [](const Message& message) { return Is(message, 3, 5, 0, 1); };
+  EXPECT_THAT(ErrorWith([&](Message& message) {
+                if (is_ground(message)) message.values = {9500.0F};
+                return true;
+              }),
+              HasSubstr("the height of the ground, of record 0 is 9500 m in column (0, 0), which"));
+  EXPECT_THAT(ErrorWith([&](Message& message) {
+                if (!is_ground(message)) return true;
+                message.values = {400.0F, 400.0F, 500.0F};
+                message.bitmap = "\xB0";
+                return true;
+              }),
+              HasSubstr("is missing in 1 of 4 columns, the first of which is column (1, 0)"));
+}
+
 TEST_F(GribStormTest, ReadsOtherModelLevels) {
   for (const int type : {118, 119}) {
     const auto file = Describe({.level_type = type});

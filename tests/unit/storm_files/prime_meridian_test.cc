@@ -17,7 +17,6 @@
 namespace thunderhead::storm_files::prime_meridian_test {
 namespace {
 
-using testing::CfContent;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::Middles;
