@@ -48,13 +48,7 @@ glm::dvec3 UnitVectorOf(const CellPlaces& places, std::size_t cell) {
 
 absl::Status CheckPlaces(const CellPlaces& places) {
   for (std::size_t cell = 0; cell < places.latitude_deg.size(); ++cell) {
-    // The comparisons fail for NaN. Radians that were rounded to floats may exceed 90 degrees.
-    constexpr double kPole_deg = 90.0001;
-    constexpr double kMostTurns_deg = 720.0;
-    if (std::abs(places.latitude_deg[cell]) <= kPole_deg &&
-        std::abs(places.longitude_deg[cell]) <= kMostTurns_deg) {
-      continue;
-    }
+    if (IsPlaceOnEarth(places.latitude_deg[cell], places.longitude_deg[cell])) continue;
     return absl::InvalidArgumentError(absl::StrCat(
         "the latitude and longitude of cell ", cell, " are ", places.latitude_deg[cell], " and ",
         places.longitude_deg[cell], " degrees; every cell needs its place"));

@@ -95,4 +95,18 @@ absl::Status CheckCellMethods(const netcdf::NetcdfFile& file,
   return absl::OkStatus();
 }
 
+absl::Status CheckScaleFactors(const netcdf::NetcdfFile& file,
+                               const std::vector<std::string>& variables) {
+  for (const std::string& variable : variables) {
+    const std::optional<double> factor = file.NumberAttribute(variable, "scale_factor");
+    // Factors that are no number are refused where the values are read.
+    if (!factor.has_value() || !(*factor <= 0.0)) continue;
+    return absl::InvalidArgumentError(absl::StrCat(
+        file.Path(), ": ", variable, " has the scale_factor ", *factor,
+        ", and the amounts of a hydrometeor need one above 0; pack the values again, or unpack "
+        "them, for example with ncpdq -U"));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace thunderhead::storm_files

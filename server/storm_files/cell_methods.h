@@ -31,4 +31,9 @@ absl::Status CheckCellMethods(const netcdf::NetcdfFile& file,
                               const std::vector<std::string>& variables,
                               std::vector<std::string>& assumptions);
 
+// Returns INVALID_ARGUMENT if one of the variables has a scale_factor that is not above 0. Such a
+// factor makes amounts of water 0 or negative.
+absl::Status CheckScaleFactors(const netcdf::NetcdfFile& file,
+                               const std::vector<std::string>& variables);
+
 }  // namespace thunderhead::storm_files

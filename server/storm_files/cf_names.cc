@@ -199,7 +199,10 @@ void ApplyUnits(const std::string& units, CfQuantity* quantity) {
   }
   const auto use = [&](std::string_view unit, volume::Quantity as) {
     const std::optional<UnitConversion> conversion = ConversionOf(units, unit);
-    if (!conversion.has_value() || conversion->offset != 0.0) return false;
+    // A negative unit ("-1 kg m-3") would make amounts negative.
+    if (!conversion.has_value() || conversion->offset != 0.0 || conversion->scale < 0.0) {
+      return false;
+    }
     quantity->quantity = as;
     quantity->scale = conversion->scale;
     return true;
@@ -319,7 +322,7 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
   const auto use = [&](std::string_view unit) {
     if (HasNoUnits(variable.units)) return true;
     const std::optional<UnitConversion> conversion = ConversionOf(variable.units, unit);
-    if (!conversion.has_value()) return false;
+    if (!conversion.has_value() || conversion->scale < 0.0) return false;
     air.scale = conversion->scale;
     air.offset = conversion->offset;
     return true;

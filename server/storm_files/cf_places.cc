@@ -111,10 +111,7 @@ absl::StatusOr<std::optional<PlaceArrays>> ReadPlaceArrays(const netcdf::NetcdfF
   const auto [west, east] = std::ranges::minmax(arrays.longitude_deg);
   if (low == high && west == east) return std::optional<PlaceArrays>();
   for (std::size_t i = 0; i < arrays.latitude_deg.size(); ++i) {
-    // The comparison fails for NaN.
-    if (std::abs(arrays.latitude_deg[i]) <= 90.0F && std::abs(arrays.longitude_deg[i]) <= 720.0F) {
-      continue;
-    }
+    if (IsPlaceOnEarth(arrays.latitude_deg[i], arrays.longitude_deg[i])) continue;
     return absl::InvalidArgumentError(
         absl::StrCat(file.Path(), ": ", latitude->name, " and ", longitude->name,
                      " have missing or impossible values; every column needs its place"));

@@ -92,8 +92,15 @@ absl::StatusOr<std::vector<float>> CfSource::ReadScaled(const CfVariable& variab
                                                         double offset) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> values, ReadOrdered(variable, metadata_.order));
   if (scale == 1.0 && offset == 0.0) return values;
-  for (float& value : values) value = static_cast<float>(value * scale + offset);
-  return values;
+  bool overflows = false;
+  for (float& value : values) {
+    value = static_cast<float>(value * scale + offset);
+    overflows = overflows || std::isinf(value);
+  }
+  if (!overflows) return values;
+  return absl::InvalidArgumentError(absl::StrCat(
+      metadata_.path, ": ", variable.name, " of record ", domain_.record,
+      " has a value that no quantity has, because of its units; correct its attribute units"));
 }
 
 // Returns one value for each column.

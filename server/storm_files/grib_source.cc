@@ -130,6 +130,8 @@ class GribSource final : public LayerSource {
   absl::StatusOr<Values> SurfacePressure();
   absl::StatusOr<Values> LevelHeights();
   absl::StatusOr<Values> Vapour(const Values& pressure_Pa, const Values& temperature_K);
+  // Returns the temperatures, with NaN in place of impossible ones.
+  absl::StatusOr<Values> Temperature_K();
   absl::StatusOr<Values> VirtualTemperature();
   absl::StatusOr<Values> IsobaricInterfaces();
   absl::StatusOr<Values> Ascent();
@@ -275,10 +277,16 @@ absl::StatusOr<Values> GribSource::Vapour(const Values& pressure_Pa, const Value
   return vapour;
 }
 
+absl::StatusOr<Values> GribSource::Temperature_K() {
+  THUNDERHEAD_ASSIGN_OR_RETURN(Values temperature_K, Read(layers_.temperature));
+  LeaveOutImpossibleTemperatures(temperature_K);
+  return temperature_K;
+}
+
 absl::StatusOr<LayerState> GribSource::Air() {
   LayerState state;
   THUNDERHEAD_ASSIGN_OR_RETURN(state.pressure_Pa, Pressure());
-  THUNDERHEAD_ASSIGN_OR_RETURN(state.temperature_K, Read(layers_.temperature));
+  THUNDERHEAD_ASSIGN_OR_RETURN(state.temperature_K, Temperature_K());
   THUNDERHEAD_ASSIGN_OR_RETURN(state.vapour_kg_per_kg,
                                Vapour(state.pressure_Pa, state.temperature_K));
   return state;
@@ -346,7 +354,7 @@ absl::StatusOr<LayerAmounts> GribSource::Amounts(std::size_t field) {
     THUNDERHEAD_ASSIGN_OR_RETURN(amounts.sizes, Read(hydrometeor.numbers));
   }
   if (!hydrometeor.is_split) return amounts;
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Values temperature_K, Read(layers_.temperature));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const Values temperature_K, Temperature_K());
   for (std::size_t i = 0; i < temperature_K.size(); ++i) {
     const float ice = IceShare(temperature_K[i]);
     amounts.amounts[i] *= hydrometeor.hydrometeor == Hydrometeor::kIce ? ice : 1.0F - ice;

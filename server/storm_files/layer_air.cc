@@ -15,9 +15,17 @@ constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 // Comparisons with these bounds fail for NaN. The bounds are far outside any atmosphere and catch
 // fill codes like -999.
 constexpr float kHighestPressure_Pa = 1e6F;
-constexpr float kHighestTheta_K = 1e5F;
 constexpr float kHighestDensity_kg_per_m3 = 100.0F;
 constexpr float kLowestVapour = -0.5F;  // advection can make values slightly negative
+
+// Returns the temperature of cell `i`, or NaN if it is missing or impossible.
+double TemperatureAt(const LayerState& state, std::size_t i) {
+  const double temperature_K =
+      state.temperature_K.empty()
+          ? physics::Temperature_K(state.potential_temperature_K[i], state.pressure_Pa[i])
+          : static_cast<double>(state.temperature_K[i]);
+  return IsAirTemperature(temperature_K) ? temperature_K : static_cast<double>(kMissing);
+}
 
 // Returns the density of dry air in cell `i`, or NaN.
 float DensityAt(const LayerState& state, std::size_t i) {
@@ -30,17 +38,23 @@ float DensityAt(const LayerState& state, std::size_t i) {
     return usable ? density / (1.0F + q_v) : kMissing;
   }
   const float pressure_Pa = state.pressure_Pa[i];
-  const bool potential = state.temperature_K.empty();
-  const float given_K = potential ? state.potential_temperature_K[i] : state.temperature_K[i];
-  const bool usable = pressure_Pa > 0.0F && pressure_Pa < kHighestPressure_Pa && given_K > 0.0F &&
-                      given_K < kHighestTheta_K;
-  if (!usable) return kMissing;
-  const double temperature_K =
-      potential ? physics::Temperature_K(given_K, pressure_Pa) : static_cast<double>(given_K);
+  if (!(pressure_Pa > 0.0F && pressure_Pa < kHighestPressure_Pa)) return kMissing;
+  const double temperature_K = TemperatureAt(state, i);
+  if (std::isnan(temperature_K)) return kMissing;
   return static_cast<float>(physics::DryAirDensity_kg_per_m3(pressure_Pa, temperature_K, q_v));
 }
 
 }  // namespace
+
+bool IsAirTemperature(double temperature_K) {
+  constexpr double kLowest_K = 100.0;
+  constexpr double kHighest_K = 400.0;
+  return temperature_K >= kLowest_K && temperature_K <= kHighest_K;
+}
+
+void LeaveOutImpossibleTemperatures(std::vector<float>& temperature_K) {
+  for (float& each_K : temperature_K) each_K = IsAirTemperature(each_K) ? each_K : kMissing;
+}
 
 void GeopotentialToHeight(const std::vector<float>& base, std::vector<float>& geopotential) {
   constexpr float kHighest_m = 1e6F;
@@ -86,13 +100,11 @@ std::vector<float> InterfacesBetween(const std::vector<float>& middles_m,
 }
 
 std::vector<float> Temperature(const LayerState& state) {
-  if (!state.temperature_K.empty() || state.potential_temperature_K.empty()) {
-    return state.temperature_K;
-  }
-  std::vector<float> temperature_K(state.pressure_Pa.size());
+  const bool potential = state.temperature_K.empty() && !state.potential_temperature_K.empty();
+  std::vector<float> temperature_K(potential ? state.pressure_Pa.size()
+                                             : state.temperature_K.size());
   for (std::size_t i = 0; i < temperature_K.size(); ++i) {
-    temperature_K[i] = static_cast<float>(
-        physics::Temperature_K(state.potential_temperature_K[i], state.pressure_Pa[i]));
+    temperature_K[i] = static_cast<float>(TemperatureAt(state, i));
   }
   return temperature_K;
 }

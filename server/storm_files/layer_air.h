@@ -44,12 +44,18 @@ struct LayerState {
   std::vector<float> air_density_kg_per_m3;
 };
 
+// Returns whether air can have this temperature: from 100 to 400 K. Returns false for NaN.
+bool IsAirTemperature(double temperature_K);
+
+// Replaces temperatures that air cannot have by NaN.
+void LeaveOutImpossibleTemperatures(std::vector<float>& temperature_K);
+
 // Returns the temperature of every layer, or an empty array if the file has only the density. It
-// is meaningless where the density is NaN.
+// is NaN where it is missing or impossible (IsAirTemperature).
 std::vector<float> Temperature(const LayerState& state);
 
 // Returns the density of dry air in every layer. Reuses the memory of `state`. The density of a
-// layer with missing or unordered interfaces is NaN.
+// layer with missing or unordered interfaces, or with an impossible temperature, is NaN.
 std::vector<float> DryAirDensity(LayerState state, const std::vector<float>& interface_height_m,
                                  std::size_t columns);
 

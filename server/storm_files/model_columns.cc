@@ -38,6 +38,22 @@ void ToMetres(ColumnPlaces& places) {
   places.step = radius_m * glm::radians(places.step);
 }
 
+constexpr double kPole_deg = 90.001;
+
+// Returns an error if the columns of a grid in degrees lie beyond a pole, or so many turns around
+// the Earth that their longitudes lose metres.
+absl::Status CheckDegrees(const ColumnPlaces& places) {
+  constexpr double kMostTurns_deg = 1e6;
+  const glm::dvec2& first = places.first;
+  const glm::dvec2 last = first + glm::dvec2(places.columns - 1) * places.step;
+  const glm::dvec2 farthest = glm::max(glm::abs(first), glm::abs(last));
+  if (farthest.x <= kMostTurns_deg && farthest.y <= kPole_deg) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "the columns lie from %.7g to %.7g degrees north and from %.7g to %.7g degrees east, and "
+      "there are no such places; correct the latitudes and longitudes",
+      first.y, last.y, first.x, last.x));
+}
+
 glm::dvec3 Direction(double latitude_deg, double longitude_deg) {
   const double latitude = glm::radians(latitude_deg);
   const double longitude = glm::radians(longitude_deg);
@@ -46,6 +62,11 @@ glm::dvec3 Direction(double latitude_deg, double longitude_deg) {
 }
 
 }  // namespace
+
+bool IsPlaceOnEarth(double latitude_deg, double longitude_deg) {
+  constexpr double kMostTurns_deg = 720.0;
+  return std::abs(latitude_deg) <= kPole_deg && std::abs(longitude_deg) <= kMostTurns_deg;
+}
 
 // The haversine formula is accurate for short distances too.
 double GreatCircle_m(const volume::EarthPlace& a, const volume::EarthPlace& b, double radius_m) {
@@ -99,6 +120,7 @@ absl::Status ModelColumns::CheckProjected() {
   }
   earth_ = EarthOf(places_.projection);
   if (IsInDegrees(ProjectionWords(places_.projection))) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckDegrees(places_));
     ToMetres(places_);
     const double radius_m = ProjectionWords(places_.projection).Number("R").value_or(0.0);
     pole_m_ = radius_m * glm::radians(90.0);
@@ -127,7 +149,7 @@ absl::Status ModelColumns::CheckListed() const {
   }
   for (std::size_t i = 0; i < count; ++i) {
     const float latitude_deg = places_.latitude_deg[i];
-    if (std::abs(latitude_deg) <= 90.0F && std::isfinite(places_.longitude_deg[i])) continue;
+    if (IsPlaceOnEarth(latitude_deg, places_.longitude_deg[i])) continue;
     const auto width = static_cast<std::size_t>(Count().x);
     return absl::InvalidArgumentError(
         absl::StrCat("the latitude and longitude of column (", i % width, ", ", i / width, ") are ",

@@ -11,6 +11,11 @@
 
 namespace thunderhead::storm_files {
 
+// Returns whether these are a latitude and a longitude. Rounded latitudes may exceed 90 degrees by
+// 0.001. Longitudes may reach 720 degrees, so codes for missing values, such as -999, are none.
+// Returns false for NaN.
+bool IsPlaceOnEarth(double latitude_deg, double longitude_deg);
+
 // Returns the distance between two places on a sphere, along a great circle.
 double GreatCircle_m(const volume::EarthPlace& a, const volume::EarthPlace& b, double radius_m);
 

@@ -122,6 +122,13 @@ std::optional<UnitConversion> ConversionOf(std::string_view from, std::string_vi
   if (converter == nullptr) return std::nullopt;
   const double offset = cv_convert_double(converter.get(), 0.0);
   const double scale = cv_convert_double(converter.get(), 1.0) - offset;
+  // Values times such a factor would be lost: a float holds neither the products nor their
+  // inverses.
+  constexpr double kLargestScale = 1e30;
+  const double size = std::abs(scale);
+  if (!(size >= 1.0 / kLargestScale && size <= kLargestScale) || !std::isfinite(offset)) {
+    return std::nullopt;
+  }
   // A unit in the denominator ("s" for "Hz") gives a converter that is not linear.
   const double two = cv_convert_double(converter.get(), 2.0);
   if (!(std::abs(two - offset - 2.0 * scale) <= 1e-9 * std::abs(scale))) return std::nullopt;

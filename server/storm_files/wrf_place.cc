@@ -11,6 +11,7 @@
 #include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "spdlog/spdlog.h"
+#include "storm_files/model_columns.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -89,6 +90,18 @@ bool IsSame(const volume::EarthPlace& a, const volume::EarthPlace& b) {
          std::abs(std::remainder(a.longitude_deg - b.longitude_deg, 360.0)) < kSamePlace_deg;
 }
 
+// Returns an error if a place has values, and they are no latitude and longitude.
+absl::Status CheckPlace(const netcdf::NetcdfFile& file, const Coordinates& names,
+                        double latitude_deg, double longitude_deg) {
+  if (!IsPlace({latitude_deg, longitude_deg}) || IsPlaceOnEarth(latitude_deg, longitude_deg)) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "%s: %s and %s place the domain at %.7g degrees north and %.7g degrees east, and there is no "
+      "such place; correct them",
+      file.Path(), names.latitude, names.longitude, latitude_deg, longitude_deg));
+}
+
 absl::StatusOr<std::vector<volume::EarthPlace>> PlacesAt(const netcdf::NetcdfFile& file,
                                                          const WrfLayout& layout,
                                                          const Coordinates& names,
@@ -99,6 +112,7 @@ absl::StatusOr<std::vector<volume::EarthPlace>> PlacesAt(const netcdf::NetcdfFil
                                MiddlesOf(file, layout, names.longitude, record, count));
   std::vector<volume::EarthPlace> places;
   for (std::size_t i = 0; i < count; ++i) {
+    THUNDERHEAD_RETURN_IF_ERROR(CheckPlace(file, names, latitudes_deg[i], longitudes_deg[i]));
     places.push_back({latitudes_deg[i], std::remainder(longitudes_deg[i], 360.0)});
   }
   return places;
@@ -187,6 +201,10 @@ absl::StatusOr<WrfPlace> ReadWrfPlace(const netcdf::NetcdfFile& file, const WrfL
   const std::optional<Coordinates> names = FindCoordinates(file, layout);
   if (!names.has_value()) {
     const std::optional<volume::EarthPlace> middle = PlaceOfAttributes(file, layout);
+    if (middle.has_value()) {
+      THUNDERHEAD_RETURN_IF_ERROR(
+          CheckPlace(file, {"CEN_LAT", "CEN_LON"}, middle->latitude_deg, middle->longitude_deg));
+    }
     if (!middle.has_value()) return unknown("the file has no XLAT and XLONG");
     TakePlace(file, *middle, place);
     if (place.idealised) return place;

@@ -209,6 +209,35 @@ TEST_F(GribStormTest, ReadsAWholeFile) {
   EXPECT_NEAR(PathAt(*fields, 1, 0), mass * 8 / 16384, 0.002 * mass * 8 / 16384);
 }
 
+// Air has from 100 to 400 K. In other levels, the cells are missing.
+TEST_F(GribStormTest, LeavesOutImpossibleTemperatures) {
+  Layout layout;
+  layout.edit = [](Message& message) {
+    if (Is(message, 0, 0, 2)) message.values = {2000.0F};
+    return true;
+  };
+  const auto file = Describe(layout);
+  ASSERT_TRUE(file.ok()) << file.status();
+  const auto fields = file->reader->Read(0, std::nullopt, {});
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ(fields->fields[0].statistics.missing_cells, 4);
+  const double mass = (90'000.0 * 1100 + 70'000.0 * 1000 + 60'000.0 * 1000) / (287.0 * 280.0);
+  EXPECT_NEAR(PathAt(*fields, 0, 0), mass * 16 / 16384, 0.002 * mass * 16 / 16384);
+  EXPECT_THAT(ErrorWith([](Message& message) {
+                if (message.category == 0) message.values = {2000.0F};
+                return true;
+              }),
+              HasSubstr("of record 0 give no usable air density"));
+}
+
+TEST_F(GribStormTest, RefusesLatitudesBeyondThePoles) {
+  Layout layout;
+  layout.grid.first_latitude = 92'000'000;
+  const auto file = Describe(layout);
+  ASSERT_FALSE(file.ok());
+  EXPECT_THAT(ErrorOf(file), HasSubstr("its grid reaches beyond a pole"));
+}
+
 // The same file with rows from north to south has its rows in the other order.
 TEST_F(GribStormTest, RowsRunNorthwards) {
   Layout layout;

@@ -262,6 +262,33 @@ TEST_F(CfUnsaid, AGridMappingThatContradictsTheOriginIsNotUsed) {
   EXPECT_THAT(info_.assumptions, Contains(HasSubstr("which the grid mapping contradicts")));
 }
 
+// A field may name several grid mappings, each with the coordinates that it maps (CF 1.8, 5.6).
+TEST_F(CfUnsaid, TheGridMappingIsThatOfItsAxes) {
+  SyntheticCf file = Water();
+  file.variables.push_back(
+      OfOneValue("wgs", {}, {{"grid_mapping_name", "latitude_longitude"}}, 0.0));
+  file.variables.push_back(
+      OfOneValue("map", {}, {{"grid_mapping_name", "polar_stereographic"}}, 0.0));
+  file.number_attributes["map"] = {{"latitude_of_projection_origin", 90.0},
+                                   {"straight_vertical_longitude_from_pole", 30.0},
+                                   {"scale_factor_at_projection_origin", 1.0},
+                                   {"earth_radius", 6'371'000.0}};
+  for (std::size_t i = 0; i < 6; ++i)
+    file.coordinates[0].values[i] = -2500.0 + 1000.0 * static_cast<double>(i);
+  for (std::size_t i = 0; i < 4; ++i)
+    file.coordinates[1].values[i] = -1e6 - 1500.0 + 1000.0 * static_cast<double>(i);
+  for (const char* mapping : {"wgs: lat lon map: x y", "map: x y wgs: lat lon", "map: y x", "map",
+                              "lost: lat lon map: x y"}) {
+    file.variables[0].attributes["grid_mapping"] = mapping;
+    EXPECT_NE(MustRead(file), nullptr);
+    // The middle is 1000 km from the pole, along the map's vertical meridian.
+    const double from_pole_deg =
+        2.0 * std::atan(1e6 / 2.0 / 6'371'000.0) * 180.0 / std::numbers::pi;
+    EXPECT_NEAR(info_.latitude_deg.value_or(0.0), 90.0 - from_pole_deg, 1e-3) << mapping;
+    EXPECT_NEAR(info_.longitude_deg.value_or(0.0), 30.0, 1e-3) << mapping;
+  }
+}
+
 // The density follows from the pressure of the levels.
 TEST_F(CfUnsaid, LevelsInUnitsOfPressureAreThePressure) {
   for (const char* name : {"level", "pressure", "isobaric"}) {

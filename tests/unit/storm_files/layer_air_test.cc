@@ -34,6 +34,15 @@ TEST(DryAirDensity, IsMissingWhereAnythingItNeedsIs) {
   EXPECT_TRUE(std::isnan(DryAirDensity({{80'000}, {-699}, {0.01F}}, {0, 100}, 1)[0]));
 }
 
+TEST(AirTemperature, IsFrom100To400Kelvin) {
+  const LayerState given{{}, {}, {}, {99.9F, 100.0F, 400.0F, 400.1F, kMissingAir}};
+  EXPECT_THAT(Temperature(given), ElementsAre(IsNan(), 100.0F, 400.0F, IsNan(), IsNan()));
+  // At 100 hPa, a potential temperature of 500 K is one of 500 * 0.1^(2/7) = 258.974 K.
+  const LayerState potential{{10'000, 10'000, 90'000}, {500, 900, 500}, {}};
+  EXPECT_THAT(Temperature(potential),
+              ElementsAre(::testing::FloatNear(258.974F, 0.01F), IsNan(), IsNan()));
+}
+
 TEST(DryAirDensity, TakesVapourThatUndershootsAsZero) {
   EXPECT_EQ(DryAirDensity({{80'000}, {310}, {-1e-9F}}, {0, 100}, 1)[0],
             DryAirDensity({{80'000}, {310}, {0.0F}}, {0, 100}, 1)[0]);

@@ -1,0 +1,191 @@
+// Tests of values that no quantity has, in CF and WRF files: factors of units and packing, air
+// temperatures, and places on Earth. Each is refused by name, or its cells are missing.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netcdf.h>
+
+#include <array>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/unit/storm_files/cf_file_test.h"
+#include "tests/unit/storm_files/wrf_kind_test.h"
+
+namespace thunderhead::storm_files {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::SyntheticCf;
+using testing::SyntheticWrf;
+
+// Returns cloud water of 1e-3 in the lowest of 4 layers of 500 m, on 6 x 4 columns of 1 km.
+SyntheticCf WaterIn(const std::string& units = "kg m-3") {
+  SyntheticCf file = testing::ExtinctionFile(6, 4, 4, 1000.0, 1000.0, 500.0, {});
+  file.variables[0] = {"qc", {"z", "y", "x"}, {{"units", units}}, [](const Index& at) {
+                         return at.at("z") == 0 ? 1e-3 : 0.0;
+                       }};
+  return file;
+}
+
+// Returns a mixing ratio with air of 900 hPa and of the temperature that `kelvin` returns.
+SyntheticCf InAir(std::function<double(const Index&)> kelvin, const std::string& units = "K") {
+  SyntheticCf file = WaterIn("kg kg-1");
+  const std::vector<std::string> on = {"z", "y", "x"};
+  file.variables.push_back(
+      OfOneValue("p", on, {{"units", "Pa"}, {"standard_name", "air_pressure"}}, 90'000.0));
+  file.variables.push_back(
+      {"ta", on, {{"units", units}, {"standard_name", "air_temperature"}}, std::move(kelvin)});
+  return file;
+}
+
+// Returns cloud water on longitudes and latitudes 0.01 degrees apart.
+SyntheticCf InDegrees(double west_deg, double south_deg) {
+  SyntheticCf file = WaterIn();
+  const auto axis = [](const std::string& name, std::size_t count, double first_deg,
+                       const std::string& units) {
+    testing::CfCoordinate coordinate{name, {}, {{"units", units}}, {}};
+    for (std::size_t i = 0; i < count; ++i) {
+      coordinate.values.push_back(first_deg + 0.01 * static_cast<double>(i));
+    }
+    return coordinate;
+  };
+  file.coordinates[0] = axis("lon", 6, west_deg, "degrees_east");
+  file.coordinates[1] = axis("lat", 4, south_deg, "degrees_north");
+  file.variables[0].dimensions = {"z", "lat", "lon"};
+  return file;
+}
+
+using ImpossibleCfValues = CfFileTest;
+using ImpossibleWrfValues = WrfKindTest;
+
+TEST_F(ImpossibleCfValues, UnitsNeedAFactorAboveZero) {
+  for (const char* units :
+       {"1e300 kg m-3", "1e-300 kg m-3", "-1 kg m-3", "0 kg m-3", "-1 g kg-1"}) {
+    ExpectError(WaterIn(units), std::string("qc has units '") + units + "'");
+  }
+  ASSERT_TRUE(Read(WaterIn("1e-3 kg m-3")).ok());
+}
+
+// The factor itself is possible, but not the values in kg m-3.
+TEST_F(ImpossibleCfValues, UnitsMustNotMakeValuesInfinite) {
+  SyntheticCf file = WaterIn("1e25 kg m-3");
+  file.variables[0].value = [](const Index&) { return 1e20; };
+  ExpectError(file, "qc of record 0 has a value that no quantity has, because of its units");
+}
+
+TEST_F(ImpossibleCfValues, AmountsNeedAScaleFactorAboveZero) {
+  SyntheticCf file = WaterIn();
+  for (const double factor : {0.0, -1.0}) {
+    file.number_attributes["qc"]["scale_factor"] = factor;
+    ExpectError(file, factor == 0.0 ? "qc has the scale_factor 0," : "qc has the scale_factor -1,");
+  }
+  file.number_attributes["qc"]["scale_factor"] = 0.5;
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_FLOAT_EQ((*fields)->fields[0].statistics.maximum, 0.5e-3F);
+}
+
+// Cells with an impossible temperature are missing. The others keep their density.
+TEST_F(ImpossibleCfValues, AirHasFrom100To400Kelvin) {
+  const auto fields = Read(InAir([](const Index& at) {
+    constexpr std::array kKelvin = {280.0, 2000.0, 401.0, 99.0, 400.0, 100.0};
+    return kKelvin[at.at("x")];
+  }));
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  const volume::HydrometeorField& field = (*fields)->fields[0];
+  EXPECT_EQ(field.statistics.missing_cells, 3 * 4 * 4);
+  constexpr double kGas = 287.0;
+  const volume::RegularGrid& grid = (*fields)->grid;
+  const auto at = [&](int x) { return field.concentration_kg_per_m3[grid.Offset(x, 0, 0)]; };
+  EXPECT_NEAR(at(0), 1e-3 * 90'000.0 / (kGas * 280.0), 1e-6);
+  for (const int x : {1, 2, 3}) EXPECT_EQ(at(x), 0.0F) << x;
+  EXPECT_NEAR(at(4), 1e-3 * 90'000.0 / (kGas * 400.0), 1e-6);
+  EXPECT_NEAR(at(5), 1e-3 * 90'000.0 / (kGas * 100.0), 1e-5);
+}
+
+TEST_F(ImpossibleCfValues, AFileOfImpossibleTemperaturesIsRefused) {
+  ExpectError(InAir([](const Index&) { return 2000.0; }), "of record 0 give no usable air density");
+  ExpectError(InAir([](const Index&) { return 280.0; }, "-1 K"), "ta has units '-1 K'");
+}
+
+TEST_F(ImpossibleCfValues, LatitudesEndAtThePoles) {
+  ExpectError(InDegrees(10.0, 89.98), "89.98 to 90.01 degrees north");
+  ExpectError(InDegrees(10.0, -90.02), "-90.02 to -89.99 degrees north");
+  ExpectError(InDegrees(10.0, 200.0), "200 to 200.03 degrees north");
+  // The last row is at the pole, or beyond it by rounding.
+  for (const double rounding_deg : {0.0, 0.0005}) {
+    const auto fields = Read(InDegrees(10.0, 89.97 + rounding_deg));
+    EXPECT_TRUE(fields.ok()) << fields.status();
+  }
+}
+
+TEST_F(ImpossibleCfValues, LongitudesHaveTheirLimit) {
+  ExpectError(InDegrees(360e9, 50.0), "degrees east");
+  const auto fields = Read(InDegrees(3600.0, 50.0));
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_NEAR(info_.longitude_deg.value(), 0.025, 1e-6);
+}
+
+// The places of all columns may be rounded, too.
+TEST_F(ImpossibleCfValues, PlacesOfColumnsEndAtThePoles) {
+  const auto with_places = [](double south_deg, double west_deg) {
+    SyntheticCf file = WaterIn();
+    for (testing::CfCoordinate& each : file.coordinates) each.written = each.name == "z";
+    file.variables.push_back({"lon", {"y", "x"}, {{"units", "degrees_east"}}, [=](const Index& at) {
+                                return west_deg + 10.0 * static_cast<double>(at.at("x"));
+                              }});
+    file.variables.push_back(
+        {"lat", {"y", "x"}, {{"units", "degrees_north"}}, [=](const Index& at) {
+           return south_deg + 0.01 * static_cast<double>(at.at("y"));
+         }});
+    return file;
+  };
+  EXPECT_TRUE(Read(with_places(89.9705, 10.0)).ok());
+  ExpectError(with_places(89.98, 10.0), "lat and lon have missing or impossible values");
+  ExpectError(with_places(50.0, -999.0), "lat and lon have missing or impossible values");
+}
+
+TEST_F(ImpossibleWrfValues, AirHasFrom100To400Kelvin) {
+  SyntheticWrf file = Cloud();
+  file.potential_temperature_at_K = [](const testing::WrfCell& cell) {
+    return cell.level == 1 ? 5000.0 : 310.0;
+  };
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ(fields->fields[0].statistics.missing_cells, 4 * 3);
+  EXPECT_NEAR(ColumnPath(*fields, 0, 0, 0), 7 * 500.0 * 1e-3 * kDryDensity_kg_per_m3, 1e-3);
+  file.potential_temperature_at_K = [](const testing::WrfCell&) { return 5000.0; };
+  EXPECT_THAT(Message(file), HasSubstr("give no usable air density"));
+}
+
+TEST_F(ImpossibleWrfValues, ScaleFactorsAreAboveZero) {
+  testing::WriteWrf(Cloud(), path_);
+  int file = -1;
+  int variable = -1;
+  const double factor = -1.0;
+  ASSERT_EQ(nc_open(path_.c_str(), NC_WRITE, &file), NC_NOERR);
+  ASSERT_EQ(nc_inq_varid(file, "QCLOUD", &variable), NC_NOERR);
+  ASSERT_EQ(nc_put_att_double(file, variable, "scale_factor", NC_DOUBLE, 1, &factor), NC_NOERR);
+  ASSERT_EQ(nc_close(file), NC_NOERR);
+  EXPECT_THAT(std::string(StormFormats::BuiltIn().Describe(path_).status().message()),
+              HasSubstr("QCLOUD has the scale_factor -1,"));
+}
+
+TEST_F(ImpossibleWrfValues, LatitudesEndAtThePoles) {
+  SyntheticWrf file = Cloud();
+  file.latitude_deg = 95.0;
+  EXPECT_THAT(Message(file), HasSubstr("XLAT and XLONG place the domain at 95.0"));
+  // Without coordinates, attributes give the place.
+  file = Cloud();
+  file.omitted = {"XLAT", "XLONG"};
+  file.numbers = {{"CEN_LAT", -91.0},
+                  {"CEN_LON", -100.25},
+                  {"WEST-EAST_GRID_DIMENSION", 5.0},
+                  {"SOUTH-NORTH_GRID_DIMENSION", 4.0}};
+  EXPECT_THAT(Message(file), HasSubstr("CEN_LAT and CEN_LON place the domain at -91 degrees"));
+}
+
+}  // namespace
+}  // namespace thunderhead::storm_files
