@@ -224,8 +224,9 @@ TEST_F(StormFormatTest, AFileThatTwoFormatsFitEquallyIsAnError) {
   for (const auto& [path, fit] : files) {
     const auto file = With(std::make_shared<Greedy>(fit)).Describe(path);
     EXPECT_TRUE(absl::IsInvalidArgument(file.status())) << file.status();
-    EXPECT_THAT(std::string(file.status().message()),
-                AllOf(HasSubstr(path), HasSubstr("any netCDF"), HasSubstr("only one of these formats")));
+    EXPECT_THAT(
+        std::string(file.status().message()),
+        AllOf(HasSubstr(path), HasSubstr("any netCDF"), HasSubstr("only one of these formats")));
   }
 }
 
