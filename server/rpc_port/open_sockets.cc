@@ -34,7 +34,7 @@ constexpr std::chrono::seconds kJustUsed{10};
 void Disconnect(int socket) {
   sockaddr nobody{};
   nobody.sa_family = AF_UNSPEC;
-  connect(socket, &nobody, sizeof(nobody));
+  (void)connect(socket, &nobody, sizeof(nobody));
 }
 
 }  // namespace

@@ -96,15 +96,22 @@ absl::Status CheckCellMethods(const netcdf::NetcdfFile& file,
 }
 
 absl::Status CheckScaleFactors(const netcdf::NetcdfFile& file,
-                               const std::vector<std::string>& variables) {
+                               const std::vector<std::string>& variables,
+                               std::vector<std::string>& assumptions) {
   for (const std::string& variable : variables) {
     const std::optional<double> factor = file.NumberAttribute(variable, "scale_factor");
     // Factors that are no number are refused where the values are read.
     if (!factor.has_value() || !(*factor <= 0.0)) continue;
-    return absl::InvalidArgumentError(absl::StrCat(
-        file.Path(), ": ", variable, " has the scale_factor ", *factor,
-        ", and the amounts of a hydrometeor need one above 0; pack the values again, or unpack "
-        "them, for example with ncpdq -U"));
+    const double offset = file.NumberAttribute(variable, "add_offset").value_or(0.0);
+    if (*factor == 0.0) {
+      assumptions.push_back(
+          absl::StrCat(variable, " is ", offset, " everywhere, because its scale_factor is 0."));
+    } else if (!(offset > 0.0)) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          file.Path(), ": ", variable, " has the scale_factor ", *factor,
+          " and no add_offset above 0, so its amounts would be negative; pack the values again, or "
+          "unpack them, for example with ncpdq -U"));
+    }
   }
   return absl::OkStatus();
 }

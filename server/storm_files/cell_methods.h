@@ -31,9 +31,11 @@ absl::Status CheckCellMethods(const netcdf::NetcdfFile& file,
                               const std::vector<std::string>& variables,
                               std::vector<std::string>& assumptions);
 
-// Returns INVALID_ARGUMENT if one of the variables has a scale_factor that is not above 0. Such a
-// factor makes amounts of water 0 or negative.
+// Returns INVALID_ARGUMENT, which names the variable, if packing makes the amounts of a variable
+// negative: its scale_factor is below 0, and its add_offset is not above 0. If a scale_factor is 0,
+// adds a sentence to `assumptions`, because all amounts are then the same.
 absl::Status CheckScaleFactors(const netcdf::NetcdfFile& file,
-                               const std::vector<std::string>& variables);
+                               const std::vector<std::string>& variables,
+                               std::vector<std::string>& assumptions);
 
 }  // namespace thunderhead::storm_files

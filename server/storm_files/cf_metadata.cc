@@ -141,7 +141,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
     }
     fields.push_back({std::move(arranged), quantity});
   }
-  THUNDERHEAD_RETURN_IF_ERROR(CheckScaleFactors(file, used));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckScaleFactors(file, used, metadata->assumptions));
   THUNDERHEAD_RETURN_IF_ERROR(CheckCellMethods(file, used, metadata->assumptions));
   AddMixtures(mixtures, metadata);
   const auto extinction = std::ranges::find_if(fields, [](const CfField& field) {

@@ -246,7 +246,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
     found.push_back(variable);
     metadata.variables[physics::IndexOf(hydrometeor)] = variable;
   }
-  THUNDERHEAD_RETURN_IF_ERROR(CheckScaleFactors(file, found));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckScaleFactors(file, found, metadata.assumptions));
   THUNDERHEAD_RETURN_IF_ERROR(CheckCellMethods(file, found, metadata.assumptions));
   THUNDERHEAD_RETURN_IF_ERROR(FindMoreIce(file, metadata));
   const PhaseSplit split =

@@ -75,14 +75,19 @@ TEST_F(ImpossibleCfValues, UnitsMustNotMakeValuesInfinite) {
   ExpectError(file, "qc of record 0 has a value that no quantity has, because of its units");
 }
 
-TEST_F(ImpossibleCfValues, AmountsNeedAScaleFactorAboveZero) {
+TEST_F(ImpossibleCfValues, APackingMustNotMakeAmountsNegative) {
   SyntheticCf file = WaterIn();
-  for (const double factor : {0.0, -1.0}) {
-    file.number_attributes["qc"]["scale_factor"] = factor;
-    ExpectError(file, factor == 0.0 ? "qc has the scale_factor 0," : "qc has the scale_factor -1,");
-  }
-  file.number_attributes["qc"]["scale_factor"] = 0.5;
-  const auto fields = Read(file);
+  std::map<std::string, double>& packing = file.number_attributes["qc"];
+  packing["scale_factor"] = -1.0;
+  ExpectError(file, "qc has the scale_factor -1 and no add_offset above 0");
+  // Packed numbers may run downwards from an offset.
+  packing["add_offset"] = 3e-3;
+  auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_FLOAT_EQ((*fields)->fields[0].statistics.maximum, 2e-3F);
+  packing["scale_factor"] = 0.5;
+  packing.erase("add_offset");
+  fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_FLOAT_EQ((*fields)->fields[0].statistics.maximum, 0.5e-3F);
 }
@@ -160,17 +165,23 @@ TEST_F(ImpossibleWrfValues, AirHasFrom100To400Kelvin) {
   EXPECT_THAT(Message(file), HasSubstr("give no usable air density"));
 }
 
-TEST_F(ImpossibleWrfValues, ScaleFactorsAreAboveZero) {
-  testing::WriteWrf(Cloud(), path_);
-  int file = -1;
-  int variable = -1;
-  const double factor = -1.0;
-  ASSERT_EQ(nc_open(path_.c_str(), NC_WRITE, &file), NC_NOERR);
-  ASSERT_EQ(nc_inq_varid(file, "QCLOUD", &variable), NC_NOERR);
-  ASSERT_EQ(nc_put_att_double(file, variable, "scale_factor", NC_DOUBLE, 1, &factor), NC_NOERR);
-  ASSERT_EQ(nc_close(file), NC_NOERR);
-  EXPECT_THAT(std::string(StormFormats::BuiltIn().Describe(path_).status().message()),
-              HasSubstr("QCLOUD has the scale_factor -1,"));
+TEST_F(ImpossibleWrfValues, APackingMustNotMakeAmountsNegative) {
+  const auto described = [this](double factor) {
+    testing::WriteWrf(Cloud(), path_);
+    int file = -1;
+    int variable = -1;
+    EXPECT_EQ(nc_open(path_.c_str(), NC_WRITE, &file), NC_NOERR);
+    EXPECT_EQ(nc_inq_varid(file, "QCLOUD", &variable), NC_NOERR);
+    EXPECT_EQ(nc_put_att_double(file, variable, "scale_factor", NC_DOUBLE, 1, &factor), NC_NOERR);
+    EXPECT_EQ(nc_close(file), NC_NOERR);
+    return StormFormats::BuiltIn().Describe(path_);
+  };
+  EXPECT_THAT(std::string(described(-1.0).status().message()),
+              HasSubstr("QCLOUD has the scale_factor -1 and no add_offset above 0"));
+  const auto constant = described(0.0);
+  ASSERT_TRUE(constant.ok()) << constant.status();
+  EXPECT_THAT(Assumptions(*constant),
+              HasSubstr("QCLOUD is 0 everywhere, because its scale_factor is 0."));
 }
 
 TEST_F(ImpossibleWrfValues, LatitudesEndAtThePoles) {
