@@ -109,8 +109,8 @@ std::size_t MemoryBudget::LimitOf(MemoryUse use) const {
 bool MemoryBudget::Take(MemoryUse use, std::size_t bytes) {
   const std::lock_guard lock(counting_);
   const std::size_t used = std::accumulate(used_.begin(), used_.end(), std::size_t{0});
-  // Drawing uses the part of the budget that is reserved for it first. Memory within that part does
-  // not reduce what is left for other uses.
+  // The first kept_for_drawing bytes that drawing uses are in the part that is reserved for
+  // drawing. Other uses cannot have that part, so these bytes do not count against them.
   const std::size_t drawing = used_[IndexOf(MemoryUse::kDrawing)];
   const std::size_t counted =
       use == MemoryUse::kDrawing ? used : used - std::min(drawing, options_.kept_for_drawing);

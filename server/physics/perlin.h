@@ -51,8 +51,9 @@ struct PerlinCorner {
 
 PerlinCorner CornerOf(const PerlinOctave& octave, int cell_x, int y, int z);
 
-// Calls take(texel, noise) for each texel of the row (y, z). The noise is below 2^43: three weights
-// of 12 bits each, a place of 5 bits, and a factor of 4.
+// Calls take(texel, noise) for each texel of the row (y, z). The magnitude of the noise is at most
+// 2^42. The three weights are at most 2^12 each, and distances from a lattice point at most 2^5
+// units. A gradient has two components that are not zero.
 template <typename Take>
 void AddPerlinRow(const PerlinOctave& octave, int y, int z, const Take& take) {
   PerlinCorner low = CornerOf(octave, 0, y, z);

@@ -88,8 +88,8 @@ TurbulenceTile MakeTurbulence(int octaves, std::uint32_t seed) {
                                      static_cast<unsigned>(i);
                      });
       }
-      // The sums are below 2^43: three fades of 12 bits each, a place of 5 bits, and a factor of 4.
-      // The shift makes them fit into 32 bits.
+      // The noise of the first octave is at most 2^42 (AddPerlinRow), and each further octave
+      // counts half, so the sums are below 2^43. The shift makes them fit into 32 bits.
       for (const std::uint64_t sum : row) sums.push_back(static_cast<std::uint32_t>(sum >> 12U));
     }
   }

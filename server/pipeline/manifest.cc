@@ -63,8 +63,8 @@ absl::StatusOr<std::vector<ManifestEntry>> ParseLines(const std::string& path,
   return entries;
 }
 
-// If something other than a regular file with one name is at `path`, describes what it is.
-// Otherwise returns an empty text.
+// Returns what is at `path` if it is not a regular file, or if it is a file with several hard
+// links. Otherwise returns an empty text.
 std::string WhatIsAt(const std::string& path) {
   struct stat found {};
   if (lstat(path.c_str(), &found) != 0) return "";
@@ -86,9 +86,9 @@ absl::Status NotUsable(const std::string& path) {
       absl::StrCat(path, ": the manifest cannot be written (", std::strerror(code), ")"), code);
 }
 
-// Opens a regular file with one name, and nothing else. Another user of the folder could otherwise
-// plant a link to a file or device, or a FIFO. On failure, returns a descriptor that is not open,
-// and sets errno.
+// Opens a regular file with a single hard link, and nothing else. Another user of the folder could
+// otherwise plant a link to a file or device, or a FIFO. On failure, returns a descriptor that is
+// not open, and sets errno.
 base::FileDescriptor OpenOwn(const std::string& path, int flags) {
   base::FileDescriptor file(
       open(path.c_str(), flags | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0666));

@@ -65,8 +65,8 @@ class Manifest {
  public:
   // Opens the manifest, and creates it if it does not exist. Drops an incomplete last line. Returns
   // DATA_LOSS if any other line is not an entry, and UNAVAILABLE if another process holds the
-  // manifest's lock. Returns FAILED_PRECONDITION for anything but a regular file with one name,
-  // such as a link, and for a file of more than 1 GiB. Otherwise returns the errors of
+  // manifest's lock. Returns FAILED_PRECONDITION for anything but a regular file with a single
+  // hard link, and for a file of more than 1 GiB. Otherwise returns the errors of
   // base::WriteProblem.
   static absl::StatusOr<Manifest> Open(const std::string& path, const OtherManifests& others);
   Manifest(Manifest&& other) noexcept;

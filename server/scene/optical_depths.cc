@@ -49,8 +49,9 @@ class DepthRays {
   }
 
  private:
-  // Integration steps in each half cell if the medium has detail. The wavelength of the finest
-  // octave of detail is 3/8 of a cell, which is 1.5 steps.
+  // Integration steps in each half cell if the medium has detail. With the default number of
+  // octaves and the default wavelength, the wavelength of the finest octave is 3/8 of a cell,
+  // or 1.5 steps.
   static constexpr double kDetailSteps = 2.0;
 
   // Integrates the extinction by the midpoint rule with equal steps.

@@ -20,10 +20,11 @@
 namespace thunderhead::scene {
 
 // Turbulent structure finer than the grid (shaders/physics/detail.glsl), which drifts with the
-// wind. It changes the share `share` of the field where the model's air is turbulent. It is drawn
-// if FieldLook::detail of the technique is set. Metaballs instead show the largest share as
-// roughness of their surfaces.
+// wind. It is drawn if FieldLook::detail of the technique is set. Metaballs have rough surfaces
+// instead. Their roughness is the largest share of all drawn fields.
 struct Detail {
+  // How much of the field's extinction the structure changes where the model's air is turbulent,
+  // from 0 (none) to 1 (all).
   float share = 0.0F;
   // Wavelength of the first octave. The value 0 stands for kDetailWavelengthInCells cells of the
   // storm's grid.

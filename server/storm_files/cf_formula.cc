@@ -83,8 +83,10 @@ absl::Status AgreeOnFaces(const netcdf::NetcdfFile& file, const CfParametric& co
   return absl::OkStatus();
 }
 
-// Returns z = a + the sum of b * surface, with a in m. Without bounds, the lowest face is the
-// ground, unless the levels begin far above it, and the highest is flat.
+// Returns the heights z = a + the sum of b * surface, with a in m. If the terms have no bounds, the
+// lowest and the highest face are assumed. The lowest face is the ground, or half a step below the
+// lowest level if that level is far above the ground. The highest face has the same height in all
+// columns, half a step above the highest level.
 absl::StatusOr<CfHeights> LinearHeights(const netcdf::NetcdfFile& file,
                                         const CfParametric& coordinate, CfTermValues a,
                                         std::vector<SurfaceValues> surfaces,

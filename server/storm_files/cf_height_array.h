@@ -1,5 +1,5 @@
 // Finds the array of heights in a CF file, and matches its levels to the layers of the fields by
-// the numbers of both. A file may have a part of the layers with the heights of all.
+// their level numbers. A file may have fields of only some layers, but the heights of all layers.
 #pragma once
 
 #include <initializer_list>
@@ -35,11 +35,13 @@ struct CfHeightArray {
   std::vector<std::string> assumptions;  // sentences about `heights`
 };
 
-// Returns the heights of the layers by an array on the fields' columns. Half levels are preferred
-// to middles. Level k of COSMO and ICON lies between the half levels k and k + 1. An array is not
-// used if its levels cannot be matched, and the error `unread` says why. `dimensions` are those of
-// the fields in `fields`. The array is in `file`, which may be another file. Errors are those of
-// reading the files.
+// Returns the heights of the layers of the fields in `fields`. They are those of an array in
+// `file`, which has the same columns and may be another file. `dimensions` are those of the fields.
+//
+// An array of the faces of layers (half levels) is preferred to one of their middles. Level k of
+// COSMO and ICON lies between the half levels k and k + 1. An array whose levels cannot be matched
+// to the layers is not used, and CfHeightArray::unread says why. Errors are those of reading the
+// files.
 absl::StatusOr<CfHeightArray> FindHeightArray(const netcdf::NetcdfFile& file,
                                               const CfDimensions& dimensions,
                                               const netcdf::NetcdfFile& fields);

@@ -20,9 +20,10 @@ void CutAtGround(const std::vector<double>& level_pressure_Pa, const std::vector
                  const std::vector<float>& surface_pressure_Pa, const std::vector<float>& ground_m,
                  std::vector<float>& interface_height_m);
 
-// Fills in missing heights of isobaric levels from the nearest level that has one, by the
-// hypsometric equation. `has_height` says for each level whether the file has its height. If none
-// has, heights begin with `ground_m` at `surface_pressure_Pa`.
+// Fills in missing heights of isobaric levels by the hypsometric equation. A height is computed
+// from the next lower level, or from the next higher one if no lower level has a height.
+// `has_height` says for each level whether the file has its height. If it has none, heights begin
+// with `ground_m` at `surface_pressure_Pa`.
 void FillHeights(const std::vector<double>& level_pressure_Pa,
                  const std::vector<float>& virtual_temperature_K,
                  const std::vector<bool>& has_height, const std::vector<float>& surface_pressure_Pa,

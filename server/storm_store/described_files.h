@@ -27,8 +27,9 @@ std::vector<absl::StatusOr<storm_files::StormFile>> DescribeBatch(
     const std::vector<std::string>& paths, const storm_files::StormFormats& formats,
     std::chrono::milliseconds patience);
 
-// Describes each of the files. Before each batch, and before each file that needs longer than its
-// batch, `before` is called, and if it returns false, the rest is CANCELLED.
+// Describes each of the files, in batches. If a batch takes too long, each of its files that is not
+// yet described is described alone. `before` is called before each batch and before each file that
+// is described alone. If it returns false, the remaining files get CANCELLED.
 std::vector<absl::StatusOr<storm_files::StormFile>> DescribeInBatches(
     const std::vector<std::string>& paths, const storm_files::StormFormats& formats,
     const std::function<bool()>& before);

@@ -28,15 +28,16 @@ using DetailControl = std::vector<DetailTexel>;  // on the extinction's grid, x 
 
 // Computes the control data of each cell of `volume`.
 //
-// The profile is a binomial mean over 125 cells. It averages a cell's opacity relative to the
-// largest opacity of its neighbours. Empty cells near a cloud have a profile, too, so that the
-// cloud's drawn surface is rounded and does not follow the faces of cells.
+// The profile says how far inside a cloud a cell is. For each cell, its opacity is divided by the
+// largest opacity of the cell and its neighbours. The profile is a binomial mean of these ratios
+// over 5 x 5 x 5 cells. Empty cells near a cloud have a profile, too, so that the cloud's drawn
+// surface is rounded and does not follow the faces of cells.
 //
-// The amplitude is that of the turbulence nearby (AirMotion), reduced where the medium is thin.
-// Cloud water has billows where air rises, because it condenses there. If the air's motion is
-// unknown, all cloud water has billows. Ice has billows in fast updraughts and in strong
-// turbulence. If the turbulence is unknown, opaque ice has billows instead. Other ice has fibres,
-// and rain has neither.
+// The amplitude, the strength of billows or fibres, is that of the turbulence nearby (AirMotion),
+// reduced where the medium is thin. Cloud water has billows where air rises, because it condenses
+// there. If the air's motion is unknown, all cloud water has billows. Ice has billows in fast
+// updraughts and in strong turbulence. If the turbulence is unknown, opaque ice has billows
+// instead. Other ice has fibres, and rain has neither.
 DetailControl DetailControlOf(const HydrometeorFields& fields,
                               const std::vector<ExtinctionTerm>& terms,
                               const ExtinctionVolume& volume);

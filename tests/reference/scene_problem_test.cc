@@ -183,10 +183,9 @@ TEST(MediumOf, ModesChoosePhaseAndColor) {
   EXPECT_EQ(medium->ScatteringAt(cloud_m, 0.5).weight, glm::dvec3(cloud.false_color));
 }
 
-// Without a medium, the shaded ground is as bright as the uniform ground that the renderers draw.
-// Both are seen through the same air. The sky of the uniform ground is a sum over 2048 directions:
-// 0.3 %. Light scattered by less than 3 degrees is nearly unscattered. Away from the sun the
-// picture therefore stays the same, while extinction falls by the share cut off.
+// MediumOptions::peak_cut_deg cuts off the forward peak of the phase function within this angle,
+// and the light of the peak counts as unscattered. Away from the sun the picture stays the same.
+// The extinction decreases by the share of the light that is cut off.
 TEST(MediumOf, ACutPeakLeavesThePicture) {
   const volume::HydrometeorFields fields = SmallStorm();
   scene::Scene scene = test_support::PlainScene();
@@ -233,6 +232,9 @@ TEST(MediumOf, ACutPeakLeavesThePicture) {
                0.005 * whole.value, 0.02 * whole.value);
 }
 
+// Without a medium, the shaded ground is as bright as the uniform ground that the renderers draw.
+// Both are seen through the same air. The tolerance is 0.3 %, because the skylight on the uniform
+// ground is a sum over 1152 directions.
 TEST(SurroundingsOf, ShadedGroundWithoutCloudsIsUniform) {
   volume::HydrometeorFields fields = SmallStorm();
   fields.fields.clear();

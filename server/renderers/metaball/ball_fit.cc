@@ -18,8 +18,9 @@ namespace {
 // larger than cells, and the cost of a fit grows with the number of cells.
 constexpr double kMaxFittedCells = 2e6;
 
-// The paper's parameter u. A larger value fits more closely. However, balls then extend farther
-// beyond the cloud's edge, which makes drawing slower (docs/performance.md).
+// FitOptions::overlap, the parameter u of Man's eq. 16 (clouds/metaballs.h). A larger value fits
+// more closely. However, balls then extend farther beyond the cloud's edge, which makes drawing
+// slower (docs/performance.md).
 constexpr double kOverlap = 2.0;
 
 glm::ivec3 CoarseningForFit(const volume::HydrometeorFields& fields) {

@@ -43,8 +43,8 @@ void LookingAround::LookFrom(std::uint64_t look, const scene::Camera& camera, co
 
 std::shared_ptr<session::Session> LookingAround::Drawn(const std::function<bool()>& follows) {
   std::shared_ptr<session::OwnView> closed;  // destroyed after the mutex is released
-  // The check and the exchange happen under one lock, so that a person who detaches again meanwhile
-  // keeps the new view.
+  // The check and the exchange happen under one lock. Otherwise a person who leaves the session's
+  // view again between the two would lose the new view.
   const std::lock_guard lock(mutex_);
   if (view_ != nullptr && follows()) closed = std::exchange(view_, nullptr);
   return view_ == nullptr ? nullptr : view_->drawn();

@@ -50,8 +50,8 @@ void ToMessage(const scene::ViewRay& ray, const scene::StormRay& storm_ray,
                const scene::RayProbe& probe, const StormPlaces& places,
                v1::ProbeRayResponse& message);
 
-// Sets all fields except the storm, its time, the list of added fields, their unit, the projection
-// and the table of places.
+// Sets all members of the message except `storm_id`, `time_index`, `fields`, `units`, `projection`
+// and `places`.
 void ToMessage(const volume::StormMap& map, const StormPlaces& places,
                v1::GetStormMapResponse& message);
 

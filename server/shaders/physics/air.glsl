@@ -77,9 +77,10 @@ PHYSICS_FUNCTION vec3 depth_of_air(float turbidity, vec2 densities, AirPath path
                                 equivalent_m(kHazeScaleHeight_m, densities.y, path) / kHazeScaleHeight_m));
 }
 
-// Returns the light that air with this transmittance sends to the eye. In the same direction, the clear sky has the
-// radiance `sky` and the optical depth `sky_depth`, which ends at the ground or outside the atmosphere. The air's light
-// is proportional to the light that the air removes, even beyond `sky_depth`.
+// Returns the light that the air between the eye and an object sends to the eye. `transmittance` is that of this air.
+// `sky` and `sky_depth` are the radiance and the optical depth of the clear sky in the same direction, up to the ground
+// or to the top of the atmosphere. The air's light is proportional to 1 - transmittance, even if the air's optical
+// depth exceeds `sky_depth`.
 PHYSICS_FUNCTION vec3 airlight_before(vec3 transmittance, vec3 sky, vec3 sky_depth) {
   return sky * (vec3(1.0f) - transmittance) / max(vec3(1.0f) - exp(-sky_depth), vec3(1e-6f));
 }

@@ -79,7 +79,7 @@ TEST_F(CorrectionFitTest, FactorsFollowPlaceAndDirection) {
 
 TEST_F(CorrectionFitTest, NoiseIsAveragedOverMoreThanATexel) {
   // There are 50 rays per texel, and a ray's noise has a standard deviation of twice its value. A
-  // factor fitted to one texel alone would have an error of 0.28.
+  // factor fitted to one texel alone would have a relative error of 0.28.
   AddRays(
       50 * 1024, [](const auto&, const auto&) { return glm::dvec3(1.4); }, 1.0);
   double squares = 0.0;

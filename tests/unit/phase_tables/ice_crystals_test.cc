@@ -191,8 +191,9 @@ TEST(IceDiffraction, CarriesTheShadowsEnergyAndItsSquareForward) {
     // One per cent of the energy is lost beyond 90 degrees and by the obliquity factor. Noise may
     // be another per cent.
     EXPECT_NEAR(light.energy()[c] / (kOrientations * area), 1.0, 0.02);
-    // In the forward direction all of the shadow is in phase: k^2 / (4 pi^2) A^2, times 4 pi over
-    // the mean A.
+    // In the forward direction, the waves from all points of a shadow with the area A are in phase.
+    // The diffracted light per steradian is k^2 A^2 / (4 pi^2). The phase function is the mean of
+    // this over all orientations, multiplied by 4 pi and divided by the mean of A.
     const double k = 2.0 * kPi / kWavelengthsUm[c];
     EXPECT_NEAR(light.Values().front()[c] / (k * k / kPi * square / area), 1.0, 0.05);
   }

@@ -40,8 +40,8 @@ TEST(Hydrometeors, MassExtinctionIsNearPublishedTables) {
 TEST(Hydrometeors, EffectiveRadiusFromTheMassOfAMeanParticle) {
   // 1e-11 kg of water is a sphere of 13.365 um: a kilogram of air with 1 g in 1e8 droplets.
   EXPECT_NEAR(EffectiveRadius_m(Hydrometeor::kCloud, 1e-11F), 1.1157 * 13.365e-6, 1e-9);
-  // The drop measures 1 mm. The effective radius of an exponential distribution is 3/2 of its mean
-  // diameter.
+  // A sphere of water of this mass has a radius of 1 mm. An exponential distribution with this mean
+  // mass has a mean diameter of 1.1006 mm, and its effective radius is 3/2 of its mean diameter.
   const double mass_kg = 4.18879e-6;
   EXPECT_NEAR(EffectiveRadius_m(Hydrometeor::kRain, static_cast<float>(mass_kg)), 1.651e-3, 1e-6);
   const double snow_m = EffectiveRadius_m(Hydrometeor::kSnow, static_cast<float>(mass_kg));

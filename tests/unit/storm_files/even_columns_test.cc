@@ -270,8 +270,8 @@ TEST(EvenColumns, TurnsListedColumnsNorthUp) {
   EXPECT_EQ(EastNorthAlongEvenAxes(*even, {3.0, 4.0}), glm::dvec2(3.0, 4.0));
 }
 
-// Returns the least and the largest length on a map as a share of the true length, by one-column
-// steps of a model all over its domain.
+// Returns the least and the largest scale of a map, which is a length on it divided by the true
+// length. The lengths are steps of 0.01 columns from 40 x 40 places all over the model's domain.
 std::pair<double, double> ScalesOn(const std::string& projection, const Model& model) {
   const auto map = volume::MapProjection::Open(projection);
   EXPECT_TRUE(map.ok()) << map.status();
