@@ -103,7 +103,10 @@ TEST_F(ImageProgressTest, ProgressRisesAndThePictureIsTheLastEvent) {
   PictureCall call(service_, RequestWith(v1::TRACED_LIGHT_AWAITED));
   TraceStep(milliseconds(50));
   ASSERT_TRUE(call.Await(1));
-  for (int step = 0; step < 9; ++step) TraceStep(milliseconds(50));
+  // The next progress is due 200 ms after the first. The picture must not come before it.
+  for (int step = 0; step < 4; ++step) TraceStep(milliseconds(50));
+  ASSERT_TRUE(call.Await(2));
+  for (int step = 0; step < 5; ++step) TraceStep(milliseconds(50));
   const grpc::Status end = call.End();
   ASSERT_TRUE(end.ok()) << end.error_message();
   const Events& events = call.AllEvents();

@@ -61,7 +61,7 @@ void DrawQuality(Ui& ui, v1::Preset preset) {
 void DrawGoal(Ui& ui) {
   int goal = ui.state.scene.accuracy().limit_case();
   if (Choice("Accuracy",
-             {{v1::Accuracy::LIMIT_NOT_SET, "Same as the quality above"},
+             {{v1::Accuracy::LIMIT_NOT_SET, "Same as the quality"},
               {v1::Accuracy::kMaxError, "At most this error"},
               {v1::Accuracy::kMaxMilliseconds, "At most this time per frame"}},
              goal)) {

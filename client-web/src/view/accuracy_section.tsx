@@ -22,7 +22,7 @@ import { Choice, Section, Slider } from "./controls";
 type Goal = "none" | "maxError" | "maxMilliseconds";
 
 const GOALS = [
-  ["none", "Same as the quality above"],
+  ["none", "Same as the quality"],
   ["maxError", "At most this error"],
   ["maxMilliseconds", "At most this time per frame"],
 ] as const;
