@@ -93,7 +93,7 @@ TEST(PhaseTable, MalformedTextsAreRefusedWithTheReason) {
       {"wavelengths_um", "wavelength", "line 3: wavelengths_um and 3 numbers"},
       {"asymmetry 0 0 0", "asymmetry 0 0", "line 4"},
       {"asymmetry 0 0 0", "asymmetry 0.5 0 0", "asymmetry 0.5"},
-      {"forward_share 5", "forward_share 4", "it must be of 5"},
+      {"forward_share 5", "forward_share 4", "it must be within 5 degrees"},
       {"forward_share 5 0.0019026", "forward_share 5 0.9", "forward share 0.9"},
       {"angles 3", "angles 4", "4 numbers expected, got 0 words"},
       {"angles 3", "angles 2", "more than the 2 angles"},
