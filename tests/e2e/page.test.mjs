@@ -539,7 +539,7 @@ test("an accuracy asked for is reached by a setting that the server picks, or th
   assert.equal(await page.getByTestId("accuracy-unmet").count(), 0);
   await screenshot("10-accuracy");
   await ask(0.001);
-  assert.match(await page.getByTestId("accuracy-unmet").innerText(), /no setting reaches an error of 0.001 .*the best has/);
+  assert.match(await page.getByTestId("accuracy-unmet").innerText(), /[Nn]o setting reaches an error of 0.001 .*the best has/);
   await screenshot("11-accuracy-unmet");
   await changing(() => page.getByTestId("accuracy-goal").selectOption("none"));
   assert.deepEqual(await chosenQuality(), ["Fast"]);
