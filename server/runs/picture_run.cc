@@ -116,14 +116,19 @@ absl::Status CheckPlace(const std::string& product, const std::set<FileId>& inpu
     return absl::InvalidArgumentError(
         absl::StrCat("--product would replace the storm file '", product, "'; give another name"));
   }
-  if (fs::absolute(product).lexically_normal() != fs::absolute(manifest).lexically_normal()) {
-    return absl::OkStatus();
-  }
-  return absl::InvalidArgumentError(absl::StrCat("a product and the manifest would both be '",
-                                                 product, "'; give another name by --manifest"));
+  return CheckIsNoManifest("a product", product, manifest);
 }
 
 }  // namespace
+
+absl::Status CheckIsNoManifest(const std::string& what, const std::string& path,
+                               const std::string& manifest) {
+  if (fs::absolute(path).lexically_normal() != fs::absolute(manifest).lexically_normal()) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(absl::StrCat(what, " and the manifest would both be '", path,
+                                                 "'; give another name by --manifest"));
+}
 
 absl::Status CheckNames(const PictureRunOptions& options,
                         const std::vector<PlannedPicture>& pictures) {

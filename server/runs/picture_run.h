@@ -122,4 +122,8 @@ class PictureRun {
   std::map<std::string, pipeline::InputFile> begun_;
 };
 
+// Returns INVALID_ARGUMENT if `path`, the file of `what`, is also that of the manifest.
+absl::Status CheckIsNoManifest(const std::string& what, const std::string& path,
+                               const std::string& manifest);
+
 }  // namespace thunderhead::runs

@@ -120,15 +120,6 @@ absl::Status MakeMovie(const std::string& path, const View& view,
   return absl::OkStatus();
 }
 
-absl::Status CheckNoManifest(const std::string& path, const std::string& manifest) {
-  namespace fs = std::filesystem;
-  if (fs::absolute(path).lexically_normal() != fs::absolute(manifest).lexically_normal()) {
-    return absl::OkStatus();
-  }
-  return absl::InvalidArgumentError(absl::StrCat("a movie and the manifest would both be '", path,
-                                                 "'; give another name by --manifest"));
-}
-
 // Returns the error for two movies of one name, and what distinguishes them.
 absl::Status SameName(const std::string& path, const pipeline::ProductKey& one,
                       const pipeline::ProductKey& other) {
@@ -150,7 +141,7 @@ absl::Status MakeMovies(const MovieOptions& options, const std::vector<PlannedPi
     if (!picture.outcome.ok()) continue;
     if (picture.view > 0 && !options.name->Has("view")) continue;
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::string path, options.name->For(picture.key));
-    THUNDERHEAD_RETURN_IF_ERROR(CheckNoManifest(path, run.Options().manifest));
+    THUNDERHEAD_RETURN_IF_ERROR(CheckIsNoManifest("a movie", path, run.Options().manifest));
     std::vector<const PlannedPicture*>& movie = movies[path];
     if (!movie.empty() && (movie.front()->key.storm != picture.key.storm ||
                            movie.front()->key.run != picture.key.run)) {
