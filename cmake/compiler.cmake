@@ -36,6 +36,9 @@ endif()
 add_compile_options(-pthread)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
+  # GCC collects its garbage only beyond 500 MB of memory (given in kB) instead of 128 MB. Test files then compile in 15 %
+  # less processor time, and take a quarter more memory (1.4 GB at most).
+  add_compile_options(--param=ggc-min-heapsize=500000)
 endif()
 
 add_library(thunderhead_warnings INTERFACE)
