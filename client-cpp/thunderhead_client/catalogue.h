@@ -33,12 +33,12 @@ class Catalogue {
   Catalogue(const Catalogue&) = delete;
   Catalogue& operator=(const Catalogue&) = delete;
 
-  // Requests the list of storms and the server's information again. Refresh() and Describe() return
-  // at once. A request that fails because the server is busy or cannot be reached is repeated
-  // later.
+  // Requests the list of storms, the server's information and the last described storm again.
+  // Refresh() and Describe() return at once. A request that fails because the server is busy or
+  // cannot be reached is repeated later.
   void Refresh();
-  // Requests the description of a storm at one of its times. Does nothing if this description was
-  // already requested since the last Refresh() or other description.
+  // Requests the description of a storm at one of its times. Does nothing if the last request was
+  // for the same description.
   void Describe(const std::string& storm_id, std::uint32_t time_index);
 
   CatalogueState State() const;

@@ -26,7 +26,7 @@ class Listener final : public client::SessionListener {
   void SceneTaken(std::uint64_t /*revision*/, std::chrono::steady_clock::time_point) override {}
 };
 
-// A window that steers a storm of six times.
+// A window whose user is in control of the session. The session's storm has six times.
 class UiTest : public ::testing::Test {
  protected:
   UiTest() {

@@ -99,7 +99,7 @@ class Session:
             self._acknowledge(message.viewer_id, message.frame.sequence)
 
     def _acknowledge(self, viewer_id: int, sequence: int) -> None:
-        """Acknowledges a frame. Repeats this while the server is busy, because it sends no frame until then."""
+        """Acknowledges a frame. Retries after errors that may pass, because the server waits for acknowledgements."""
         request = thunderhead_pb2.AcknowledgeFrameRequest(session_id=self.id, viewer_id=viewer_id, sequence=sequence)
         while self._frames.is_active():
             try:
@@ -110,7 +110,7 @@ class Session:
                     if self._ended:
                         return
                     if error.code() not in _PASSING:
-                        # The stream continues. If it has ended, it reports why.
+                        # The stream may continue. If it has ended with an error, _read() replaces this error.
                         self._problem = error_of(error)
                         self._changed.notify_all()
                         return

@@ -190,7 +190,8 @@ void DrawLegend(const std::vector<LegendEntry>& legend, Pen& pen) {
   double top_px = pen.Height_px() - pen.Margin_px() - line_px * static_cast<double>(legend.size());
   for (const LegendEntry& entry : legend) {
     pen.Swatch(left_px, top_px + 0.5 * (line_px - swatch_px), entry.color);
-    // In a picture without room for a name, the name keeps a letter.
+    // The limit of the name's width stays positive in a narrow picture, because 0 would mean that
+    // the name may be of any width.
     top_px =
         pen.TextAt(left_px + 1.6 * swatch_px, top_px, std::max(room_px, pen.Line_px()), entry.name);
   }

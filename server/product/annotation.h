@@ -18,8 +18,7 @@ struct LegendEntry {
   glm::vec3 color{1.0F};  // linear sRGB
 };
 
-// Texts are UTF-8. A title, run or time that is too long for the picture ends in an ellipsis. Names
-// of the legend are not shortened.
+// Texts are UTF-8. A text that is too long for the picture ends in an ellipsis.
 struct Annotation {
   std::string title;                // upper left
   std::string run;                  // below the title; may be empty

@@ -59,7 +59,7 @@ class CallBudgets {
   int Signal() const { return signal_.Get(); }
 
  private:
-  // The calls that may wait for their handlers, some 17 kB each.
+  // Maximum number of calls that wait for their handlers. Each takes about 17 kB of memory.
   static constexpr std::int64_t kMostWaiting = 4096;
 
   using Time = base::TimeSource::Clock::time_point;

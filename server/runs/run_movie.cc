@@ -30,9 +30,10 @@ nlohmann::ordered_json JsonOf(const std::string& text) {
   return nlohmann::ordered_json::parse(text, nullptr, false);
 }
 
-// Returns the description for a movie's metadata, as JSON. It has the storm with its times, the
-// largest estimated error of the pictures, and the scene. It also has the camera's position if the
-// first picture has it.
+// Returns the description for a movie's metadata, as JSON. It has the program's version, the storm,
+// the start of the model run, the view's name, the times, the largest estimated error of the
+// pictures, and the scene. It also has the View message of the first picture, if that picture is a
+// PNG with this message in its texts.
 std::string DescriptionOf(const pipeline::ManifestEntry& entry, const View& view,
                           const std::vector<const PlannedPicture*>& pictures) {
   nlohmann::ordered_json json;

@@ -15,7 +15,8 @@ namespace thunderhead::session {
 
 class Upkeep {
  public:
-  // `sessions` must notify `due` in their on_due and provide the time. All must outlive it.
+  // SessionSignals::on_due of `sessions` must notify `due`. All three arguments must outlive this
+  // object.
   Upkeep(Sessions& sessions, storm_store::StormStore& store, base::WakeSignal& due);
   ~Upkeep();
   Upkeep(const Upkeep&) = delete;

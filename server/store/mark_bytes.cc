@@ -10,10 +10,10 @@ namespace thunderhead::store {
 namespace {
 
 constexpr std::size_t kWordBytes = 8;
-// The number of words of a mark without its positions (id, person, colour, number of positions),
-// and the number of words of a position.
+// The number of words of a mark without its positions: id, person, three for the colour, and the
+// number of positions.
 constexpr std::size_t kMarkWords = 6;
-constexpr std::size_t kPositionWords = 3;
+constexpr std::size_t kPositionWords = 3;  // x, y and z
 
 void Append(std::uint64_t word, std::string* bytes) {
   for (std::size_t i = 0; i < kWordBytes; ++i) bytes->push_back(static_cast<char>(word >> (8 * i)));

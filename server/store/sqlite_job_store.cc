@@ -106,7 +106,8 @@ absl::StatusOr<ImageRecord> PictureOf(const Statement& row) {
   picture.sha256 = row.Bytes(6);
   picture.extension = row.Bytes(7);
   picture.milliseconds = row.Real(8);
-  // The extension is part of the name of a file that is removed with the picture.
+  // The extension is part of the name of the picture's file. That file is removed with the picture,
+  // so a damaged extension could name a file that must not be removed.
   if (picture.extension.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789") !=
       std::string::npos) {
     return absl::DataLossError(
@@ -201,7 +202,8 @@ class OpenJobStore final : public SqliteJobStore {
       THUNDERHEAD_ASSIGN_OR_RETURN(const bool found, rows.Next());
       if (!found) break;
       records.push_back(JobOf(rows));
-      // The id names the folder of the job's results, which is removed with the job.
+      // The id is the name of the folder with the job's results. That folder is removed with the
+      // job, so a damaged id could name a folder that must not be removed.
       if (!jobs::IsJobId(records.back().id)) {
         return DamagedFile(connection_.Path(),
                            "the id of a render job does not have the form of an id");

@@ -46,7 +46,7 @@ v1::Scene Given(const std::string& json) {
   return scene;
 }
 
-// Returns the scene that the server draws for it.
+// Returns the scene that the server draws if a client gives this JSON.
 scene::Scene Drawn(const std::string& json) {
   const v1::Scene scene = Given(json);
   EXPECT_TRUE(service::CheckLimits(scene).ok()) << service::CheckLimits(scene);
@@ -175,7 +175,7 @@ TEST(TechniqueToy, InvalidatesTheStageThatItNames) {
   EXPECT_EQ(scene::FirstDirtyStage(before, Drawn("{}")), scene::Stage::kExtinction);
 }
 
-// Returns the phase function of a cloud that a client gives by its kind.
+// Returns the phase function of cloud water if a client chooses this kind, such as "KIND_MIST".
 physics::PhaseFunction PhaseOf(const std::string& kind) {
   const scene::Scene scene = Drawn(absl::StrCat(
       R"({"fields": [{"hydrometeor": "HYDROMETEOR_CLOUD", "phase": {"kind": ")", kind, "\"}}]}"));

@@ -152,8 +152,8 @@ TEST_F(MetaballTest, TransmittancesOfBallsInLineMultiply) {
   EXPECT_NEAR(pixels[kMiddle + 3], std::exp(-column * (0.4 + 1.0 + 0.5)), 1e-6);
 }
 
-// The ball is seen and lit from above. It scatters the share of sunlight that it takes in its
-// middle, evenly to all sides.
+// The ball is seen and lit from above. The middle pixel shows the share of sunlight that is lost
+// along its ray, scattered evenly in all directions.
 TEST_F(MetaballTest, AThinBallScattersWhatItTakes) {
   const double depth = 1e-3;
   const std::vector<float> pixels = Draw({At({0.0, 0.0, 5000.0}, 1000.0, depth / 1000.0)});
@@ -198,7 +198,7 @@ TEST_F(MetaballTest, LightThatABallTakesIsLightThatItHas) {
     }
     const double arrives = taken / matter;
     const double seen = -std::expm1(-depth * Column(0.0)) / (4 * kPi) * arrives;
-    // The tolerance is for some 64 texels across the light buffer.
+    // The tolerance allows for the light buffer, which is only about 64 texels wide.
     EXPECT_NEAR(pixels[kMiddle] / seen, 1.0, 0.02) << depth;
   }
 }
@@ -250,7 +250,8 @@ TEST_F(MetaballTest, PaperTransportIsAsPrinted) {
   const double albedo = test_support::MetaballsOf(settings_.technique).albedo;
   const double tau = test_support::MetaballsOf(settings_.technique).optical_depth;
   const Ball ball = At({0.0, 0.0, 5000.0}, 1000.0, 1.0);
-  // One ball: white light, eq. 26 with p = 1, and eq. 12 splatted as it is.
+  // A single ball in white light has the radiance of Man's eq. 26 with p = 1. Its optical depth at
+  // a pixel is `tau` times eq. 12.
   const std::vector<float> one = Draw({ball});
   EXPECT_NEAR(one[kMiddle], albedo * tau / (4 * kPi), 1e-3);
   EXPECT_NEAR(one[kMiddle + 3], std::exp(-tau), 1e-5);
@@ -636,8 +637,8 @@ TEST_F(MetaballSceneTest, IsNearTheLightVolume) {
     }
     return sum / 144.0;
   };
-  // The tolerance is for the fit, and because balls are lit and dark as a whole. Both pictures have
-  // no detail, as in PlainScene's light volume.
+  // The tolerance allows for the error of the fit, and for light that does not vary within a ball.
+  // Both pictures have no detail, as in PlainScene's light volume.
   EXPECT_NEAR(mean(test_support::kMetaball) / mean(test_support::kLightVolume), 1.0, 0.15);
 }
 
@@ -677,8 +678,8 @@ TEST(FitBalls, TheSumOfBallsIsTheMedium) {
     EXPECT_GT(ball.radius_m, 0.0);
     EXPECT_GE(ball.extinction_per_m, 0.0);
   }
-  // There are 5 optical depths over 4 x 4 km. Balls extend beyond the faces, where the fit has no
-  // penalty.
+  // The layer is 4 x 4 km wide and has optical depth 5. The tolerance allows for balls that extend
+  // beyond the domain, where there are no cells to fit.
   EXPECT_NEAR(sum / (5.0 * 4000.0 * 4000.0), 1.0, 0.2);
   // If more balls than cells are requested, there are as many balls as cells.
   const auto few = support::MakeSlab(100.0, 100.0, 0.01, glm::ivec3(2));

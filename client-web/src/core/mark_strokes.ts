@@ -22,7 +22,8 @@ export function markStrokes(projection: Projection, pointsM: readonly Vec3[]): M
   return strokes.map((points) => ({ ink, points }));
 }
 
-// Returns the outline of an ink stroke. `scale` is 1 in a window.
+// Returns the outline of an ink stroke. `scale` multiplies the stroke's width. It is 1 on the page,
+// and depends on the picture's size in a saved picture.
 export function inkOutline(places: readonly StrokePoint[], scale = 1): [number, number][] {
   const outline = getStroke(
     places.map(({ left, top }) => [left, top]),

@@ -30,8 +30,8 @@ absl::StatusOr<std::shared_ptr<const volume::HydrometeorFields>> ReadFields(
 void FrameThen(Engine& engine, const std::string& owner, v1::Scene& scene,
                std::function<void(const absl::Status&)> then) {
   if (!NeedsFraming(scene)) return then(absl::OkStatus());
-  // The executor is used even if the fields are in memory, because finding the storm in them takes
-  // a while.
+  // The executor is used even if the fields are in memory, because FrameCondensate searches them
+  // for visible cloud. That takes too long for a thread of gRPC.
   const int time_index = static_cast<int>(scene.time_index());
   engine.executor.Submit(
       owner, [&engine, &scene, time_index, then = std::move(then)](const absl::Status& status) {

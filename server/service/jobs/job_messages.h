@@ -18,8 +18,10 @@ void ToMessage(const jobs::PictureView& picture, v1::RenderJobPictureState& mess
 
 jobs::Asker AskerOf(const access::Caller& caller);
 
-// Returns a picture as a job stores it. The storm and the valid time that its scene means now are
-// added, if they exist. Nothing else is checked; other errors are found when the picture is drawn.
+// Returns a picture as a job stores it. A scene without a storm gets the server's first storm, and
+// a scene without a time gets the storm's last time. The valid time is added. If the storm or the
+// time does not exist, this function leaves it out, and the error is found when the picture is
+// drawn.
 jobs::PictureOrder OrderOf(const storm_store::StormStore& store,
                            const v1::RenderJobPicture& picture);
 

@@ -84,8 +84,8 @@ class JobPicture final : public jobs::PictureInHand, private ImageListener {
   }
 
  private:
-  // Finds the storm and the time index that the order means now. Both the storm's id and the index
-  // may have changed since the order was made.
+  // Finds the current storm id and time index for the order's storm and valid time. Both may have
+  // changed since the order was made.
   absl::Status Place(const jobs::PictureOrder& order) {
     if (!request_.ParseFromString(order.request)) {
       return absl::DataLossError("the server's record of this picture is damaged");

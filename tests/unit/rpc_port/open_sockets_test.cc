@@ -48,7 +48,8 @@ class OpenSocketsTest : public ::testing::Test {
   const std::shared_ptr<ConnectionCalls> calls_ = std::make_shared<ConnectionCalls>();
   std::map<int, std::string> peers_;
   int taken_ = 0;
-  // Number, in order of acceptance, of the last socket that was looked up to be closed.
+  // Index, in order of acceptance, of the last socket whose peer was looked up. OpenSockets looks
+  // up the peer before it closes a connection.
   int looked_for_ = -1;
   OpenSockets::Clock::time_point now_ = OpenSockets::Clock::now();
 };
