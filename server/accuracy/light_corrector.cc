@@ -187,7 +187,8 @@ absl::StatusOr<LightCorrector::Probe> LightCorrector::DrawProbe() {
   Probe probe;
   THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame whole,
                                renderer_.Draw(scene_, fields_, quality));
-  if (whole.storm.radiance == nullptr) return probe;  // too faint to be drawn
+  // The radiance is null if there is no storm, or if the storm is too faint to be drawn.
+  if (whole.storm.radiance == nullptr) return probe;
   probe.whole = frame::ReadLinear(*whole.radiance);
   probe.box = whole.storm.box;
   probe.storm = frame::ReadLinear(*whole.storm.radiance);

@@ -1,4 +1,5 @@
-// The parameters of a generated cloud: grid, noise, ellipsoids and amount of water.
+// The parameters of a generated cloud: grid, noise, ellipsoids and amount of water. Equations are
+// those of P. Man, "Generating and Real-Time Rendering of Clouds" (clouds/generator.h).
 #pragma once
 
 #include <optional>

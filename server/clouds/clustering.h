@@ -1,6 +1,7 @@
-// The first two phases of Man's approximator. They find the centres of clusters by adaptive k-means
-// (eq. 21-22), and the sizes of the clusters (eq. 23). Only the positions of the points are used.
-// The result is the same for any number of threads.
+// The first two phases of P. Man's method to approximate a field by metaballs (clouds/rbf_fit.h
+// cites the paper). They find the centres of clusters by adaptive k-means (eq. 21-22), and the
+// sizes of the clusters (eq. 23). Only the positions of the points are used. The result is the same
+// for any number of threads.
 #pragma once
 
 #include <functional>

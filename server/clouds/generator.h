@@ -1,5 +1,6 @@
-// Man's cloud generator. It computes liquid water on a grid from noise inside a union of ellipsoids
-// (eq. 1, 8-10). The same parameters give the same bits on every machine.
+// The cloud generator of P. Man, "Generating and Real-Time Rendering of Clouds" (docs/clouds.md).
+// It computes liquid water on a grid from noise inside a union of ellipsoids (eq. 1, 8-10). The
+// same parameters give the same bits on every machine.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,7 @@
-// The representation of a cloud by metaballs, which have centres, sizes and weights (Man, eq.
-// 11-19). The cloud's field is the sum of all balls. This file also declares the text format of
-// such clouds. This code does not depend on storms or rendering.
+// The representation of a cloud by metaballs, which have centres, sizes and weights (P. Man,
+// "Generating and Real-Time Rendering of Clouds", eq. 11-19). The cloud's field is the sum of all
+// balls. This file also declares the text format of such clouds. This code does not depend on
+// storms or rendering.
 #pragma once
 
 #include <string>

@@ -1,6 +1,7 @@
-// The third phase of Man's approximator: finds the weights of metaballs with which their sum
-// approximates a field best, in the sense of least squares. H is the sum of squared differences
-// (eq. 20). This code does not depend on the clustering.
+// The third phase of P. Man's method to approximate a field by metaballs (clouds/rbf_fit.h cites
+// the paper). It finds the weights of metaballs with which their sum approximates a field best, in
+// the sense of least squares. H is the sum of squared differences (eq. 20). This code does not
+// depend on the clustering.
 #pragma once
 
 #include <functional>

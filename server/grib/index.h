@@ -65,8 +65,8 @@ struct Field {
   // False if the field is a mean, a sum or an extreme over a time, a probability, or of another
   // product definition that has no single valid time.
   bool is_instant = false;
-  // The unit of the forecast time (code table 4.4) if its length is not known. Such a field is not
-  // an instant.
+  // The unit of the forecast time (code table 4.4), set only if it has no known length, such as a
+  // month. `is_instant` is then false.
   std::optional<int> unknown_unit;
   int process = 0;            // number of the generating process, which the centre defines
   absl::Duration forecast;    // from the reference time

@@ -27,7 +27,7 @@ enum class Packing {
 struct PackedField {
   std::uint64_t points = 0;            // of the grid, by section 3
   std::span<const std::byte> packing;  // section 5
-  std::span<const std::byte> bitmap;   // section 6 with its own bitmap; empty if there is none
+  std::span<const std::byte> bitmap;   // section 6 that contains the bitmap; empty if there is none
   std::span<const std::byte> data;     // section 7
 };
 

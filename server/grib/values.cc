@@ -126,8 +126,8 @@ Bytes PlainMessage(const PackedField& field, const Shape& shape) {
     Append(message, 6, 1);
     Append(message, 255, 1);
   } else {
-    // The indicator says that the bitmap belongs to this field, even if the message took it from an
-    // earlier field.
+    // This section 6 contains the bitmap itself. If the field in the file reuses the bitmap of an
+    // earlier field, this is the section 6 of that field.
     Append(message, field.bitmap);
   }
   Append(message, field.data);
@@ -255,8 +255,8 @@ std::vector<Sample> Samples() {
                {{0, 8}, {8, 1}, {8, 1}, {1, 4}, {kValues, 4}, {8, 1}, {8, 1}, {0, 1}, {0, 1}}),
        [] {
          Bytes data = SampleData(3);
-         data[5] = std::byte{0};        // bits of the group
-         data[6] = std::byte{kValues};  // its length
+         data[5] = std::byte{0};        // number of bits for each value of the group
+         data[6] = std::byte{kValues};  // number of values in the group
          return data;
        }()});
   return samples;

@@ -77,7 +77,7 @@ class MemoryArchive final : public openvdb::io::Archive {
     return entries;
   }
 
-  // Reads metadata, transform and voxels of `entry`. The voxels may be those of another grid.
+  // Reads metadata, transform and voxels of `entry`. An instance has the voxels of its parent grid.
   void Read(Entry& entry, std::vector<Entry>& entries) {
     ReadOwn(entry);
     if (!entry.descriptor.isInstance()) return;
@@ -134,7 +134,8 @@ absl::Status Refused(const Entry& entry, const Texts&... why) {
   return absl::InvalidArgumentError(absl::StrCat("its grid '", entry.Name(), "' ", why...));
 }
 
-// Returns the grid, before or after its voxels are read.
+// Returns the grid, or INVALID_ARGUMENT if its values are not of the type float. The voxels need
+// not be read yet.
 absl::StatusOr<FloatGrid::Ptr> FloatsOf(const Entry& entry) {
   FloatGrid::Ptr grid = openvdb::gridPtrCast<FloatGrid>(entry.grid);
   if (grid != nullptr) return grid;

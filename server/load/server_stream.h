@@ -1,4 +1,4 @@
-// An Asio stream over plain TCP or TLS for a connection to a server. Used on one thread.
+// An Asio stream over plain TCP or TLS for a connection to a server. Use it on one thread.
 #pragma once
 
 #include <boost/asio/io_context.hpp>

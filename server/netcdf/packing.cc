@@ -156,8 +156,8 @@ float FlushedFloat(double value) {
   return subnormal ? 0.0F : static_cast<float>(value);
 }
 
-// Judges the values of a variable that are too large for any quantity and that the file does not
-// declare as missing.
+// Takes the values of a variable that are too large for any quantity and that the file does not
+// declare as missing. Distinguishes undeclared codes for missing values from impossible values.
 class HugeValues {
  public:
   void Take(double value) {

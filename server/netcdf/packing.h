@@ -41,9 +41,10 @@ std::vector<double> NumbersOf(int group, int variable, const char* attribute);
 double Unpacked(double stored, const Packing& packing);
 
 // The functions Unpack and CleanPlainFloats replace missing values by NaN, and subnormal ones by 0.
-// They return a value that no quantity has and that is no code for missing values, or nothing if
-// there is no such value. Codes for missing values are those that the file declares, the default
-// fill value of netCDF, and one undeclared number from 1e30 to 1e37, which many models write.
+// Codes for missing values are those that the file declares, the default fill value of netCDF, and
+// one undeclared number from 1e30 to 1e37, which many models write. All other values with a
+// magnitude of at least 1e30 are errors of the file, because no quantity in a storm is that large.
+// The functions replace them by NaN too, and return one of them, or nothing if there are none.
 
 // Unpacks `packed` into `values`, which has the same length.
 std::optional<double> Unpack(absl::Span<const double> packed, const Packing& packing,

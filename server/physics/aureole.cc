@@ -11,8 +11,9 @@
 namespace thunderhead::physics {
 namespace {
 
-// Number of rings around the sun among which the cut light is divided. The radii of the rings grow
-// with the square of the index, so the inner rings are narrow.
+// Number of rings around the sun among which the light of the forward peak, which delta scaling
+// cuts off, is divided. The radii of the rings grow with the square of the index, so the inner
+// rings are narrow.
 constexpr int kAureoleRings = 600;
 // Number of wave numbers of the Hankel transform, and their step in 1/rad. They reach 15 divided by
 // the radius of the sun's disc. The phase tables are averaged over the disc, so they contain no
@@ -45,7 +46,7 @@ std::vector<Ring> RingsOf(const PhaseFunction& phase, double cut_rad) {
 }
 
 // Returns the transform of the rings at each wave number. At wave number 0, the transform is the
-// share of the light that is cut.
+// share of the scattered light that is in the forward peak.
 std::vector<glm::dvec3> TransformOf(const std::vector<Ring>& rings) {
   std::vector<glm::dvec3> transform;
   for (int k = 0; k < kWaves; ++k) {

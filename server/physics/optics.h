@@ -47,7 +47,8 @@ inline constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722};
 // mean over the sphere is 1.
 glm::dvec3 PhaseColors(const PhaseFunction& phase, double mu);
 
-// Returns the luminance of the colours. The functions below use this single value as well.
+// Returns the luminance of PhaseColors. The results of the functions below are luminances as well,
+// not one value for each colour.
 double PhaseValue(const PhaseFunction& phase, double mu);
 
 // Returns the share of light scattered by less than `angle_rad`, which is CP(theta) of Riley et al.

@@ -123,7 +123,7 @@ class BytesIn final : public Imf::IStream {
   std::size_t at_ = 0;
 };
 
-// Makes OpenEXR refuse files with longer sides.
+// Makes OpenEXR refuse files of pictures whose width or height exceeds kMaxSide_px.
 void LimitSides() {
   static const bool is_limited = (Imf::Header::setMaxImageSize(kMaxSide_px, kMaxSide_px), true);
   static_cast<void>(is_limited);

@@ -41,7 +41,7 @@ Request RequestFor(Wanted wanted, const std::string& path, std::size_t record = 
   return request;
 }
 
-// `paths` are the files of one time, or none if it is in one file.
+// `paths` are the files of one time. It is empty if the time is in a single file.
 Request RequestFor(Wanted wanted, const std::string& path, const std::vector<std::string>& paths,
                    std::size_t record = 0) {
   Request request = RequestFor(wanted, path, record);
@@ -116,7 +116,7 @@ absl::StatusOr<storm_files::StormFile> ConfinedFiles::DescribeFor(
   return file;
 }
 
-// Sets the members that are not sent.
+// Sets the members of `file`, and of the other storms in it, that the reader does not send.
 void ConfinedFiles::Own(const std::string& path, const std::vector<std::string>& paths,
                         storm_files::StormFile& file) {
   std::vector<storm_files::StormFile> others = std::move(file.others);

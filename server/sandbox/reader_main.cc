@@ -50,12 +50,13 @@ class StormReader final : public FileReader {
   absl::Status Answer(const Request& request, Replies& replies) override;
 
  private:
-  // Describes the file, or all files as one time, once for all requests.
+  // Sets `file_` to the description of the file, or of all files if together they are one time.
+  // Later requests use the same description.
   absl::Status Describe(const Request& request);
   // Returns the storm of the file that contains `record`, and changes `record` to its number within
   // that storm. Returns null if no storm contains it.
   const storm_files::StormFile* StormWith(std::uint64_t& record) const;
-  // Describes each file separately.
+  // Describes each file separately and sends the descriptions.
   absl::Status AnswerDescriptions(Replies& replies);
 
   const storm_files::StormFormats& formats_;

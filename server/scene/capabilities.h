@@ -12,7 +12,7 @@ namespace thunderhead::scene {
 enum class DetailUse {
   kNone,
   kMedium,     // the medium has structure finer than the grid; a setting turns it on
-  kRoughness,  // the detail of the field with the largest share roughens the technique's surfaces
+  kRoughness,  // the strongest detail of any field (largest Detail::share) roughens the surfaces
 };
 
 struct Capabilities {

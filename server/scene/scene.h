@@ -21,7 +21,7 @@ namespace thunderhead::scene {
 
 // Turbulent structure finer than the grid (shaders/physics/detail.glsl), which drifts with the
 // wind. It is drawn if FieldLook::detail of the technique is set. Metaballs have rough surfaces
-// instead. Their roughness is the largest share of all drawn fields.
+// instead. Their roughness is the largest `share` among the drawn fields.
 struct Detail {
   // How much of the field's extinction the structure changes where the model's air is turbulent,
   // from 0 (none) to 1 (all).

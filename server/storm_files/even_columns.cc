@@ -246,9 +246,9 @@ std::string Evener::TrueAtMiddle(const std::string& projection) const {
   return unscaled.Joined();
 }
 
-// Keeps the model's own columns, which are even in the plane of `projection`. Returns
-// INVALID_ARGUMENT if they are not: a column near a corner would be more than a quarter of the
-// spacing, and more than 4 m, from its place.
+// Keeps the model's own columns if they are even in the plane of `projection`. Returns
+// INVALID_ARGUMENT if even spacing would move a column near a corner by more than a quarter of the
+// spacing and by more than 4 m.
 absl::Status Evener::Keep(const std::string& projection, EvenColumns& even) const {
   THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection map, MapProjection::Of(projection, middle_));
   even.columns = model_.Count();
@@ -264,7 +264,8 @@ absl::Status Evener::Keep(const std::string& projection, EvenColumns& even) cons
   even.least_scale = std::min(1.0, Least(spacing_m / even.longest_m));
   even.largest_scale = std::max(1.0, Largest(spacing_m / even.shortest_m));
   even.largest_error = std::max(even.largest_scale - 1.0, 1.0 - even.least_scale);
-  // Columns that were given one by one are known to a few metres. A grid may end at a pole.
+  // Places that the file gives for each column are accurate only to a few metres (kRounding_m). A
+  // grid may end at a pole, so the compared places are a little within the corners (kNearEdge).
   constexpr double kRounding_m = 4.0;
   constexpr double kNearEdge = 0.98;
   const double most_m = std::max(kRounding_m, 0.25 * Least(spacing_m));
@@ -431,7 +432,9 @@ absl::StatusOr<ColumnMesh> Evener::MeshOn(const MapProjection& map, const EvenCo
 // Chooses the number of even columns and their distances.
 void Evener::ChooseGrid(const ColumnMesh& mesh, const glm::dvec2& middle_m,
                         const EvenOptions& options, EvenColumns& even) const {
-  // A model's axis may point anywhere, for example near a pole.
+  // The model's axes may point in any direction, for example near a pole. The spacing along each
+  // even axis is therefore a mean of the model's two spacings. Each is weighted by the squared
+  // cosine of the angle between the model's axis and the even axis.
   const double east = std::cos(even.grid_north_rad) * std::cos(even.grid_north_rad);
   glm::dvec2 spacing_m(east * even.mean_m.x + (1.0 - east) * even.mean_m.y,
                        east * even.mean_m.y + (1.0 - east) * even.mean_m.x);
@@ -530,7 +533,7 @@ absl::StatusOr<EvenColumns> Evener::Make(const EvenOptions& options) {
   return even;
 }
 
-// Returns what `make` returns for the columns.
+// Creates an Evener for the columns, calls its function `make` and returns the result.
 template <typename Made>
 absl::StatusOr<Made> WithEvener(const ColumnPlaces& places,
                                 absl::StatusOr<Made> (Evener::*make)(const EvenOptions&),

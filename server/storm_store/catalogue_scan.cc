@@ -263,7 +263,7 @@ absl::StatusOr<storm_files::StormFile> CatalogueScan::DescribeTogether(
   KnownTogether& known = together_[paths];
   known.scan = scans_;
   if (known.versions != versions) DescribeTogether(paths, std::move(versions), known);
-  // An error is logged once.
+  // DescribeTogether has already logged the error. The caller does not log a CANCELLED error.
   if (!known.description.ok()) return absl::CancelledError("its files are still incomplete");
   return *known.description;
 }
@@ -298,7 +298,7 @@ bool CatalogueScan::MayDescribeTogether(const std::string& folder) {
   return is_served && now < *together_ends_;
 }
 
-// Describes the files again, unless they must wait. Then the old description stays.
+// Describes the files again. If they must wait, their old description stays.
 void CatalogueScan::DescribeTogether(const std::vector<std::string>& paths,
                                      std::vector<std::uint64_t> versions, KnownTogether& known) {
   const std::string folder = std::filesystem::path(paths.front()).parent_path().string();

@@ -1,5 +1,5 @@
 // An Asio stream over plain TCP or TLS. A timeout applies to the operations that begin after it was
-// set. Used on one thread.
+// set. Use it on one thread.
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>

@@ -23,8 +23,8 @@ constexpr int kProfileSmoothings = 2;  // together they move surfaces by at most
 // tower from which it rises.
 constexpr std::array<float, 2> kCondensing_m_per_s = {0.0F, 1.0F};
 constexpr std::array<float, 2> kIceBillows_m_per_s = {1.0F, 5.0F};
-// The same for ice in turbulent air: amplitudes of turbulence, or opacities if the turbulence is
-// unknown.
+// The range over which the share of ice that has billows grows from 0 to 1 in turbulent air. It is
+// a range of the amplitude of turbulence, or of the opacity if the turbulence is unknown.
 constexpr std::array<float, 2> kIceBillowsTurbulence = {0.3F, 0.7F};
 constexpr int kTurbulenceReach = 2;  // cells
 // Detail is attenuated where a cell's opacity is below kThinOpacity. The opacity is taken along the

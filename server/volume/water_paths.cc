@@ -218,11 +218,11 @@ class Rests {
   const std::vector<float>& OfChannels() const { return of_channels_; }
 
  private:
-  // The sums over a column of all channels together.
+  // Sums over all channels of one column.
   struct Held {
-    float wanted = 0.0F;
-    float now = 0.0F;
-    float smooth = 0.0F;  // the sum with the same factors, but without detail
+    float wanted = 0.0F;  // the sum without detail, which the factors must restore
+    float now = 0.0F;     // the sum with detail and the current factors
+    float smooth = 0.0F;  // the sum without detail, with the current factors
   };
 
   // Returns the index of column `k` of the 3 x 3 columns around a column, x fastest.

@@ -74,8 +74,8 @@ class DiffusionPass {
   // Texels hold the square root of the optical depth to the nearest exit, DiffuseLight::SkySeen,
   // and component x of DiffuseLight::SkyInward.
   gl::Texture3D exits_;
-  // Texels hold the net inward flux of sunlight, the fluence from other walls, component y of
-  // DiffuseLight::SkyInward, and LitGround::ShareAt.
+  // Texels hold the net inward flux of sunlight (DiffuseLight::SolveSun), DiffuseLight::FromWalls,
+  // component y of DiffuseLight::SkyInward, and LitGround::ShareAt.
   gl::Texture3D net_inward_;
   SunParts ground_parts_;
   std::vector<float> arrived_root_;

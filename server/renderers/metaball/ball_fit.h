@@ -1,4 +1,4 @@
-// Fits metaballs to a scene's storm. The fit is Man's approximator (clouds/rbf_fit.h) on the
+// Fits metaballs to a scene's storm. The fit applies P. Man's method (clouds/rbf_fit.h) to the
 // extinction of the fields that the scene shows. Fits are cached, because each takes a second or
 // more. This code does not use GL and is safe to use from any thread.
 #pragma once

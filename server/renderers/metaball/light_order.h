@@ -1,7 +1,7 @@
 // The order in which balls are splatted into a light buffer, with the ball nearest to the light
-// first (Man, 4.1). Balls that cannot touch the same texels are independent of each other and form
-// a level. Processing level after level gives the same result as processing ball after ball. This
-// code does not use GL.
+// first (P. Man, "Generating and Real-Time Rendering of Clouds", section 4.1). Balls that cannot
+// touch the same texels are independent of each other and form a level. Processing level after
+// level gives the same result as processing ball after ball. This code does not use GL.
 #pragma once
 
 #include <cstdint>

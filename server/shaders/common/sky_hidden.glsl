@@ -6,7 +6,7 @@ layout(binding = kStormFacesUnit) uniform sampler3D storm_faces;
 
 uniform vec3 hidden_scale;  // texture coordinates per metre
 uniform vec3 hidden_offset;
-uniform vec3 faces_sunlight;  // irradiance of the sun on faces of the storm that face it
+uniform vec3 faces_sunlight;  // irradiance of the sun on those parts of the storm's surface that face the sun
 
 struct StormInSky {
   float hidden;  // share of the sky that the storm hides

@@ -1,7 +1,7 @@
-// The first pass of Man's method (4.1). It propagates one light through the balls, beginning with the ball nearest to
-// the light. A work group processes one ball of a level. The balls of a level touch no common texel. The work group
-// reads the light buffer under the ball, stores the light that arrives at the ball, and splats the ball into the
-// buffer. The buffer never leaves the device.
+// The first pass of P. Man's method ("Generating and Real-Time Rendering of Clouds", section 4.1). It propagates one
+// light through the balls, beginning with the ball nearest to the light. A work group processes one ball of a level.
+// The balls of a level touch no common texel. The work group reads the light buffer under the ball, stores the light
+// that arrives at the ball, and splats the ball into the buffer. The buffer never leaves the device.
 //
 // Variants: PAPER, PASS, DIFFUSE. PAPER is eq. 26 and 27 as printed. Without PAPER, the buffer holds two optical
 // depths: that of the light's extinction in r, and the similarity-scaled optical depth in g. A ball of any thickness

@@ -1,7 +1,8 @@
-// The second pass of Man's method (4.2). For each pixel, it composites the balls by eq. 29 from front to back until the
-// pixel is opaque. Each tile of the picture has a list of the balls that may cover it, from front to back. The result
-// equals blending the balls' splats from back to front, but the picture is not read and written for each ball. A ball's
-// optical depth is the integral of its field along the ray, from the eye up to the ground.
+// The second pass of P. Man's method ("Generating and Real-Time Rendering of Clouds", section 4.2). For each pixel, it
+// composites the balls by eq. 29 from front to back until the pixel is opaque. Each tile of the picture has a list of
+// the balls that may cover it, from front to back. The result equals blending the balls' splats from back to front, but
+// the picture is not read and written for each ball. A ball's optical depth is the integral of its field along the ray,
+// from the eye up to the ground.
 //
 // With DETAIL, noise at all scales that pixels resolve moves the balls' surfaces inwards. A place then shows the mean
 // light of all balls there, weighted by their fields, so that single balls are not recognisable. Variants: GROUND (the
