@@ -52,7 +52,7 @@ void Catalogue::Refresh() {
 void Catalogue::Describe(const std::string& storm_id, std::uint32_t time_index) {
   const StormTime wanted{storm_id, time_index};
   const std::lock_guard lock(mutex_);
-  if (storm_id.empty() || wanted == described_ || wanted_ == wanted) return;
+  if (storm_id.empty() || wanted == wanted_.value_or(described_)) return;
   wanted_ = wanted;
   changed_.notify_all();
 }

@@ -1,13 +1,12 @@
 // Writes dist/third-party-notices.txt: the licences of the npm packages that the page contains, according to the lock
-// file. Debian's package and the image ship it with the page. The script fails for a package without a licence.
+// file. Debian's package and the image ship it with the page. The notices of the programs are another file, which
+// cmake/notices.cmake writes. The script fails for a package without a licence.
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
 const lock = JSON.parse(readFileSync("package-lock.json", "utf8"));
 const notices = [
   "Thunderhead's page contains the npm packages below, each under its licence.",
-  "The server and the native client contain no third-party code: they use Debian's packages, whose licences are in",
-  "/usr/share/doc/PACKAGE/copyright.",
 ];
 for (const [folder, found] of Object.entries(lock.packages)) {
   // The first entry is the page itself. Tools that only build or test the page are marked "dev".
