@@ -1,6 +1,6 @@
 // The settings of the chosen technique, made from the descriptor of the technique's message. A
-// setting that is added to scene.proto appears without a change of this file, which only says when
-// a setting has no effect and gives names that differ from those of the schema.
+// setting that is added to scene.proto appears without a change of this file. The file only says
+// when a setting has no effect, and gives names that differ from those of the schema.
 import { type DescEnum, isMessage } from "@bufbuild/protobuf";
 import {
   CumulusSchema,
