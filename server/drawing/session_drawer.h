@@ -28,13 +28,14 @@ class SessionDrawer {
  public:
   // Limits for all sessions and own views of one identity together.
   struct Share {
-    // Maximum bytes of their newest frames.
+    // Maximum bytes of the newest frames of these sessions and views.
     std::size_t picture_bytes = std::numeric_limits<std::size_t>::max();
-    // Maximum number of references being traced.
+    // Maximum number of pictures that the Monte Carlo reference traces for these sessions and
+    // views.
     std::size_t references = std::numeric_limits<std::size_t>::max();
   };
 
-  // All references must outlive it.
+  // All references must outlive this object.
   SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields, MeasuredSource& source,
                 FrameEncoder& encoder, ReferenceTracer& tracer, LightTracer& light_tracer,
                 SessionWorker& worker, const Share& share,
