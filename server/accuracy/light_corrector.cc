@@ -31,8 +31,9 @@ constexpr double kMaxTexelCount = 262144.0;
 // about the storm's light.
 constexpr double kMaxTransmittance = 0.8;
 // The angle below which the forward peak of phase functions is cut off
-// (MediumOptions::peak_cut_deg). 20 degrees give less noise than 3 degrees. The difference between
-// pictures was too small to measure (docs/lab/0012-traced-light.md).
+// (MediumOptions::peak_cut_deg). A cut at 20 degrees gives less noise than one at 3 degrees. The
+// difference between the corrected pictures was too small to measure
+// (docs/lab/0012-traced-light.md).
 constexpr double kPeakCut_deg = 20.0;
 
 // The number of paths for each ray. Drawing a probe takes as long as tracing one path for each of

@@ -14,11 +14,12 @@
 namespace thunderhead::drawing {
 namespace {
 
-// The JPEG quality of a coarse frame. Its smaller buffer blurs it anyway, and it is soon replaced.
-// With fewer bytes it arrives sooner.
+// The JPEG quality of a coarse frame. Such a frame is blurred anyway, because its buffer is smaller
+// than the picture, and it is soon replaced. With fewer bytes it arrives sooner.
 constexpr int kCoarseJpegQuality = 75;
 
-// The JPEG quality of a coarse frame in a smaller tier, which goes to viewers with slow links.
+// The JPEG quality of a coarse frame in a smaller tier (delivery/link_estimate.h), which goes to
+// viewers with slow links.
 constexpr int kReducedJpegQuality = 70;
 
 using Pictures = delivery::PictureSizes<frame::RgbImage>;

@@ -211,7 +211,7 @@ class GlFrameSource final : public FrameSource {
   // picture of the scene's size. Errors are measured only when memory is plentiful.
   bool HasRoomToMeasure(const scene::Scene& scene, const volume::HydrometeorFields& fields) const {
     constexpr std::size_t kBytesPerPixel = 64;
-    constexpr std::size_t kBytesPerCell = 160;  // rounded up from 154 bytes for five fields
+    constexpr std::size_t kBytesPerCell = 160;  // for five fields: 154 bytes, rounded up
     const auto pixels = static_cast<std::size_t>(scene.output.width_px) *
                         static_cast<std::size_t>(scene.output.height_px);
     return BudgetOf(shared_.options)

@@ -12,8 +12,8 @@ namespace {
 // Bytes per pixel of a picture with 8 bits per channel: 3 for the display pixels, and as many while
 // the pixels are encoded.
 constexpr std::size_t kBytesPerPixel = 6;
-// Bytes per pixel of a picture with 16 bits per channel, with its smaller tiers and while it is
-// encoded.
+// Bytes per pixel of a picture with 16 bits per channel, with its smaller tiers
+// (delivery/link_estimate.h) and while it is encoded.
 constexpr std::size_t kFineBytesPerPixel = 16;
 // Bytes per pixel of a linear picture, which has radiance, opacity and optical depths.
 constexpr std::size_t kLinearBytesPerPixel = 24;

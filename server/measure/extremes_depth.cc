@@ -38,8 +38,9 @@ Extreme DepthPerSlice(const accuracy::PlainTechnique& plain, double per_slice,
             const auto fields = FieldsOf({.optical_depth = depth});
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
                                          probe.Draw(scene, *fields, {.single_precision = thin}));
-            // Along the ray towards the eye, delta scaling removes the forward peak from the
-            // extinction. Similarity scaling removes all forward scattering.
+            // The optical depth that the eye sees is smaller than the medium's. Delta scaling
+            // removes the forward peak from the extinction. In diffusion transport, similarity
+            // scaling removes all forward scattering.
             const renderers::GroupWeights weights(
                 scene::GroupedFieldsOf(scene, *fields),
                 *scene::MediumSettingsOf(scene.rendering.technique));
