@@ -165,7 +165,7 @@ absl::Status Serve(ServeFlags flags) {
   // them receives them.
   const sigset_t signals = StopSignals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  // The end of the process that reads the log must not end the server.
+  // SIGPIPE is ignored, so that the server continues if the process that reads its log ends.
   std::signal(SIGPIPE, SIG_IGN);
 
   THUNDERHEAD_RETURN_IF_ERROR(CheckClock(std::chrono::system_clock::now()));

@@ -116,7 +116,7 @@ std::vector<delivery::EncodedVideo> VideoOf(const delivery::EncodedFrame& descri
     });
     if (encoded.ok()) {
       video.push_back(*std::move(encoded));
-      // Refusals for lack of memory are counted elsewhere.
+      // Refusals for lack of memory are not logged here. They are counted elsewhere.
     } else if (!absl::IsResourceExhausted(encoded.status())) {
       base::LogError(base::Annotate(encoded.status(), "encoding video"));
     }
@@ -233,7 +233,7 @@ void FrameEncoder::Run() {
     lock.lock();
     encoding_.erase(std::find(encoding_.begin(), encoding_.end(), session.get()));
     lock.unlock();
-    // Another frame of the same session may have waited for this one.
+    // Another frame of the same session may have waited for this one, so a thread is woken for it.
     changed_.notify_one();
     on_encoded_();
     lock.lock();

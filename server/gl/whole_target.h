@@ -1,4 +1,5 @@
-// Draws the pixels of a target with a program whose source is ProgramSource::WholeTarget.
+// Draws every pixel of a render target (a whole target), by rasterization or by a compute shader.
+// The program's source must be made by ProgramSource::WholeTarget or BlendedWholeTarget.
 #pragma once
 
 #include "absl/status/status.h"
