@@ -111,8 +111,8 @@ class SessionDrawer {
   // longer shows the scene of that frame.
   std::optional<Wish> LookInWorker(const Turn& turn, const session::NewestScene& newest);
   // Returns the work, moved to the worker if it takes too long for the render loop or if the
-  // worker's source can reuse more stages. The frame's quality is then planned again for the
-  // stages that the worker must rerun.
+  // worker's source can reuse more stages than the render loop's source. The frame's quality is
+  // then planned again for the stages that the worker must rerun.
   SessionWork Placed(const Turn& turn, const session::NewestScene& newest,
                      const std::optional<session::NewestScene>& drawable, SessionWork work);
   bool IsLong(const Turn& turn, const SessionWork& work) const;

@@ -9,10 +9,10 @@
 
 namespace thunderhead::gl {
 
-// Returns true if the thread's device draws whole targets faster by compute shaders. The speed is
-// measured once for each kind of device in a process. Software GL always rasterizes. The
-// environment variable THUNDERHEAD_WHOLE_TARGETS overrides the measurement with the value "raster"
-// or "compute".
+// Returns true if the thread's device draws whole targets faster by compute shaders than by
+// rasterization. The speed is measured once for each kind of device in a process. Software GL
+// always rasterizes. The environment variable THUNDERHEAD_WHOLE_TARGETS overrides the measurement
+// with the value "raster" or "compute".
 bool ComputesWholeTargets();
 
 class WholeTarget {
