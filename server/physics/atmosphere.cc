@@ -255,8 +255,8 @@ glm::vec3 Atmosphere::SumOrders(const AirPlace& place, float ground_albedo) cons
   constexpr int kDirections = 40;
   const float across = std::sqrt(std::max(1.0F - place.sun_sine * place.sun_sine, 0.0F));
   glm::vec3 second(0.0F);
-  // Sum over the directions of the share of uniform light that reaches the point after one more
-  // scattering or reflection.
+  // If light of radiance 1 arrived everywhere from all directions, this sum divided by kDirections
+  // would be the mean radiance that the point receives after one more scattering or reflection.
   glm::vec3 again(0.0F);
   for (int i = 0; i < kDirections; ++i) {
     // A Fibonacci spiral spreads the directions evenly over the sphere.

@@ -21,7 +21,8 @@ constexpr double kFarthest_m = 25e3;
 constexpr double kStep_m = 500.0;
 constexpr double kMaxSteps = 4000.0;  // enough to leave the domain
 
-// Shares of the picture's height that ground fills, and that stay free above the tower's top.
+// Shares of the picture's height. Ground fills kMinGround to kMaxGround, and kSkyAboveTop stays
+// free above the tower's top.
 constexpr double kMinGround = 1.0 / 6.0;
 constexpr double kMaxGround = 0.25;
 constexpr double kSkyAboveTop = 0.05;

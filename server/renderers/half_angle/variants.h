@@ -1,5 +1,5 @@
 // The preprocessor variants of the shaders of half-angle slicing. The variants of thickness.comp
-// are those of the medium.
+// are those of the medium. A group is a set of fields with equal optics (scene/field_groups.h).
 #pragma once
 
 #include "gl/program.h"

@@ -54,8 +54,8 @@ DiffuseLight::DiffuseLight(DiffusionCells cells)
   FindExits();
   Link();
   SolveSky();
-  // While solving for a sun, extinction is read only by number (optics_), so the values by cell are
-  // freed.
+  // From here on, extinction is read only from optics_, which is indexed by cell number. The arrays
+  // with one value for each cell of the box are therefore freed.
   cells_.light_per_m = std::vector<float>();
   cells_.transport_per_m = std::vector<float>();
   cells_.absorption_per_m = std::vector<float>();

@@ -218,7 +218,7 @@ class ResultStream final : public ResultReactor {
 
   jobs::Jobs& jobs_;
   const ResultReading reading_;
-  const CallerRef caller_;  // holds the place of the stream in its quota
+  const CallerRef caller_;  // the stream counts towards the caller's quota while this exists
   const jobs::PicturePlace picture_;
   const std::shared_ptr<ResultFile> file_;
   v1::FetchRenderResultResponse response_;  // gRPC reads it during the write
