@@ -102,8 +102,9 @@ double Meant(double stored, const Packing& packing) {
   return upper_half ? stored + packing.wrap : stored;
 }
 
-// Returns the numbers of an attribute of the valid range as packed values. They are unpacked values
-// in the file if they are floating-point numbers and the stored values are not.
+// Returns the numbers of an attribute of the valid range as packed values. If the attribute has
+// floating-point numbers and the variable has integers, the attribute holds unpacked values, which
+// this function packs.
 std::vector<double> PackedLimits(int group, int variable, const char* name, bool integers,
                                  const Packing& packing) {
   std::vector<double> limits = NumbersOf(group, variable, name);

@@ -79,8 +79,8 @@ glm::vec3 Between(const std::vector<glm::vec3>& table, int columns, float column
 
 // Table of the amounts of air, haze and ozone from a point to space, in metres at their maximum
 // densities. The amounts do not depend on turbidity, so one table serves all atmospheres. Its axes
-// are the height, and the sine of the elevation from the horizon upwards. Both are spaced evenly in
-// the square root.
+// are the height, and the sine of the elevation from the horizon upwards. Both axes are spaced
+// evenly in the square root of the value.
 class ColumnsToSpace {
  public:
   static const ColumnsToSpace& Get() {

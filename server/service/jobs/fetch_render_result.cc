@@ -84,7 +84,7 @@ class ResultFile {
     THUNDERHEAD_RETURN_IF_ERROR(Fill(chunk));
     if (AtEnd()) THUNDERHEAD_RETURN_IF_ERROR(CheckDigest());
     if (is_before && !AtEnd()) return std::nullopt;
-    if (is_before) chunk.clear();  // the offset is the file's end
+    if (is_before) chunk.clear();  // the offset is the file's end, so no bytes are sent
     if (!std::exchange(is_described_, true)) THUNDERHEAD_RETURN_IF_ERROR(Describe(response));
     return response;
   }
