@@ -14,7 +14,8 @@ constexpr double kSkyMargin_m = 1.5e4;
 // Maximum length of the storm's shadow. The shadow of a low sun is longer, but its far end lies in
 // air that hardly affects the picture.
 constexpr double kLongestShadow_m = 1.5e5;
-// Depth of the round Earth's ground below the plane of world coordinates at a distance of 200 km.
+// The boxes end this far below the lowest ground, because at a distance of 200 km the round Earth
+// lies that far below the plane of world coordinates.
 constexpr double kFallOfGround_m = 2700.0;
 
 }  // namespace
