@@ -63,7 +63,7 @@ test("a quality and a goal take each other's place", async () => {
     });
     display.screenshot("goal");
     await eventually("a quality beside the goal", () => !chosen());
-    // This is the number field of the slider below.
+    // This is the number field of the slider that sets the goal's time.
     await change("another time", () => desktop.fill(356, 641, "5000"));
     await change("Fast", () => desktop.click(162, 131));
     await eventually("no quality after the goal", chosen);

@@ -51,7 +51,7 @@ void ControlButton(Ui& ui) {
 }
 
 // Draws at most three of the people who ask to steer, with buttons to answer them. If more ask,
-// draws a button that opens the list of people. Only people who are in control or present see this.
+// draws a button that opens the list of people. Only presenters and the person in control see this.
 // A part that does not fit into a line of width `room` begins a new line.
 void Asking(Ui& ui, float room) {
   if (!ui.state.Steers() && !ui.state.Presents()) return;
