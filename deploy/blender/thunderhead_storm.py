@@ -18,7 +18,7 @@ import bpy
 from mathutils import Matrix, Vector
 
 # Cycles ignores a medium that scatters less than 1e-5 per unit. With a unit of one metre this would be an optical depth
-# of 1 in 100 km.
+# of 1 in 100 km, which is too much to ignore. The unit is therefore a kilometre.
 METRES_PER_UNIT = 1000.0
 
 
