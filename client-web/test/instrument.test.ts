@@ -90,8 +90,8 @@ const PICTURE: Annotated = {
 
 const wrapped = (deg: number) => deg - 360 * Math.round(deg / 360);
 
-// Snyder 1987, "Map Projections - A Working Manual", equations 15-1 to 15-5: a Lambert conic
-// projection of a sphere with standard parallels at 30 and 60 degrees, from 35 N 97 W.
+// A Lambert conic projection of a sphere with standard parallels at 30 and 60 degrees, from 35 N 97
+// W. The formulas are equations 15-1 to 15-5 of Snyder 1987, "Map Projections - A Working Manual".
 function lambert(longitudeDeg: number, latitudeDeg: number): [number, number] {
   const radian = Math.PI / 180;
   const stretched = (deg: number) => Math.tan(Math.PI / 4 + (deg * radian) / 2);
