@@ -189,8 +189,8 @@ TEST_F(SessionTest, ComesBackToTheSameSessionWhenTheServerRestarts) {
   const v1::Join join = Newest(v1::InteractRequest::kJoin).join();
   EXPECT_EQ(join.session_key(), FakeService::kPresenterKey);
   EXPECT_EQ(join.participant_key(), "participant-key");
-  // The client steered, so it takes control again from the connection that the server may still
-  // consider alive.
+  // The client steered, so it takes control back from its lost connection, which the server may
+  // still consider alive.
   service.SendPresence(0);
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kTakeControl, 1));
 }

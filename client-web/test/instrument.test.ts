@@ -214,8 +214,8 @@ test("degrees stand above a horizon that is too low for them and the time", () =
   expect(north?.y).toBeLessThan(line?.[0]?.[1] ?? 0);
 });
 
-// The camera looks along the grid's north. With true north 10 degrees to the left of it, it looks to
-// 10 degrees, and N stands to the left of the picture's middle.
+// The camera looks along the grid's north. If true north is 10 degrees to the left of the grid's
+// north, the camera looks to 10 degrees, and N stands to the left of the picture's middle.
 test("degrees on the horizon count from true north", () => {
   const at = (trueNorthDeg: number, name: string) =>
     texts(annotationsOf({ ...PICTURE, trueNorthDeg }, FIRST_ANNOTATIONS)).find(

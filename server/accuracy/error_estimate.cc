@@ -30,7 +30,8 @@ double Reach(double whole, const std::vector<double>& without) {
 
 // Returns a bound on the bias of the squared error. The bias arises because the light that clamping
 // removes from some pixels is added back to all pixels. `lost` is the root mean square of that
-// light. In the worst case, all of the light belongs to pixels whose error has the same sign.
+// light. The bound assumes the worst case, in which all of the light belongs to pixels whose error
+// has the same sign.
 double Misplaced(double squared_error, double lost) {
   return 2.0 * std::sqrt(std::max(squared_error, 0.0)) * std::abs(lost) + lost * lost;
 }

@@ -1,7 +1,7 @@
 // The bar above the time line. It shows the person in control, the button for control, and the
-// people who ask to steer. If the user has left the session's view, it also has the button that
-// returns to it. It is hidden while the user is alone in the session and steers. After the session
-// has ended, it has only the button that opens a new one.
+// people who ask to steer. If the user has left the session's view, the bar also has the button
+// that returns to that view. The bar is hidden while the user is alone in the session and steers.
+// After the session has ended, the bar has only the button that opens a new session.
 #include <imgui.h>
 
 #include <algorithm>
