@@ -115,7 +115,7 @@ def add_medium(material, grids):
 def add_storm(scene, path, grids, step_voxels):
     volume = bpy.data.volumes.new("storm")
     volume.filepath = os.path.abspath(path)
-    # These settings keep the optical depths of the file: no compression to halves, and no thin parts left out.
+    # These settings keep the optical depths of the file: no compression to half floats, and no thin parts left out.
     volume.render.precision = "FULL"
     volume.render.space = "WORLD"
     volume.render.clipping = 0.0
