@@ -50,7 +50,7 @@ if(THUNDERHEAD_SERVER AND THUNDERHEAD_SERVICE)
   set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
     ${CMAKE_SOURCE_DIR}/deploy/debian/postinst ${CMAKE_SOURCE_DIR}/deploy/debian/prerm ${CMAKE_SOURCE_DIR}/deploy/debian/conffiles)
 
-  # ./dev package builds these files: the sources, with the messages that protoc generates.
+  # ./dev package builds these files: the Python client's sources, with the messages that protoc generates.
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/python/thunderhead DESTINATION lib/python3/dist-packages COMPONENT python
     OPTIONAL PATTERN "__pycache__" EXCLUDE)
   install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION share/doc/python3-thunderhead RENAME copyright COMPONENT python)

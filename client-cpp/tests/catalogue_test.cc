@@ -63,8 +63,8 @@ TEST(CatalogueTest, AnUnknownStormIsRequestedOnceUntilTheCatalogueChanges) {
   Catalogue catalogue(service.Connect(), [] {});
   catalogue.Describe("gone", 0);
   ASSERT_TRUE(thunderhead::testing::WaitFor([&] { return unknown == 1; }));
-  // The catalogue makes its requests one after the other, so a second request for the first storm
-  // would come before this description.
+  // The catalogue makes its requests one after the other. If it repeated the request for "gone",
+  // the server would get that request before the one for "moore".
   catalogue.Describe("moore", 0);
   ASSERT_TRUE(
       thunderhead::testing::WaitFor([&] { return catalogue.State().storm.id() == "moore"; }));

@@ -11,8 +11,8 @@ using Stub = v1::ThunderheadService::Stub;
 // The first description of a storm takes long because the server reads the storm's file.
 constexpr std::chrono::seconds kPatience{60};
 
-// Returns true for an error that may vanish on its own. Other errors, such as an unknown storm, are
-// the answer until the catalogue changes.
+// Returns true for an error that may vanish on its own, so that the request is repeated. After
+// another error, such as an unknown storm, the request is repeated only when the catalogue changes.
 bool MayPass(const grpc::Status& status) {
   switch (status.error_code()) {
     case grpc::StatusCode::UNAVAILABLE:

@@ -14,7 +14,8 @@ for (const [folder, found] of Object.entries(lock.packages)) {
   const file = readdirSync(folder).find((name) => /^(licen[cs]e|copying)/i.test(name));
   const about = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
   const licence = found.license ?? about.license;
-  // Some packages only name their licence. The text of Apache-2.0 is that of this project's own licence.
+  // Some packages only name their licence. If it is Apache-2.0, the text is taken from this project's LICENSE file,
+  // which has the same licence.
   const path = file !== undefined ? join(folder, file) : /Apache-2\.0/.test(licence) ? "../LICENSE" : undefined;
   const text = path === undefined ? `The package has no more than this name; see ${about.homepage}` : readFileSync(path, "utf8");
   if (path === undefined && licence === undefined) {
