@@ -191,7 +191,7 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
   await unfoldSettings();
   const balanced = await restingFrameAfter(() => chooseQuality("Balanced"));
   assert.deepEqual(await chosenQuality(), ["Balanced"]);
-  const slices = () => page.getByTestId("slices-number").inputValue();
+  const slices = () => page.getByTestId("technique-slices-number").inputValue();
   const fine = Number(await slices());
   await tool("fields");
   assert.equal(await page.getByTestId("field-cloud").getByText("Detail").count(), 1);
