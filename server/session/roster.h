@@ -115,8 +115,8 @@ class Roster {
   std::uint64_t Join(Role role, std::string name, Time now, std::string key = "",
                      bool answers = true);
   // Removes the person. Their control, or their request for control, goes to another connection
-  // with the same key and role. If there is none, it waits for such a connection. If the key is
-  // empty, control goes to the presenters.
+  // with the same key and role. If there is none, control waits for such a connection. If the key
+  // is empty, control goes to the presenters.
   void Leave(std::uint64_t id, Time now);
   // Records that a message came from the person.
   void Heard(std::uint64_t id);
@@ -129,7 +129,7 @@ class Roster {
 
   // Returns PERMISSION_DENIED unless the person steers.
   absl::Status MaySteer(std::uint64_t id) const;
-  // Checks the same for a presenter who has the presenter's key but is not in the roster. Returns
+  // Checks whether a caller with the presenter's key that is not in the roster may steer. Returns
   // PERMISSION_DENIED while a viewer steers.
   absl::Status PresenterMaySteer() const;
 

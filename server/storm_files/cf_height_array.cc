@@ -314,7 +314,7 @@ absl::StatusOr<CfHeightArray> FindHeightArray(const netcdf::NetcdfFile& file,
       found.unread.Update(first.status());
       continue;
     }
-    // Faces are better than middles.
+    // An array of faces is preferred, because middles leave the faces to be assumed.
     if (found.heights.has_value() &&
         (found.heights->kind == CfHeightKind::kFaces || !match.HasFaces())) {
       continue;

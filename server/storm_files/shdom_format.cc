@@ -63,7 +63,7 @@ absl::Status SkipPhaseFunction(NumberText& text, bool is_polarized) {
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(int terms,
                                text.Integer("the degree of a phase function", 0, kMostSeriesTerms));
-  if (is_polarized) ++terms;  // the term of degree 0
+  if (is_polarized) ++terms;  // a polarized series also lists the term of degree 0
   return text.SkipNumbers(terms, "a term of a phase function");
 }
 

@@ -186,7 +186,7 @@ class CatalogueScan {
   std::map<std::vector<std::string>, KnownTogether> together_;
   std::set<std::string> reported_;  // reasons that were logged, and notes about storms
   LeftOutLog left_out_;
-  Time now_;  // of the scan in progress
+  Time now_;  // the time of the scan in progress
   FairFolders turns_;
   Time turn_ends_;
   std::map<std::string, Waiting, FolderOrder> waiting_;  // by folder
