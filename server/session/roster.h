@@ -73,7 +73,7 @@ struct KeptControl {
   bool operator==(const KeptControl&) const = default;
 };
 
-// Timeouts for people who wait for one another.
+// Timeouts of requests for control, and of people whose connections may be lost.
 struct RosterTimeouts {
   // Time to answer a request for control.
   std::chrono::milliseconds answer = std::chrono::seconds(20);
@@ -223,7 +223,8 @@ class Roster {
   std::map<std::pair<Role, std::string>, Request> asked_and_left_;
   std::vector<Person> people_;
   std::uint64_t steering_ = 0;
-  // The time since which control is kept for absent presenters; absent if it is not kept for them.
+  // The time since which control is kept for absent presenters. No value if it is not kept for
+  // them.
   std::optional<Time> away_since_;
   std::optional<Awaited> awaited_;  // set while control waits for that person
   std::uint64_t count_ = 0;

@@ -71,7 +71,8 @@ std::optional<CfVariable> FindPlaceVariable(const netcdf::NetcdfFile& file,
       continue;
     }
     if (!DegreesIn(described.units, direction).has_value()) continue;
-    // Units without a direction, such as radians, say nothing without a standard name.
+    // Units without a direction, such as radians, do not tell a latitude from a longitude. Then the
+    // standard name is needed.
     const bool known = described.standard_name == standard || DirectionOf(described) == direction;
     const auto variable = Arrange(file, name, on);
     if (!known || !variable.ok()) continue;

@@ -253,8 +253,8 @@ void Walk::Flatten(Node& node, std::vector<ListedFolder>& listed) {
 }
 
 // Finds `folder` among the folders that the walk has met, or else the nearest folder above
-// `folder`. Returns the found folder if it was not listed to its end. Otherwise returns null: the
-// walk has then met all files of `folder` that exist.
+// `folder`. Returns the found folder if it was not listed to its end. Otherwise returns null,
+// because the walk has then met all files of `folder` that it could list.
 const Node* Walk::FindUnlisted(const fs::path& folder) const {
   const fs::path relative = folder.lexically_relative(root_.path);
   const Node* node = &root_;
