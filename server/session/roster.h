@@ -83,8 +83,8 @@ struct RosterTimeouts {
   std::chrono::milliseconds away = std::chrono::seconds(60);
   // How long control waits for a person whose connection was lost, before others get it.
   std::chrono::milliseconds come_back = std::chrono::seconds(10);
-  // The same wait after a restart of the server. It is longer because clients wait longer after
-  // each failed attempt to reconnect.
+  // How long control waits for such a person after a restart of the server. The wait is longer
+  // because clients wait longer after each failed attempt to reconnect.
   std::chrono::milliseconds come_back_to_new_server = std::chrono::seconds(30);
   // How long a doubted person has to give a sign of life. The first limit counts from when the
   // question was sent, the second from when the doubt began. The second is longer because the

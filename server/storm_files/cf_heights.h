@@ -49,9 +49,9 @@ struct CfHeights {
   std::optional<CfColumnValue> ground;
   // The term a of kLinear and kPressure at the faces, upwards, one more than layers.
   std::vector<double> a;                // in m or Pa
-  std::vector<CfSurfaceTerm> surfaces;  // of kLinear: heights of the ground, or parts of them
+  std::vector<CfSurfaceTerm> surfaces;  // only for kLinear: heights of the ground, or parts of them
   std::vector<double> b;                // the term b of kPressure, at the same faces as `a`
-  std::optional<CfColumnValue> surface_pressure;  // of kPressure
+  std::optional<CfColumnValue> surface_pressure;  // only for kPressure
   // The terms of kPressure at the layers' middles, upwards.
   std::vector<double> a_middle;
   std::vector<double> b_middle;

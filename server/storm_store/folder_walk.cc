@@ -106,7 +106,7 @@ class Walk {
   std::vector<Link> links_;
   std::set<std::pair<dev_t, ino_t>> visited_;  // folders, by device and inode
   std::size_t entries_ = 0;
-  bool has_stopped_ = false;  // at a limit
+  bool has_stopped_ = false;  // true if the walk stopped at a limit
 };
 
 bool Walk::IsNew(const fs::path& path) {
