@@ -73,7 +73,7 @@ struct KeptControl {
   bool operator==(const KeptControl&) const = default;
 };
 
-// Timeouts for people who wait for one another.
+// Timeouts of requests for control, and of people whose connections may be lost.
 struct RosterTimeouts {
   // Time to answer a request for control.
   std::chrono::milliseconds answer = std::chrono::seconds(20);
@@ -83,8 +83,8 @@ struct RosterTimeouts {
   std::chrono::milliseconds away = std::chrono::seconds(60);
   // How long control waits for a person whose connection was lost, before others get it.
   std::chrono::milliseconds come_back = std::chrono::seconds(10);
-  // The same wait after a restart of the server. It is longer because clients wait longer after
-  // each failed attempt to reconnect.
+  // How long control waits for such a person after a restart of the server. The wait is longer
+  // because clients wait longer after each failed attempt to reconnect.
   std::chrono::milliseconds come_back_to_new_server = std::chrono::seconds(30);
   // How long a doubted person has to give a sign of life. The first limit counts from when the
   // question was sent, the second from when the doubt began. The second is longer because the
@@ -115,8 +115,8 @@ class Roster {
   std::uint64_t Join(Role role, std::string name, Time now, std::string key = "",
                      bool answers = true);
   // Removes the person. Their control, or their request for control, goes to another connection
-  // with the same key and role. If there is none, it waits for such a connection. If the key is
-  // empty, control goes to the presenters.
+  // with the same key and role. If there is none, control waits for such a connection. If the key
+  // is empty, control goes to the presenters.
   void Leave(std::uint64_t id, Time now);
   // Records that a message came from the person.
   void Heard(std::uint64_t id);
@@ -129,7 +129,7 @@ class Roster {
 
   // Returns PERMISSION_DENIED unless the person steers.
   absl::Status MaySteer(std::uint64_t id) const;
-  // Checks the same for a presenter who has the presenter's key but is not in the roster. Returns
+  // Checks whether a caller with the presenter's key that is not in the roster may steer. Returns
   // PERMISSION_DENIED while a viewer steers.
   absl::Status PresenterMaySteer() const;
 
@@ -223,7 +223,8 @@ class Roster {
   std::map<std::pair<Role, std::string>, Request> asked_and_left_;
   std::vector<Person> people_;
   std::uint64_t steering_ = 0;
-  // The time since which control is kept for absent presenters; absent if it is not kept for them.
+  // The time since which control is kept for absent presenters. No value if it is not kept for
+  // them.
   std::optional<Time> away_since_;
   std::optional<Awaited> awaited_;  // set while control waits for that person
   std::uint64_t count_ = 0;

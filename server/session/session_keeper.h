@@ -1,6 +1,6 @@
-// Keeps sessions in a store, on its own thread, so that the disk never delays a frame. It delays
-// only the requests that wait for SaveThen. Restores the sessions when the server starts, saves
-// changed sessions twice a second, and removes those that were closed or have expired.
+// Keeps sessions in a store, on its own thread, so that the disk never delays a frame. The disk
+// delays only the requests that wait for SaveThen. Restores the sessions when the server starts,
+// saves changed sessions twice a second, and removes those that were closed or have expired.
 #pragma once
 
 #include <chrono>

@@ -22,7 +22,7 @@ struct SessionKeys {
 struct SessionRecord {
   std::string id;
   SessionKeys keys;
-  std::string owner;  // identity of the caller that created it; empty if it has no owner
+  std::string owner;  // identity of the caller that created the session; empty if none
   Rules rules;
   KeptControl control;
   std::string scene;  // as the service serialized it; opaque here

@@ -398,7 +398,7 @@ void Sessions::SetRosterTimeouts(const RosterTimeouts& timeouts) {
           return absl::OkStatus();
         },
         session->Now());
-    (void)set;  // the change never fails
+    (void)set;  // the lambda above never fails
   }
 }
 

@@ -73,7 +73,7 @@ struct SerializedScene {
 
 class Session {
  public:
-  // `signals` are called from any thread. `time` must outlive it.
+  // `signals` are called from any thread. `time` must outlive the session.
   Session(std::string id, SessionKeys keys, const Rules& rules, Board board,
           const AudienceFormat& format, const SessionSignals& signals,
           const RosterTimeouts& timeouts = {}, std::string owner = "",
@@ -82,7 +82,7 @@ class Session {
   // Identifies the session in this process. The id is not secret, unlike the keys.
   const std::string& id() const { return id_; }
   const SessionKeys& keys() const { return keys_; }
-  // The identity of the caller that created it; empty if it has no owner.
+  // The identity of the caller that created the session; empty if the session has no owner.
   const std::string& owner() const { return owner_; }
   // Returns true for the internal session that draws an OwnView. No key opens such a session.
   bool IsOwnView() const { return keys_.viewer.empty(); }
@@ -105,8 +105,8 @@ class Session {
   void Drop(std::uint64_t revision);
   // Replaces the newest scene unless the newest scene has a higher revision. `domain` identifies
   // the domain of the scene's storm (storm_store::DomainOf), if known. Returns false if the
-  // revision was dropped because its sender lost control, so that later changes were made without
-  // it.
+  // revision was dropped because its sender lost control. Later changes of the scene do not contain
+  // the dropped one.
   bool Show(std::uint64_t revision, scene::Scene scene, std::string serialized = "",
             const std::optional<std::string>& domain = std::nullopt);
   std::optional<NewestScene> Newest() const;

@@ -120,9 +120,9 @@ absl::Status RunSteps(Database& database, std::int64_t version) {
   return absl::OkStatus();
 }
 
-// Checks that the file has all columns of the newest version, as tables, and that nothing in it
-// changes what the SQL of this program does. Tables of other programs, for example for backups, may
-// be there.
+// Checks that the file's tables have all columns of the newest version. Also checks that it has no
+// views or triggers, which could change what the SQL of this program does. Tables of other
+// programs, for example for backups, may be there.
 absl::Status CheckTables(Database& database, const std::string& path) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::set<std::string> foreign,
                                TextsOf(database,

@@ -17,8 +17,8 @@ namespace {
 // while the server runs.
 constexpr int kBusyTimeoutMs = 2000;
 
-// Returns the path without links in its folder. SQLite then refuses a link in place of the file,
-// but not one that leads to the folder.
+// Returns the path with the symbolic links in its folder resolved. SQLite (SQLITE_OPEN_NOFOLLOW)
+// refuses a path with any link, so it now refuses only a link in place of the file itself.
 std::string PathInFolder(const std::string& path) {
   const std::filesystem::path file(path);
   std::error_code error;

@@ -49,7 +49,7 @@ absl::Status CheckWhole(Database& database, const std::string& path) {
 }
 
 // Brings an existing file to this version. Earlier versions kept a write-ahead log next to the
-// file. In the exclusive mode SQLite reads it without its index file, which may be damaged.
+// file. In the exclusive mode SQLite reads the log without its index file, which may be damaged.
 absl::Status Prepare(const std::string& path) {
   THUNDERHEAD_ASSIGN_OR_RETURN(Database database, Database::Open(path));
   THUNDERHEAD_RETURN_IF_ERROR(database.Execute("PRAGMA locking_mode = EXCLUSIVE"));

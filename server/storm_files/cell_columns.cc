@@ -63,7 +63,7 @@ std::optional<EarthPlace> MeanPlace(const CellPlaces& places) {
     mean += UnitVectorOf(places, cell);
   }
   mean /= static_cast<double>(places.latitude_deg.size());
-  constexpr double kShortest = 0.3;  // for cells that cover a hemisphere, the length is 0.5
+  constexpr double kShortest = 0.3;  // the length is 0.5 for cells that cover a hemisphere
   if (!(glm::length(mean) > kShortest)) return std::nullopt;
   return EarthPlace{glm::degrees(std::atan2(mean.z, std::hypot(mean.x, mean.y))),
                     glm::degrees(std::atan2(mean.y, mean.x))};
@@ -131,7 +131,7 @@ absl::Status CheckArea(const std::vector<glm::dvec2>& plane_m) {
 
 // Distances between the cells and their neighbours.
 struct Neighbours {
-  double median_m = 0.0;  // of the distances to the nearest neighbour
+  double median_m = 0.0;  // median of the distances to the nearest neighbour
   double mean_m = 0.0;
   double shortest_m = 0.0;
   double longest_m = 0.0;
@@ -269,7 +269,7 @@ class CellRaster {
   const Box box_;
   EvenColumns& even_;
   glm::dvec2 first_m_{0.0};       // centre of the south-western column
-  double farthest_square_ = 0.0;  // in m2; a place is outside if it is farther from all cells
+  double farthest_square_ = 0.0;  // squared distance in m2 beyond which a place is outside
   std::uint32_t last_ = 0;        // the cell of the last column
 };
 

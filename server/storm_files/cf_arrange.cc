@@ -218,7 +218,8 @@ absl::StatusOr<CfVariable> Arrange(const netcdf::NetcdfFile& file, const std::st
       continue;
     }
     if (shape[i] == 1) continue;
-    // Another dimension in the same direction holds the faces between the cells.
+    // This is none of the fields' dimensions. If it has the direction of one of them and is longer
+    // by 1, it holds the faces between the cells.
     CfDimension dimension{names[i], "", shape[i]};
     const auto direction = FindDirection(file, variable, dimension);
     const auto at = static_cast<std::size_t>(direction.value_or(CfDirection::kTime));

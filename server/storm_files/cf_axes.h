@@ -60,8 +60,8 @@ absl::StatusOr<std::vector<double>> ReadBounds(const netcdf::NetcdfFile& file,
                                                const std::string& coordinate, std::size_t cells,
                                                double period);
 
-// Does the same with the variable `bounds`, which must exist. The coordinate need not rise or fall
-// all along.
+// Returns the faces like ReadBounds, but from the variable `bounds`, which must exist. The
+// coordinate need not rise or fall all along.
 absl::StatusOr<std::vector<double>> ReadBoundsIn(const netcdf::NetcdfFile& file,
                                                  const std::string& bounds,
                                                  const std::string& coordinate, std::size_t cells,

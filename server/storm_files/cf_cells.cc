@@ -49,8 +49,8 @@ bool HoldsPlaces(const CfDescription& described, CfDirection direction) {
          DirectionOf({"", "", described.units, "", ""}) == direction;
 }
 
-// Returns the variable with a coordinate of exactly the cells. Variables that the field lists are
-// preferred.
+// Returns the variable with a coordinate for each cell, whose only dimension is that of the cells.
+// Variables that the field lists are preferred.
 std::optional<CellCoordinate> FindCoordinate(const netcdf::NetcdfFile& file,
                                              const std::string& field, const std::string& dimension,
                                              CfDirection direction) {

@@ -31,8 +31,9 @@ std::string RunOf(const CfMetadata& metadata) {
     absl::StrAppend(&run, " ", heights.faces_m.front(), " ",
                     depth_m / static_cast<double>(metadata.order.cells[2]));
   }
-  // Two forecasts of one time are two storms. A series of analyses is one storm, although each is a
-  // separate run.
+  // Two forecasts of one time are two storms, so the text includes the start of a forecast's run. A
+  // series of analyses is one storm, although each analysis is a separate run that starts at its
+  // own time.
   if (metadata.run_start.has_value() && std::ranges::any_of(metadata.times, [&](absl::Time time) {
         return time != *metadata.run_start;
       })) {
@@ -42,16 +43,16 @@ std::string RunOf(const CfMetadata& metadata) {
 }
 
 volume::EarthPlace MiddleOf(const EvenColumns& even) {
-  // Rounding must not turn Greenwich into a place west of it.
+  // A longitude that rounding has made slightly negative would be shown as west of Greenwich.
   constexpr double kRounding_deg = 1e-9;
   volume::EarthPlace middle = even.middle;
   if (std::abs(middle.longitude_deg) < kRounding_deg) middle.longitude_deg = 0.0;
   return middle;
 }
 
-// Returns StormFile::grid. Files of a series that follows a storm have equal steps between their
-// coordinates, to the accuracy of single precision, but other true distances. It is empty if the
-// columns have no coordinates.
+// Returns StormFile::grid. The files of a series whose domain follows a storm have equal steps
+// between their coordinates, to the accuracy of single precision. Their true distances differ, so
+// the text contains only the steps. It is empty if the columns have no coordinates.
 std::string GridOf(const CfMetadata& metadata) {
   if (metadata.x.unit == CfAxisUnit::kNone) return "";
   return absl::StrFormat("%d x %d columns, %.3g x %.3g %s", metadata.x.cells, metadata.y.cells,

@@ -395,7 +395,8 @@ absl::StatusOr<std::optional<CfHeights>> ReadCm1Heights(const netcdf::NetcdfFile
                      " they need the height of the model's top: add zhval, zf or "
                      "ztop"));
   }
-  // The faces of the file, or those around the nominal heights, which the axis puts in order.
+  // If the file has no usable faces, takes those that the axis has around the nominal heights. The
+  // axis has put them in ascending order.
   if (nominal.faces.size() != z.length + 1) nominal.faces = std::move(axis.faces);
   if (nominal.faces.front() > nominal.faces.back()) std::ranges::reverse(nominal.faces);
   for (std::size_t i = 0; i < z.length; ++i) {

@@ -23,9 +23,9 @@ constexpr double kSameNumber = 1e-6;
 // The kind of heights in an array, by its name.
 enum class Kind {
   kNone,     // no heights of layers
-  kUnknown,  // the number of its levels decides
+  kUnknown,  // the number of levels decides whether they are faces or middles
   kMiddles,
-  kHalfLevels,  // numbered as in COSMO and ICON
+  kHalfLevels,  // faces, numbered as in COSMO and ICON
 };
 
 Kind KindOf(const CfDescription& variable) {
@@ -314,7 +314,7 @@ absl::StatusOr<CfHeightArray> FindHeightArray(const netcdf::NetcdfFile& file,
       found.unread.Update(first.status());
       continue;
     }
-    // Faces are better than middles.
+    // An array of faces is preferred, because middles leave the faces to be assumed.
     if (found.heights.has_value() &&
         (found.heights->kind == CfHeightKind::kFaces || !match.HasFaces())) {
       continue;

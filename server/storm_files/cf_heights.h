@@ -38,20 +38,20 @@ struct CfSurfaceTerm {
 // The heights of layers, in the order of the file unless a member says otherwise.
 struct CfHeights {
   CfHeightKind kind = CfHeightKind::kAxis;
-  std::string name;                 // of the variable, for messages
+  std::string name;                 // name of the variable with the heights, for messages
   bool reversed = false;            // the file's layers run downwards
-  std::vector<double> faces_m;      // of kAxis and kAboveGround, ascending
-  std::optional<CfVariable> array;  // of kMiddles and kFaces
-  double scale = 1.0;               // of the array, to m
-  bool above_ground = false;        // of the array
+  std::vector<double> faces_m;      // only for kAxis and kAboveGround, ascending
+  std::optional<CfVariable> array;  // the array of heights; only for kMiddles and kFaces
+  double scale = 1.0;               // factor from the array's unit to m
+  bool above_ground = false;        // true if the array's heights are above the ground
   std::optional<double> ground_m;   // the height of flat ground, if the file gives it as a number
   // The ground, if it is the lowest face of the array and the layers end above it.
   std::optional<CfColumnValue> ground;
   // The term a of kLinear and kPressure at the faces, upwards, one more than layers.
   std::vector<double> a;                // in m or Pa
-  std::vector<CfSurfaceTerm> surfaces;  // of kLinear: heights of the ground, or parts of them
-  std::vector<double> b;                // of kPressure, like a
-  std::optional<CfColumnValue> surface_pressure;  // of kPressure
+  std::vector<CfSurfaceTerm> surfaces;  // only for kLinear: heights of the ground, or parts of them
+  std::vector<double> b;                // the term b of kPressure, at the same faces as `a`
+  std::optional<CfColumnValue> surface_pressure;  // only for kPressure
   // The terms of kPressure at the layers' middles, upwards.
   std::vector<double> a_middle;
   std::vector<double> b_middle;

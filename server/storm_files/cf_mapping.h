@@ -13,9 +13,9 @@
 namespace thunderhead::storm_files {
 
 struct CfMapping {
-  std::string name;               // of the variable; empty if the field names none
+  std::string name;               // name of the mapping's variable; empty if the field names none
   bool exists = false;            // whether the file has the variable
-  bool lists_coordinate = false;  // whether the field says that it maps this very coordinate
+  bool lists_coordinate = false;  // whether the field says that the mapping is for this coordinate
   Attributes attributes;
 };
 

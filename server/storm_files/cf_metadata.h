@@ -38,7 +38,7 @@ struct CfWindField {
 
 struct CfMetadata {
   std::string path;
-  std::string heights_path;  // of the run's file of heights; empty if it has none
+  std::string heights_path;  // path of the run's file of heights; empty if there is none
   std::string group;         // the group with the fields, e.g. "/les"; empty for the root
   CfDimensions dimensions;
   CfAxis x;

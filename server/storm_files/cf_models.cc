@@ -41,7 +41,7 @@ bool Shows(const netcdf::NetcdfFile& file, const Signs& signs) {
   });
 }
 
-// ICON's masses are shares of the whole air.
+// ICON's mixing ratios are per kg of the whole air: dry air, vapour and condensate together.
 void ApplyIcon(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
   const bool icon = file.TextAttribute("", "uuidOfHGrid").has_value() ||
                     file.NumberAttribute("", "number_of_grid_used").has_value();
@@ -59,7 +59,8 @@ void ApplyIcon(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
 
 void ApplyMpas(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
   if (!IsMpas(file) || !Has(metadata, AirVariable::kDensity)) return;
-  // The humidity is removed, because the density then counts as that of dry air.
+  // MPAS writes the density of dry air. Without a humidity, this program takes the density as that
+  // of dry air, so the humidity is left out.
   std::erase_if(metadata.air,
                 [](const CfAirField& field) { return field.air.variable == AirVariable::kVapour; });
   metadata.assumptions.push_back("The air's density is that of dry air, as in MPAS.");

@@ -92,7 +92,7 @@ constexpr std::array kVariables = {
     Named{"q_cloud_ice_mass", Hydrometeor::kIce},
     Named{"q_snow_mass", Hydrometeor::kSnow},
     Named{"q_graupel_mass", Hydrometeor::kGraupel},
-    // UCLA-LES, whose names say little
+    // UCLA-LES, whose names are so short that the long_name must match, too
     Named{"l", Hydrometeor::kCloud, "liquid water mixing ratio"},
     Named{"r", Hydrometeor::kRain, "rain-water mixing ratio"},
     Named{"rice", Hydrometeor::kIce, "ice mixing ratio"},

@@ -66,8 +66,8 @@ enum class WindVariable { kEastward, kNorthward, kUpward, kTurbulentEnergy };
 
 struct CfWind {
   WindVariable variable = WindVariable::kEastward;
-  bool known_units = true;  // false if the units are no speed (wind) or speed squared (energy)
-  double scale = 1.0;       // to m s-1, or m2 s-2
+  bool known_units = true;  // false if the units do not fit: speed, or speed squared for energy
+  double scale = 1.0;       // factor from the variable's unit to m s-1 or m2 s-2
   bool true_east = false;  // true if the component is to the true east or north, not along the grid
 };
 

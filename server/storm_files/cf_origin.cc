@@ -11,7 +11,7 @@ namespace thunderhead::storm_files {
 std::optional<CfOrigin> ReadCfOrigin(const netcdf::NetcdfFile& file) {
   const auto latitude_deg = file.NumberAttribute("", "origin_lat");
   const auto longitude_deg = file.NumberAttribute("", "origin_lon");
-  // The comparison fails for NaN.
+  // The negated comparisons also refuse NaN.
   if (!latitude_deg.has_value() || !longitude_deg.has_value() ||
       !(std::abs(*latitude_deg) < 90.0) || !(std::abs(*longitude_deg) <= 360.0)) {
     return std::nullopt;

@@ -71,7 +71,8 @@ std::optional<CfVariable> FindPlaceVariable(const netcdf::NetcdfFile& file,
       continue;
     }
     if (!DegreesIn(described.units, direction).has_value()) continue;
-    // Units without a direction, such as radians, say nothing without a standard name.
+    // Units without a direction, such as radians, do not tell a latitude from a longitude. Then the
+    // standard name is needed.
     const bool known = described.standard_name == standard || DirectionOf(described) == direction;
     const auto variable = Arrange(file, name, on);
     if (!known || !variable.ok()) continue;
@@ -106,7 +107,7 @@ absl::StatusOr<std::optional<PlaceArrays>> ReadPlaceArrays(const netcdf::NetcdfF
   for (float& each : arrays.latitude_deg) each *= degrees(*latitude, CfDirection::kY);
   for (float& each : arrays.longitude_deg) each *= degrees(*longitude, CfDirection::kX);
   arrays.longitude = longitude->name;
-  // Some programs write zeros where the run is idealised.
+  // Some programs write zeros for an idealised run, so arrays with a single place do not count.
   const auto [low, high] = std::ranges::minmax(arrays.latitude_deg);
   const auto [west, east] = std::ranges::minmax(arrays.longitude_deg);
   if (low == high && west == east) return std::optional<PlaceArrays>();
@@ -208,8 +209,8 @@ ColumnPlaces PlacesOnMap(const GridMapping& mapping, const CfAxis& x, const CfAx
 }
 
 // Returns the largest distance between a column's place on the map and its longitude and latitude,
-// of columns all over the domain. The longitudes count from `meridian_deg` degrees east of those
-// that `arrays` says. Returns nothing if a column is not on the map.
+// of columns all over the domain. Adds `meridian_deg` to the longitudes of `arrays` before the
+// comparison. Returns nothing if a column is not on the map.
 std::optional<double> Disagreement_m(const ColumnPlaces& on_map, const PlaceArrays& arrays,
                                      double meridian_deg) {
   const auto columns = ModelColumns::Of(on_map);
@@ -284,7 +285,8 @@ absl::StatusOr<std::optional<ColumnPlaces>> PlacesByMapping(
   }
   const ColumnPlaces on_map = PlacesOnMap(*mapping, x, y);
   if (arrays.has_value()) {
-    // The arrays say where each column is. They may be rounded to single precision.
+    // The arrays give the place of each column directly, so they are used if the mapping disagrees
+    // with them. They may be rounded to single precision.
     constexpr double kRounding_m = 3.0;
     const double allowed_m = kRounding_m + 0.1 * std::min(on_map.step.x, on_map.step.y);
     const auto apart_m = Disagreement_m(on_map, *arrays, 0.0);

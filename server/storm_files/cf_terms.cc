@@ -36,7 +36,7 @@ std::optional<CfParametric> FindByAttribute(const netcdf::NetcdfFile& file, cons
     if (terms.empty() || !on.ok() || !shape.ok() || on->size() != 1) continue;
     if ((*on)[0] == z.name && !found.has_value()) {
       found = CfParametric{name, file.TextOrEmpty(name, "standard_name"), TermsOf(terms), {}};
-      // Bounds have formula_terms of their own.
+      // The variable of the bounds has its own formula_terms, which give the terms at the faces.
       const std::string bounds = file.TextOrEmpty(name, "bounds");
       if (!bounds.empty() && file.HasVariable(bounds)) {
         found->terms_at_faces = TermsOf(file.TextOrEmpty(bounds, "formula_terms"));

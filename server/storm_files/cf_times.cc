@@ -116,7 +116,8 @@ absl::StatusOr<CountedFrom> ParseUnits(const std::string& units) {
   const std::size_t since = lower.find(std::string(kSince));
   const std::string unit(absl::StripAsciiWhitespace(units.substr(0, since)));
   const std::optional<UnitConversion> seconds = ConversionOf(unit, "s");
-  // "10 minutes" is a unit of UDUNITS, but no file means it.
+  // UDUNITS also accepts "10 minutes" as a unit. It is refused, because a file with such a unit is
+  // probably wrong.
   const bool named = seconds.has_value() && !unit.empty() && !absl::ascii_isdigit(unit[0]);
   if (!named || !(seconds->scale > 0.0) || seconds->offset != 0.0) {
     return BadUnits(units, std::string(kExample));

@@ -40,13 +40,13 @@ struct CloudHeader {
   double dx_m = 0.0;
   double dy_m = 0.0;
   std::vector<double> heights_m;      // of the grid points, or of the faces between layers
-  bool heights_are_faces = false;     // then there is one height more than layers
+  bool heights_are_faces = false;     // if true, there is one height more than layers
   std::vector<double> temperature_K;  // at the heights; empty if the file has none
   // In g m-3 if it is a mass concentration, and in km-1 if it is an extinction. Radii are in um.
   volume::Quantity quantity = volume::Quantity::kMassConcentration;
   std::string variable;  // name of the amount
   CloudColumns columns;
-  int first_index = 1;  // of the grid points, as the program counts
+  int first_index = 1;  // index of the first grid point along each axis, as the program counts
   std::vector<std::string> assumptions;
 };
 

@@ -323,8 +323,9 @@ std::vector<WideMap> Evener::ConformalMaps() const {
   const std::string rest = absl::StrFormat(" +lon_0=%.10g +x_0=0 +y_0=0 %s +units=m +no_defs",
                                            middle_.longitude_deg, model_.Earth());
   std::vector<std::string> projections = {StereographicAt(middle_, model_.Earth())};
-  // A Lambert cone touches the Earth between the domain's south and north (Snyder, page 107). It is
-  // not used near a pole or the equator, where it is nearly a plane or a cylinder.
+  // A Lambert cone touches the Earth between the domain's south and north (Snyder 1987, Map
+  // Projections, page 107). It is not used near a pole or the equator, where it is nearly a plane
+  // or a cylinder.
   constexpr double kFarthest_deg = 80.0;
   constexpr double kNearest_deg = 5.0;
   constexpr double kShare = 1.0 / 6.0;

@@ -26,8 +26,8 @@ struct ColumnPlaces {
   std::string projection;
   glm::dvec2 first{0.0};  // plane coordinates of the centre of the first (south-western) column
   glm::dvec2 step{0.0};   // between neighbouring columns, above 0
-  // Otherwise the place of each column, x fastest, and the radius of the model's Earth. Longitudes
-  // may jump by 360 degrees between columns.
+  // If `projection` is empty: the place of each column, x fastest, and the radius of the model's
+  // Earth. Longitudes may jump by 360 degrees between columns.
   std::vector<float> latitude_deg;
   std::vector<float> longitude_deg;
   double radius_m = 6'371'229.0;

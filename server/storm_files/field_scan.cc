@@ -34,7 +34,7 @@ void ScanLevel(const LayerAir& air, int level, const float* density, float* valu
   std::int64_t negative_cells = 0;
   for (std::size_t i = 0; i < air.columns; ++i) {
     const float value = values[i];
-    // All comparisons fail for NaN.
+    // All comparisons fail for NaN, so NaN counts as missing.
     const bool present = value > kMinAmount && value < kInfinity && density[i] > 0.0F;
     missing_cells += present ? 0 : 1;
     negative_cells += present && value < 0.0F ? 1 : 0;

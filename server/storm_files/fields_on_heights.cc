@@ -83,7 +83,7 @@ class TimeReader {
   LayerAir air_;
   VerticalGrid own_grid_;
   VerticalGrid grid_;
-  std::vector<float> ground_m_;  // of each column, NaN if missing; empty if the source has none
+  std::vector<float> ground_m_;  // height by column, NaN if missing; empty if the source has none
   // The bottoms and tops of layers before they were cut at the ground. Empty if none was cut.
   std::vector<float> uncut_m_;
   // True if the layers are the grid's cells in every column, before they were cut at the ground.
@@ -113,7 +113,7 @@ absl::Status TimeReader::CheckSize(const std::string& what, const std::vector<fl
 void LeaveOutImpossible(std::vector<float>& heights_m) {
   constexpr float kHighest_m = 1e6F;
   for (float& height_m : heights_m) {
-    // The comparison fails for NaN.
+    // The negated comparison is also true for NaN.
     if (!(std::abs(height_m) < kHighest_m)) height_m = std::nanf("");
   }
 }
@@ -406,7 +406,8 @@ absl::Status TimeReader::ReadFields(volume::HydrometeorFields& result) {
   THUNDERHEAD_RETURN_IF_ERROR(take());
   if (!NeedsAir()) return absl::OkStatus();
   THUNDERHEAD_RETURN_IF_ERROR(CheckAir());
-  // There is one density for all fields: that of the first mass ratio, even if others differ.
+  // All fields get one density: that of the air (dry or whole) to which the first mass ratio
+  // refers, even if other mass ratios refer to the other one.
   const auto ratio =
       std::ranges::find(domain_.fields, volume::Quantity::kMixingRatio, &LayerField::quantity);
   result.air = MeanDensity(DensityFor(*ratio));

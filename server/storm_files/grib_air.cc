@@ -38,7 +38,8 @@ void CutAtGround(const std::vector<double>& level_pressure_Pa, const std::vector
         if (!std::isnan(ground)) interface_height_m[at + columns] = ground;
         continue;
       }
-      // The level above the ground may be nearer to it than to the next level.
+      // The interface above this level is half-way to the next level. If the ground lies higher
+      // than that, the level ends at the ground.
       interface_height_m[at + columns] = std::max(interface_height_m[at + columns], ground);
     }
   }

@@ -24,7 +24,7 @@ absl::StatusOr<std::vector<float>> AxisAngles(const grib::Grid& grid) {
   if (absl::StartsWith(grid.projection, "+proj=longlat")) return angles;
   THUNDERHEAD_ASSIGN_OR_RETURN(const ModelColumns columns, ModelColumns::Of(PlacesOf(grid)));
   angles.reserve(grid.Points());
-  constexpr double kHalf = 0.005;  // of a column, for the direction
+  constexpr double kHalf = 0.005;  // half the distance, in columns, between the compared places
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
       const auto from = columns.PlaceAt({column - kHalf, row});

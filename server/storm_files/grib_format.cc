@@ -26,7 +26,8 @@ class GribFormat final : public StormFormat {
     return grib::BeginsLikeGrib(start) || grib::BeginsCompressed(start);
   }
 
-  // Does not check a compressed file, because its listing has offsets in the decompressed file.
+  // Does not check a compressed file, because the offsets in its listing (.idx) are those in the
+  // decompressed file.
   absl::Status CheckNeighbours(const std::string& path, std::string_view start,
                                std::uint64_t size_bytes) const override {
     if (!grib::BeginsLikeGrib(start)) return absl::OkStatus();

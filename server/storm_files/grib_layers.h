@@ -27,7 +27,7 @@ struct GribPlace {
 struct GribSeries {
   GribKind kind = GribKind::kNone;
   std::string name;
-  bool on_half_levels = false;  // if true, it has one level more
+  bool on_half_levels = false;  // if true, `levels` has one level more than GribLayers::levels
   std::vector<GribPlace> levels;
 
   bool Empty() const { return levels.empty(); }
@@ -67,7 +67,7 @@ struct GribLayers {
   GribSeries wind_y;
   GribSeries ascent;
   GribSeries energy;
-  GribSeries surface_height;    // of one level, like the next ones
+  GribSeries surface_height;    // has one level, like the series down to green_cover
   GribSeries surface_pressure;  // kPressure or kLogPressure
   GribSeries land_use;          // empty if its classes are unknown
   GribSeries land_share;
@@ -84,7 +84,7 @@ struct GribContents {
   std::string path;               // of the storm, for errors
   std::vector<GribLayers> times;  // in ascending order
   grib::Grid grid;
-  GribPlace cell_latitude;  // of an unstructured grid, like the next
+  GribPlace cell_latitude;  // this and cell_longitude: only for an unstructured grid
   GribPlace cell_longitude;
   grib::Origin origin;
   int process = 0;

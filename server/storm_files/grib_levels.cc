@@ -85,7 +85,7 @@ std::set<double> Finder::LevelsOfState(absl::Time time) const {
   for (const Candidate& candidate : At(time)) {
     if (std::ranges::find(kState, candidate.meaning.kind) == kState.end()) continue;
     const grib::Field& field = candidate.Field();
-    // These are on half levels, of which there is one more.
+    // Heights on generalized levels are those of half levels, of which there is one more.
     const bool is_half_level =
         type_ == kGeneralized && candidate.meaning.kind == GribKind::kGeometricHeight;
     if (is_half_level) continue;
@@ -132,7 +132,8 @@ absl::Status Finder::ShareLevels(std::vector<Found>& needed, std::size_t amounts
     return Refused("has hydrometeors, temperature and humidity together on fewer than two levels");
   }
   std::vector<std::string> left_out;
-  // Between the shared levels, temperature may be on levels that no hydrometeor is on.
+  // Only levels below or above all shared ones are added. Between them, the file may have
+  // temperature on levels that it lacks for hydrometeors.
   for (const double level : of_state) {
     if (level < *shared.begin() || level > *shared.rbegin()) all.insert(level);
   }

@@ -46,7 +46,7 @@ struct GribMeaning {
   GribKind kind = GribKind::kNone;
   physics::Hydrometeor hydrometeor = physics::Hydrometeor::kCloud;  // for amounts and numbers
   volume::Quantity quantity = volume::Quantity::kMixingRatio;       // for amounts
-  bool is_specific = false;  // for amounts: the number says that they are per kg of whole air
+  bool is_specific = false;  // for amounts: true if the parameter is per kg of whole air
 };
 
 GribMeaning MeaningOf(const grib::Parameter& parameter);

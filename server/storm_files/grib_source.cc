@@ -191,7 +191,7 @@ absl::Status GribSource::Prepare() {
                    "again"));
 }
 
-// Levels that count upwards begin with 1 at the ground.
+// Checks that the lowest level is there. Levels that count upwards begin with 1 at the ground.
 absl::Status GribSource::CheckLowest() const {
   if (downwards_ || layers_.levels.front() == 1.0) return absl::OkStatus();
   return absl::DataLossError(

@@ -106,7 +106,8 @@ StormFile DescribeGribStorm(std::shared_ptr<const GribStorm> storm) {
                 static_cast<int>(contents.times.front().levels.size())};
   file.dx_m = even.dx_m;
   file.dy_m = even.dy_m;
-  // A grid that follows a storm has different true distances in each file.
+  // A grid that follows a storm has different true distances in each file, so the text has the
+  // steps on the map instead.
   if (!contents.grid.IsUnstructured()) {
     file.grid = absl::StrFormat("%d x %d columns, %.6g x %.6g of its map", contents.grid.columns,
                                 contents.grid.rows, contents.grid.step.x, contents.grid.step.y);

@@ -437,7 +437,7 @@ std::string EarthFigureOf(const Attributes& attributes) {
       !earth.Has("reference_ellipsoid_name")) {
     return "";
   }
-  earth.Start("merc");  // any projection of an ellipsoid
+  earth.Start("merc");  // any projection that takes an ellipsoid
   earth.AddEarth();
   const absl::StatusOr<GridMapping> mapping = earth.Finish();
   return mapping.ok() ? EarthOf(mapping->projection) : "";

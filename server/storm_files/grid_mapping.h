@@ -52,8 +52,8 @@ struct GridMapping {
 struct MappedGrid {
   // Values of x and y in the middle of the grid. Only grids of degrees need them.
   glm::dvec2 middle{0.0};
-  // The length of one unit of x and y in metres, if their unit is a length. Without it, they are
-  // taken as metres, and those of a geostationary grid as radians.
+  // The length of one unit of x and y in metres, if their unit is a length. Without it, x and y are
+  // taken to be in metres, or in radians for a geostationary grid.
   std::optional<double> unit_m;
 };
 

@@ -67,7 +67,7 @@ bool RaiseToGround(const std::vector<float>& ground_m, std::vector<float>& inter
   for (std::size_t i = 0; i < interface_height_m.size(); ++i) {
     float& height_m = interface_height_m[i];
     const float lowest_m = ground_m[i % columns];
-    // The comparison fails for NaN.
+    // The negated comparison is also true for NaN, so missing heights stay as they are.
     if (!(height_m < lowest_m - kSame_m)) continue;
     const float top_m = interface_height_m[top + i % columns];
     height_m = std::isnan(top_m) ? lowest_m : std::min(lowest_m, std::max(top_m, height_m));

@@ -9,7 +9,8 @@
 
 namespace thunderhead::storm_files {
 
-// No ground of the Earth is lower or higher, with room for the waves of spectral models.
+// No ground of the Earth is lower or higher. The limits leave room for the spurious waves in the
+// terrain of spectral models.
 inline constexpr float kLowestGround_m = -500.0F;
 inline constexpr float kHighestGround_m = 9000.0F;
 

@@ -45,7 +45,7 @@ struct LayerDomain {
   absl::Time time;         // the valid time
   glm::ivec3 cells{0};     // columns west-east and south-north, and layers
   double dx_m = 0.0;       // mean true distance between neighbouring columns along x
-  double dy_m = 0.0;       // and along y
+  double dy_m = 0.0;       // mean true distance between neighbouring columns along y
   // The middle of the storm's columns relative to the middle of the whole domain; not 0 if the
   // source has a window of it only.
   glm::dvec2 middle_m{0.0};

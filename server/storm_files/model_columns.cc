@@ -21,7 +21,7 @@ namespace {
 void ToMetres(ColumnPlaces& places) {
   ProjectionWords words(places.projection);
   const double radius_m = words.Number("R").value_or(words.Number("a").value_or(places.radius_m));
-  // PROJ's eqc is a projection of a sphere.
+  // PROJ's eqc is a projection of a sphere, so the radius replaces an ellipsoid.
   for (const char* const name : {"a", "b", "rf", "f", "ellps", "datum"}) words.Remove(name);
   words.Set("R", radius_m);
   if (words.Text("proj") == "ob_tran") {

@@ -67,9 +67,9 @@ class NumberText {
 
   const std::shared_ptr<const base::ByteSource> bytes_;
   const std::string comments_;
-  std::uint64_t offset_ = 0;  // of the first byte that is not in `buffer_` yet
+  std::uint64_t offset_ = 0;  // offset in the file of the first byte that is not in `buffer_` yet
   std::string buffer_;
-  std::size_t begin_ = 0;  // of the first line in `buffer_` that was not returned yet
+  std::size_t begin_ = 0;  // start of the first line in `buffer_` that was not returned yet
   std::size_t line_number_ = 0;
   std::string_view rest_;
   double repeated_ = 0.0;  // the value of Fortran's "3*0.5"

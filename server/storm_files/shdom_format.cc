@@ -63,7 +63,7 @@ absl::Status SkipPhaseFunction(NumberText& text, bool is_polarized) {
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(int terms,
                                text.Integer("the degree of a phase function", 0, kMostSeriesTerms));
-  if (is_polarized) ++terms;  // the term of degree 0
+  if (is_polarized) ++terms;  // a polarized series also lists the term of degree 0
   return text.SkipNumbers(terms, "a term of a phase function");
 }
 
@@ -149,7 +149,7 @@ bool LooksLikePropertyFile(const std::vector<StartLine>& lines) {
            lines[2].numbers.size() >= kFewest;
   }
   constexpr std::size_t kSize = 3;
-  constexpr std::size_t kValues = 7;  // of a line of the standard format, without the series
+  constexpr std::size_t kValues = 7;  // values on a line of the standard format, without the series
   if (!lines[0].BeginsWithSize() || !lines[0].HasNumbers(kSize)) return false;
   const auto levels = static_cast<std::size_t>(lines[0].numbers[2]);
   return lines[1].HasNumbers(2 + levels) &&

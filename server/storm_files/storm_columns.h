@@ -26,8 +26,8 @@ class StormColumns {
 
   // Returns values of the source's columns, of any number of levels, at the storm's columns.
   std::vector<float> Of(std::vector<float> values, Beyond beyond) const;
-  // Does the same for a concentration, in place. Multiplies it by a factor that keeps its sum over
-  // the domain, and returns the factor.
+  // Replaces a concentration by its values at the storm's columns, as Of does. Multiplies it by a
+  // factor that keeps its sum over the domain, and returns the factor.
   double KeepSum(std::vector<float>& values) const;
   // Returns the index of the source's column that is nearest to the middle of a storm's column.
   std::size_t NearestTo(const glm::ivec2& column) const;

@@ -153,7 +153,7 @@ absl::StatusOr<StormFile> StormFormat::DescribeTogether(
 
 absl::StatusOr<const StormFormat*> StormFormats::FormatOf(const UnknownFile& file) const {
   FormatFit best = FormatFit::kNone;
-  std::vector<const StormFormat*> fitting;  // fit as well as `best`
+  std::vector<const StormFormat*> fitting;  // the formats whose fit is `best`
   for (const std::shared_ptr<const StormFormat>& format : formats_) {
     const FormatFit fit = format->Sniff(file);
     if (fit == FormatFit::kNone || fit < best) continue;
@@ -162,7 +162,8 @@ absl::StatusOr<const StormFormat*> StormFormats::FormatOf(const UnknownFile& fil
     fitting.push_back(format.get());
   }
   if (fitting.empty()) return NoneFits(file);
-  // The nearest format gives the reason why a file of no format cannot be read.
+  // A file that is only related to formats cannot be read. The first of them is returned, because
+  // its Describe gives the reason.
   if (fitting.size() == 1 || best == FormatFit::kRelated) return fitting.front();
   const auto append_name = [](std::string* out, const StormFormat* format) {
     out->append(format->Name());

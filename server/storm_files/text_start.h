@@ -13,7 +13,7 @@ inline constexpr int kMostGridPoints = 1'000'000;
 // A line among the first bytes of a file.
 struct StartLine {
   std::string_view text;        // without the comment
-  std::vector<double> numbers;  // with which the line begins
+  std::vector<double> numbers;  // the numbers with which the line begins
   bool only_numbers = false;
   bool is_cut = false;  // true if the line continues after the first bytes
 

@@ -50,7 +50,8 @@ class LambertScale {
   }
 
  private:
-  // Returns the logarithm of a parallel's radius in the Earth's radii (Snyder, equation 14-15).
+  // Returns the logarithm of a parallel's radius in the Earth's radii (Snyder 1987, Map
+  // Projections, equation 14-15).
   double LogParallel(double latitude) const {
     const double sine = eccentricity_ * std::sin(latitude);
     return std::log(std::cos(latitude)) - 0.5 * std::log(1.0 - sine * sine);

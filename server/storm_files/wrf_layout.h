@@ -72,7 +72,8 @@ absl::StatusOr<std::size_t> ValuesOfTime(const netcdf::NetcdfFile& file,
                                          const std::string& variable, std::size_t rank);
 
 // Reads one time of a variable. A variable without time has the same values at all times, and so
-// has a variable that never changes and has only one time. `huge` is for variables with times.
+// has a variable that never changes and has only one time. `huge` says what a huge value means
+// (netcdf::HugeValue). It has no effect on a variable without time.
 absl::Status ReadTime(const netcdf::NetcdfFile& file, const std::string& variable, std::size_t rank,
                       std::size_t record, Changes changes, std::vector<float>& values,
                       netcdf::HugeValue huge = netcdf::HugeValue::kRefused);

@@ -111,7 +111,7 @@ std::string_view WrfVariableOf(physics::Hydrometeor hydrometeor);
 // to do.
 absl::StatusOr<WrfMetadata> ReadWrfMetadata(const std::string& path);
 
-// Does the same for a file that is already open.
+// Reads and checks the metadata of a file that is already open, with the same errors.
 absl::StatusOr<WrfMetadata> ReadWrfMetadata(const netcdf::NetcdfFile& file);
 
 // Returns the even columns at a record of `file`, which has this metadata. A domain that moves (a

@@ -119,7 +119,7 @@ absl::StatusOr<std::vector<volume::EarthPlace>> PlacesAt(const netcdf::NetcdfFil
 }
 
 // Returns the middle at each time, or nothing if it stays at `first`. The outermost domain cannot
-// move, so its last time is enough.
+// move, so only its last time is compared with `first`.
 absl::StatusOr<std::vector<volume::EarthPlace>> ReadMiddles(const netcdf::NetcdfFile& file,
                                                             const WrfLayout& layout,
                                                             const Coordinates& names,

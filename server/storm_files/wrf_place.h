@@ -18,15 +18,15 @@ struct WrfPlace {
   // The middle of the domain at each time, if the domain moves. Otherwise empty.
   std::vector<volume::EarthPlace> middles;
   std::string latitude;    // the variable of the columns' latitudes; empty if none is used
-  std::string longitude;   // and of their longitudes
+  std::string longitude;   // the variable of the columns' longitudes; empty if none is used
   std::string projection;  // as a PROJ string; empty if the grid has no projection
   std::vector<std::string> projections;  // at each time, if the domain moves; otherwise empty
   std::vector<std::string> assumptions;
 };
 
-// Reads the place from XLAT and XLONG, which may have no time. Without them it is the attributes
-// CEN_LAT and CEN_LON, if the file has the whole outermost domain. Returns INVALID_ARGUMENT if XLAT
-// or XLONG do not have one value for each column.
+// Reads the place from XLAT and XLONG, which may have no time. Without these variables, takes the
+// place from the attributes CEN_LAT and CEN_LON, if the file has the whole outermost domain.
+// Returns INVALID_ARGUMENT if XLAT or XLONG do not have one value for each column.
 absl::StatusOr<WrfPlace> ReadWrfPlace(const netcdf::NetcdfFile& file, const WrfLayout& layout);
 
 // Returns GRID_ID, the number of the nested domain, counted from 1.

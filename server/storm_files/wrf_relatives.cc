@@ -76,7 +76,7 @@ bool HasWrfTitle(const netcdf::NetcdfFile& file) {
 bool IsOnEta(const netcdf::NetcdfFile& file) {
   const std::string levels = LevelsOf(file);
   if (levels.empty() || !file.HasVariable(levels) || HasHeights(file)) return false;
-  // With formula_terms the heights follow by CF's formulas.
+  // With formula_terms, the heights of eta levels follow by CF's formulas.
   if (!file.TextOrEmpty(levels, "formula_terms").empty()) return false;
   const std::string name = file.TextOrEmpty(levels, "standard_name");
   const std::string about = absl::StrCat(file.TextOrEmpty(levels, "description"), " ",

@@ -19,8 +19,8 @@ struct TimeSource {
 
 struct CataloguedStorm {
   StormInfo info;
-  // The id that the storm's name asks for. If storms have the same, a number makes their ids
-  // different.
+  // The id that is made from the storm's name. If several storms have the same stem, numbers are
+  // appended to make their ids different.
   std::string stem;
   std::size_t path = 0;  // index of the searched path
   std::vector<storm_files::StormFile> files;

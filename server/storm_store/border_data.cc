@@ -47,7 +47,8 @@ constexpr double kLongestPiece_m = 50e3;
 // read.
 constexpr int kProbes = 256;
 
-// Borders between states cover a smaller share of the ground's colour.
+// Borders between states cover a smaller share of the ground's colour than borders between
+// countries.
 constexpr float kInnerStrength = 0.6F;
 
 std::string FileOf(const std::string& folder, const char* kind, char letter) {

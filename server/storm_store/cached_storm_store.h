@@ -90,7 +90,7 @@ class CachedStormStore final : public StormStore,
   struct Activity {
     bool reads = false;  // false while the thread has no read, or its read pauses
     std::string file;
-    std::uint64_t device = 0;  // device of that file
+    std::uint64_t device = 0;  // device of the file that is read
     std::chrono::steady_clock::time_point began;
     std::chrono::steady_clock::time_point went_on;  // time of the last progress
     bool told_of_hang = false;
@@ -186,7 +186,7 @@ class CachedStormStore final : public StormStore,
   std::string NewId(const CataloguedStorm& found, std::size_t place);
   void KeepIds();                      // passes changed ids to LiveCatalogueOptions::keep_ids
   void TakeId(std::size_t place);      // records the id of the storm at `place` as its own
-  void ReleaseIds(std::size_t place);  // lets other storms take the ids of that place
+  void ReleaseIds(std::size_t place);  // lets other storms take the ids of the storm at `place`
 
   // Returns the delay after which a file that has just replaced another one is probably described.
   std::chrono::milliseconds ReplacedRetryAfter() const;
@@ -232,7 +232,7 @@ class CachedStormStore final : public StormStore,
   StormIds kept_ids_;       // the ids that were kept last; used by the searching thread only
   bool following_ = false;  // true if changes are reported to listener_
 
-  // `live_` exists from Follow to End, the others from Start to End.
+  // `live_` exists from Follow to End, `member_` and `threads_` from Start to End.
   std::unique_ptr<LiveCatalogue> live_;
   std::optional<base::MemoryBudget::Member> member_;
   std::vector<base::LooseThread> threads_;

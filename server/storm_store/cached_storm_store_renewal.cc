@@ -133,7 +133,7 @@ void CachedStormStore::Renew(const std::vector<CataloguedStorm>& found) {
       storms_.emplace_back();
       take(*place_of[i], found[i]);
     }
-    std::vector<std::tuple<std::size_t, std::string, std::size_t>> listed;  // by path and id
+    std::vector<std::tuple<std::size_t, std::string, std::size_t>> listed;  // path, id and place
     for (std::size_t i = 0; i < found.size(); ++i) {
       if (!place_of[i].has_value()) continue;
       listed.emplace_back(found[i].path, storms_[*place_of[i]].storm->info.id, *place_of[i]);

@@ -286,7 +286,7 @@ void CatalogueScan::BeginTogether() {
 
 bool CatalogueScan::MayDescribeTogether(const std::string& folder) {
   const Time now = options_.time->Now();
-  // Each scan may describe at least one such time.
+  // Each scan may describe at least one time that is spread over several files.
   const bool is_certain =
       had_waited_together_ ? folder == first_together_ : !together_ends_.has_value();
   if (!together_ends_.has_value()) together_ends_ = now + options_.turn;

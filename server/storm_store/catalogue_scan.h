@@ -186,13 +186,13 @@ class CatalogueScan {
   std::map<std::vector<std::string>, KnownTogether> together_;
   std::set<std::string> reported_;  // reasons that were logged, and notes about storms
   LeftOutLog left_out_;
-  Time now_;  // of the scan in progress
+  Time now_;  // the time of the scan in progress
   FairFolders turns_;
   Time turn_ends_;
   std::map<std::string, Waiting, FolderOrder> waiting_;  // by folder
   // Whether a file took too long and must be described again by the next scan.
   bool is_unfinished_ = false;
-  // Whether such a file was in a batch, and must be described alone.
+  // Whether a file that took too long was in a batch, and must be described alone.
   bool has_untried_ = false;
   // Folders with times that are spread over several files. Those in waiting_together_ wait for the
   // next scan. Those in served_together_ waited for this scan, which serves them while time

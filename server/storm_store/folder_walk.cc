@@ -51,11 +51,11 @@ absl::Status CheckLink(const LinkRules& rules, const fs::path& link) {
 struct Node {
   fs::path path;
   Node* parent = nullptr;
-  std::size_t index = 0;  // in the parent's `below`
+  std::size_t index = 0;  // index in the parent's `below`
   int depth = 0;
-  std::size_t own_entries = 0;  // read from the folder itself
-  std::size_t entries = 0;      // read from the folder and its subfolders
-  bool is_listed = false;       // to its end, or not at all because of an error
+  std::size_t own_entries = 0;  // number of entries read from the folder itself
+  std::size_t entries = 0;      // number of entries read from it and its subfolders
+  bool is_listed = false;       // true once listed to its end, or if it cannot be listed
   bool has_begun = false;
   fs::directory_iterator next;
   std::vector<std::string> files;
@@ -106,7 +106,7 @@ class Walk {
   std::vector<Link> links_;
   std::set<std::pair<dev_t, ino_t>> visited_;  // folders, by device and inode
   std::size_t entries_ = 0;
-  bool has_stopped_ = false;  // at a limit
+  bool has_stopped_ = false;  // true if the walk stopped at a limit
 };
 
 bool Walk::IsNew(const fs::path& path) {
@@ -252,8 +252,9 @@ void Walk::Flatten(Node& node, std::vector<ListedFolder>& listed) {
   for (const auto& below : node.below) Flatten(*below, listed);
 }
 
-// Returns the folder itself, or the nearest folder above it that the walk has met, if it was not
-// listed to its end. Otherwise returns null, because the files below it were met if they exist.
+// Finds `folder` among the folders that the walk has met, or else the nearest folder above
+// `folder`. Returns the found folder if it was not listed to its end. Otherwise returns null,
+// because the walk has then met all files of `folder` that it could list.
 const Node* Walk::FindUnlisted(const fs::path& folder) const {
   const fs::path relative = folder.lexically_relative(root_.path);
   const Node* node = &root_;

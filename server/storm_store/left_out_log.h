@@ -24,7 +24,7 @@ class LeftOutLog {
   static constexpr int kMostLines = 20;  // a minute
 
   Time minute_ = Time::min();  // when the present minute began
-  int lines_ = 0;              // in the present minute
+  int lines_ = 0;              // number of lines logged in the present minute
   bool is_summarized_ = false;
   std::uint64_t counted_ = 0;
   std::string last_;  // the reason that was counted last

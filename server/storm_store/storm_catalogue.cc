@@ -196,7 +196,7 @@ struct ListedPath {
   bool hangs = false;
   bool is_folder = false;
   bool is_missing = false;
-  std::vector<ListedFolder> folders;  // of a file, its folder with the file
+  std::vector<ListedFolder> folders;  // if the path is a file: its folder, with only this file
 };
 
 absl::StatusOr<ListedPath> ListPath(const std::string& path, const LinkRules& links,

@@ -68,7 +68,8 @@ absl::Status CheckPlace(const std::vector<std::string>& paths, const LinkPolicy&
                         const std::string& path, const std::string& place);
 
 // Returns the error of a file that is no storm. `path` may also name one storm of a file, as in
-// "eps.grib2/mem05"; NOT_FOUND, with the names of the file's storms, if there is no such storm.
+// "eps.grib2/mem05". Returns NOT_FOUND, with the names of the file's storms, if there is no such
+// storm.
 absl::Status CheckFile(const std::string& path, const storm_files::StormFormats& formats);
 
 // Returns the storms under `paths`, in the order of the paths and by id within a path. The rules

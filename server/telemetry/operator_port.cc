@@ -133,7 +133,8 @@ class RunningPort final : public OperatorPort {
         Accept();
         return;
       }
-      // The process is probably out of file descriptors.
+      // The process is probably out of file descriptors, so accepting pauses until some may be
+      // free.
       pause_.expires_after(kAcceptPause);
       pause_.async_wait([this](const error_code& ended) {
         if (!ended) Accept();

@@ -91,7 +91,7 @@ float OnLongerPath(float opacity, float times) {
 }
 
 struct Opacities {
-  Values all;    // along a cell, tau / (kHalfOpaqueDepth + tau) for its optical depth tau
+  Values all;    // opacity tau / (kHalfOpaqueDepth + tau), from the optical depth tau along a cell
   Values cloud;  // optical depths of cloud water
   Values ice;    // optical depths of ice, snow, graupel and hail
 };

@@ -35,7 +35,7 @@ struct FieldStatistics {
   // Mean over columns of the water path: the integral of rho_air q dz. For a field given as
   // extinction it is the optical depth.
   double mean_water_path_kg_per_m2 = 0.0;
-  double maximum_water_path_kg_per_m2 = 0.0;  // the largest of a column
+  double maximum_water_path_kg_per_m2 = 0.0;  // the largest water path of a column
   std::int64_t negative_cells = 0;            // number of cells with negative values, which are
                                               // treated as zero
   std::int64_t missing_cells = 0;             // number of cells with a fill value, NaN or infinity,

@@ -100,7 +100,7 @@ class MapProjection::Proj {
     const PJ_COORD to =
         proj_trans(transform_.get(), PJ_INV, proj_coord(map_m.x, map_m.y, 0.0, 0.0));
     if (!std::isfinite(to.lp.phi) || !std::isfinite(to.lp.lam)) return std::nullopt;
-    // Rounding must not move a pole off the Earth.
+    // Rounding can give a pole a latitude slightly beyond 90 degrees, which is corrected here.
     constexpr double kRounding_deg = 1e-9;
     double latitude_deg = glm::degrees(to.lp.phi);
     if (std::abs(latitude_deg) < 90.0 + kRounding_deg) {

@@ -14,7 +14,7 @@ void ToRadius(physics::Hydrometeor hydrometeor, const SizeVariable& variable,
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     float radius_m = sizes[i];
     if (variable.is_count) {
-      // The comparisons fail for NaN.
+      // The comparisons fail for NaN, so such a cell gets no radius.
       const bool counted = sizes[i] > 0.0F && mixing_ratios[i] > 0.0F;
       radius_m =
           counted ? physics::EffectiveRadius_m(hydrometeor, mixing_ratios[i] / sizes[i]) : 0.0F;

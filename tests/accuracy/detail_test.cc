@@ -21,7 +21,7 @@ class DetailInSlab : public SlabView, public testing::WithParamInterface<accurac
     test_support::SetTechnique(&scene_.rendering.technique, GetParam());
     test_support::SetMode(&scene_.rendering.technique, test_support::kWithDetail);
     test_support::SetTransport(&scene_.rendering.technique,
-                               scene::Transport::kPaper);  // its extinction is unscaled
+                               scene::Transport::kPaper);  // does not scale the extinction
     scene::SetSlices(&scene_.rendering.technique, 512);
   }
 

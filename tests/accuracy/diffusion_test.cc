@@ -1,5 +1,5 @@
-// Tests of diffusion transport against published plane-parallel layers and limits (physics.md,
-// section 4).
+// Tests of diffusion transport against published plane-parallel layers and limits
+// (docs/decisions/0009-diffusion-transport.md).
 #include <cmath>
 #include <numbers>
 

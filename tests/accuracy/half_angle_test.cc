@@ -1,5 +1,6 @@
 // Tests of the slicing renderer against closed forms: single scattering in a homogeneous box, the
-// paper's printed transport, and limits that hold for every optical depth.
+// printed transport of the paper, and limits that hold for every optical depth. The paper is Riley
+// et al. 2003 (Vis).
 #include <cmath>
 #include <numbers>
 
@@ -196,8 +197,8 @@ TEST_F(HalfAngle, LightSpreadsFromClearAirIntoTheCloudsEdge) {
 
 TEST_F(HalfAngle, PaperTransportIsAsPrinted) {
   // If light is uniform across a slice, the slice multiplies it by T + (1 - T) c, with c =
-  // CP(theta_f / 2). With optical depth 10 and c = 0.9, 16 slices leave 0.467 and 128 leave 0.381
-  // (limit 0.368).
+  // CP(theta_f / 2). CP is the cumulative phase function (the paper's eq. 13). With optical depth
+  // 10 and c = 0.9, 16 slices leave 0.467 and 128 leave 0.381 (limit 0.368).
   test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   SetPhase(physics::PhaseKind::kCornetteShanks, 0.979F);

@@ -123,7 +123,8 @@ TEST_F(LightVolume, AgreesWithHalfAngleSlicing) {
 }
 
 TEST_F(LightVolume, PaperTransportDependsOnTheNumberOfSlicesAsPrinted) {
-  // Seen from below, the slab transmits less light with more slices (physics.md, 3).
+  // Seen from below, the slab transmits less light with more slices: half_angle_test.cc,
+  // PaperTransportIsAsPrinted, has the formula.
   test_support::SetMode(&scene_.rendering.technique, test_support::kUniformPhase);
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
   const auto seen = [&](int slices, const accuracy::PlainTechnique& renderer) {

@@ -98,7 +98,7 @@ class SlabView : public testing::Test {
     return fields;
   }
 
-  // The turbulence of ice in weak turbulence, which has fibres.
+  // A turbulence so weak that ice has fibres.
   static constexpr std::uint8_t kTurbulence = 76;
   static void Stir(volume::HydrometeorFields* fields) {
     fields->fields[0].hydrometeor = physics::Hydrometeor::kIce;

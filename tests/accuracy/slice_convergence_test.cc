@@ -1,4 +1,5 @@
-// Tests of the orders of convergence of both transports with the number of slices.
+// Tests of the orders of convergence of the transports kPaper and kConsistent with the number of
+// slices.
 #include "measure/slice_convergence.h"
 
 #include <memory>
@@ -33,8 +34,8 @@ TEST(SliceConvergence, PaperIsFirstOrderConsistentSecond) {
   const auto curves = MeasureSliceConvergence(scene, fields, [](double) {});
   ASSERT_TRUE(curves.ok()) << curves.status();
   ASSERT_EQ(curves->size(), 2U);
-  // The transport as printed in the paper adds an error of (1 - T)^2 per slice. With twice as many
-  // slices, the total error is half as large.
+  // The transport as printed in the paper (Riley et al. 2003 (Vis)) adds an error of (1 - T)^2 per
+  // slice. With twice as many slices, the total error is half as large.
   EXPECT_EQ(curves->front().transport.name, "paper");
   EXPECT_NEAR(curves->front().order, 1.0, 0.15);
   EXPECT_EQ(curves->back().transport.name, "consistent");

@@ -41,7 +41,8 @@ void DrawFrames(benchmark::State& state, scene::Scene scene, const Fields& field
 // is the papers' rate on a GeForce FX 5800 (Riley et al. 2003, AMS, Table IV), or 0 for none.
 void Register(const std::string& name, const scene::Scene& scene, const Fields& fields,
               Moving moving, double paper_fps = 0.0);
-// Does the same for fields that are made only when the row is measured.
+// Registers whole frames like the function above, of fields that are made only when the row is
+// measured.
 void Register(const std::string& name, const scene::Scene& scene, const MakeFields& make,
               Moving moving, double paper_fps = 0.0);
 
@@ -58,7 +59,7 @@ void RegisterPresets();
 void RegisterMetaballs();
 
 // Registers Neyret's shader and Lambert's law on the same ellipsoids, at Neyret's 600 x 600 pixels.
-// The paper has 87 ellipsoids; "paper" has twice as many.
+// Neyret's paper draws 87 ellipsoids; the benchmark named "paper" draws twice as many.
 void RegisterCumulus();
 
 // Registers a domain of 1000 x 960 x 60 cells, with the sample storm 30 times, at 1280 x 720. It

@@ -20,7 +20,7 @@ class Check(NamedTuple):
     command: str  # the program's arguments, run where make.py has written its files; {data} is ../data of the cases
     code: int  # the exit code
     says: tuple = ()  # words of the output or of the error
-    never: tuple = ()  # words that neither has
+    never: tuple = ()  # words that are neither in the output nor in the error
     aged: tuple = ()  # files whose last change is set to an hour ago; all others have just changed
 
 

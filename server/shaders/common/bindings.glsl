@@ -4,7 +4,8 @@
 // have the same number, which tests check (gl/strict_programs.h). Programs of different techniques may use the same
 // numbers.
 
-// Transmittance below which a ray ends in paper or consistent transport.
+// Transmittance below which a ray ends. With the transport kDiffusion (scene/transport.h), light_volume/march.frag uses
+// a larger one.
 const float kOpaqueTransmittance = 5e-3F;
 
 // Texture units and bindings of a medium.
@@ -41,7 +42,7 @@ const int kChosenPlacesUnit = 18;
 const int kAureoleUnit = 4;
 const int kPackedUnit = 4;
 
-// Units of whole targets that are drawn by compute shaders.
+// Units for compute shaders that draw a gl::WholeTarget (common/whole_target.glsl).
 const int kTargetLimitUnit = 17;
 const int kTargetImages = 6;  // also the next image unit
 

@@ -1,5 +1,6 @@
 // Phase functions of a medium's groups, looked up by scattering angle. Variants: COLORED (groups have colours),
-// CONSISTENT (transport). GROUPS is the number of groups.
+// CONSISTENT (0 for the transport of Riley et al. 2003 (Vis), "the paper", as in scene/transport.h). GROUPS is the
+// number of groups.
 #include "common/bindings.glsl"
 #include "physics/phase_curve.glsl"
 

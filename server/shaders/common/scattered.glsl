@@ -2,9 +2,8 @@
 // ray or the group, so they are applied after the last sample. This file needs common/medium.glsl and
 // common/phase.glsl.
 //
-// Variants: GROUPS, COLORED (groups have colours), CONSISTENT (consistent transport), EVEN_ALBEDO
-// (all groups have the same albedo and no colours), GLOWS (the radiance includes the light of
-// add_isotropic).
+// Variants: GROUPS, COLORED (groups have colours), CONSISTENT (consistent transport, scene/transport.h), EVEN_ALBEDO
+// (all groups have the same albedo and no colours), GLOWS (the radiance includes the light of add_isotropic).
 uniform vec4 scattering_weights[PLANES];  // factors from a texel to scattering in 1/m
 uniform float albedo;  // albedo of every group
 uniform vec3 ambient;                     // mean radiance from sky and ground

@@ -10,8 +10,8 @@
 // Texels hold the square root of the optical depth to the nearest surface, DiffuseLight::SkySeen (x and y), and
 // component x of DiffuseLight::SkyInward.
 layout(binding = kExitsUnit) uniform sampler3D exits;
-// Texels hold the net inward flux of sunlight, the fluence from other walls, and component y of
-// DiffuseLight::SkyInward. The last channel is the share of open ground's light that arrives from below.
+// Texels hold the net inward flux of sunlight, the fluence from other cloud walls (light_volume/wall_light.h), and
+// component y of DiffuseLight::SkyInward. The last channel is the share of open ground's light that arrives from below.
 layout(binding = kNetInwardUnit) uniform sampler3D net_inward;
 
 uniform vec4 transport_weights[PLANES];  // factors from a texel to the similarity-scaled extinction in 1/m

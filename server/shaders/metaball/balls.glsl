@@ -14,5 +14,6 @@ layout(std430, binding = kBallsBinding) readonly buffer Balls { Ball balls[]; };
 // Indices of the balls in drawing order.
 layout(std430, binding = kBallOrderBinding) readonly buffer Order { uint order[]; };
 
-// Returns the optical depth of the ball where its field is 1, which is Man's tau rho. Only for PAPER.
+// Returns the optical depth of the ball where its field is 1, which is tau rho in P. Man, "Generating and Real-Time
+// Rendering of Clouds". Only for PAPER.
 float paper_depth(Ball ball) { return ball.optics.x; }

@@ -7,7 +7,7 @@
 // Optics of a group, either exact or similar.
 struct GroupOptics {
   vec4 albedo;  // w: mean albedo over the colours, for choosing the group
-  float share;  // factor of the group's exact extinction
+  float share;  // extinction in these optics divided by the exact extinction
   float asymmetry;
   // Index in `phases` of the group's first table, or -1 for Henyey and Greenstein's function. The
   // angles, which all tables share, are at the beginning of `phases`.

@@ -14,7 +14,7 @@ const float kSurfaceProfile = 0.5f;  // profile at the cloud's surface where the
 const float kSurfaceRelief = 0.8f;  // difference between the profiles at the surface's valleys and at its tops
 const float kSurfaceWidth = 0.14f;  // width, in the profile, over which the medium thins out
 const float kFibreContrast = 0.8f;
-const float kMinWarp = 0.4f;  // share of the full displacement where the air has no turbulence; it hides the grid
+const float kMinWarp = 0.4f;  // share of the full displacement in air without turbulence, where it hides the grid
 
 // Returns the factor that preserves the water of a column of cells. A factor of 1 is stored as 128 of 255.
 PHYSICS_FUNCTION float detail_column_factor(float texel) { return texel * (255.0f / 128.0f); }

@@ -7,8 +7,8 @@
 #define PHYSICS_FUNCTION
 #endif
 
-// Twice the variance of the slope in any one direction. The variance is that in a wind of 5 m/s, where 0.003 + 0.00512
-// W gives the sum for both directions. The constant is also the square of Beckmann's roughness.
+// Twice the variance of the slope in any one direction. The sum of the variances in both directions is 0.003 + 0.00512
+// W, where W is the wind speed, here 5 m/s. The constant is also the square of Beckmann's roughness.
 const float kWaterSlopes = 0.0286f;
 
 // Returns the reflectance in red, green and blue of deep water without its surface: the light that emerges from clear

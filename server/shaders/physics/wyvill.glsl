@@ -1,7 +1,7 @@
-// Wyvill's field function (Man, eq. 12) without its constant k, and its integral along a line. The scan of the paper
-// lost the signs. With the signs, the function is 1 - 22/9 a^2 + 17/9 a^4 - 4/9 a^6. This equals (5 w^2 + 4 w^3) / 9
-// with w = 1 - a^2. It is 1 at the centre and 0 at a = r/R = 1. The file compiles as GLSL and as C++
-// (renderers/metaball/wyvill.h).
+// Wyvill's field function (P. Man, "Generating and Real-Time Rendering of Clouds", eq. 12) without its constant k, and
+// its integral along a line. The scan of the paper lost the signs. With the signs, the function is 1 - 22/9 a^2 + 17/9
+// a^4 - 4/9 a^6. This equals (5 w^2 + 4 w^3) / 9 with w = 1 - a^2. It is 1 at the centre and 0 at a = r/R = 1. The file
+// compiles as GLSL and as C++ (renderers/metaball/wyvill.h).
 #ifdef __cplusplus
 #define PHYSICS_FUNCTION inline
 #else
