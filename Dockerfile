@@ -25,6 +25,7 @@ COPY --from=build /src/build/release/bin/thunderhead /src/build/release/bin/thun
     /src/build/release/bin/thunderhead-vdb-reader bin/
 COPY --from=build /src/build/release/lib/thunderhead lib/thunderhead/
 COPY --from=build /src/client-web/dist share/thunderhead/page/
+COPY --from=build /src/build/release/packaging/third-party-notices.txt share/doc/
 COPY --from=build /src/samples/supercell-500m.nc /data/
 ENV PATH=/opt/thunderhead/bin:$PATH \
     NVIDIA_DRIVER_CAPABILITIES=graphics,utility \

@@ -3,8 +3,9 @@
 #include "desktop/app.h"
 
 int main(int argc, char** argv) {
-  // Many short-lived threads would each get a heap that keeps freed pictures. After weeks this
-  // would look like a memory leak.
+  // glibc would give each of many short-lived threads its own heap, which keeps freed pictures.
+  // After weeks this would look like a memory leak, so the number of heaps is limited and large
+  // blocks are mapped separately.
   constexpr int kMaxHeaps = 2;
   constexpr int kMappedFrom_bytes = 256 << 10;
   mallopt(M_ARENA_MAX, kMaxHeaps);

@@ -15,7 +15,8 @@ export default defineConfig({
         target: server,
         changeOrigin: true,
         ws: true,
-        // The server takes a WebSocket from its own origin only.
+        // The server accepts a WebSocket only from its own origin, so the proxy replaces the
+        // origin.
         configure: (proxy) =>
           proxy.on("proxyReqWs", (request) => request.setHeader("origin", new URL(server).origin)),
       },

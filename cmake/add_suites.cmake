@@ -10,7 +10,8 @@ execute_process(COMMAND ${program} --gtest_list_tests OUTPUT_VARIABLE listed RES
 if(failed)
   message(FATAL_ERROR "${program} --gtest_list_tests failed: ${failed}")
 endif()
-# A line of a suite ends in a dot. With a type parameter, a comment follows the dot. Lines of cases are indented.
+# In the list of --gtest_list_tests, the line of a suite ends in a dot. If the suite has a type parameter, a comment
+# follows the dot. The lines of its test cases are indented.
 string(REGEX MATCHALL "\n[A-Za-z0-9_/]+\\.[ \n]" lines "\n${listed}")
 foreach(line IN LISTS lines)
   string(REGEX REPLACE "^\n(.+)\\..$" "\\1" suite "${line}")

@@ -31,8 +31,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
   endif()
 endif()
 
-# Targets can share a precompiled header only if they are compiled with the same flags. The second flag lets ccache find
-# the files of a precompiled header.
+# Targets can share a precompiled header only if they are compiled with the same flags, so all targets get -pthread. The
+# flag -fpch-preprocess lets ccache find the files of a precompiled header.
 add_compile_options(-pthread)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
@@ -57,7 +57,8 @@ if(THUNDERHEAD_SANITIZE)
   add_compile_options(-fsanitize=${THUNDERHEAD_SANITIZE} -fno-omit-frame-pointer -Wno-error=maybe-uninitialized)
   add_link_options(-fsanitize=${THUNDERHEAD_SANITIZE})
   if(THUNDERHEAD_SANITIZE MATCHES "thread")
-    # ThreadSanitizer does not support fences. Asio's fences only repeat the order that its locks already guarantee.
+    # ThreadSanitizer does not support fences. Asio's fences are switched off, because they only repeat the order that
+    # its locks already guarantee.
     add_compile_definitions(BOOST_ASIO_DISABLE_FENCED_BLOCK)
   endif()
   if(THUNDERHEAD_SANITIZE MATCHES "undefined")

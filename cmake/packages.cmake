@@ -13,6 +13,7 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_OUTPUT_FILE_PREFIX ${CMAKE_SOURCE_DIR}/build/packages)
 set(CPACK_COMPONENTS_ALL "")
+include(notices)
 
 if(THUNDERHEAD_SERVER AND THUNDERHEAD_SERVICE)
   set(packaging ${CMAKE_BINARY_DIR}/packaging)
@@ -35,6 +36,9 @@ if(THUNDERHEAD_SERVER AND THUNDERHEAD_SERVICE)
   install(FILES ${CMAKE_SOURCE_DIR}/deploy/debian/serve.conf DESTINATION /etc/thunderhead COMPONENT server)
   install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION share/doc/thunderhead RENAME copyright COMPONENT server)
   install(FILES ${CMAKE_SOURCE_DIR}/docs/operating.md DESTINATION share/doc/thunderhead COMPONENT server)
+  thunderhead_third_party_notices(${packaging}/third-party-notices.txt
+    libboost1.74-dev libcli11-dev libglm-dev nlohmann-json3-dev)
+  install(FILES ${packaging}/third-party-notices.txt DESTINATION share/doc/thunderhead COMPONENT server)
   set(CPACK_DEBIAN_SERVER_PACKAGE_NAME thunderhead)
   set(CPACK_COMPONENT_SERVER_DESCRIPTION "Server that draws storms of weather models as they would look in the sky")
   # These are the libraries that the server loads by name, the fonts of its products, and the program that creates its
@@ -46,7 +50,7 @@ if(THUNDERHEAD_SERVER AND THUNDERHEAD_SERVICE)
   set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
     ${CMAKE_SOURCE_DIR}/deploy/debian/postinst ${CMAKE_SOURCE_DIR}/deploy/debian/prerm ${CMAKE_SOURCE_DIR}/deploy/debian/conffiles)
 
-  # ./dev package builds these files: the sources, with the messages that protoc generates.
+  # ./dev package builds these files: the Python client's sources, with the messages that protoc generates.
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/build/python/thunderhead DESTINATION lib/python3/dist-packages COMPONENT python
     OPTIONAL PATTERN "__pycache__" EXCLUDE)
   install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION share/doc/python3-thunderhead RENAME copyright COMPONENT python)
@@ -63,6 +67,8 @@ if(THUNDERHEAD_DESKTOP)
   install(TARGETS thunderhead-desktop RUNTIME DESTINATION bin COMPONENT desktop)
   install(FILES ${CMAKE_SOURCE_DIR}/deploy/debian/thunderhead-desktop.desktop DESTINATION share/applications COMPONENT desktop)
   install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION share/doc/thunderhead-desktop RENAME copyright COMPONENT desktop)
+  thunderhead_third_party_notices(${CMAKE_BINARY_DIR}/packaging/third-party-notices.txt libcli11-dev libimgui-dev)
+  install(FILES ${CMAKE_BINARY_DIR}/packaging/third-party-notices.txt DESTINATION share/doc/thunderhead-desktop COMPONENT desktop)
   set(CPACK_DEBIAN_DESKTOP_PACKAGE_NAME thunderhead-desktop)
   set(CPACK_COMPONENT_DESKTOP_DESCRIPTION "Native window to a Thunderhead server")
   set(CPACK_DEBIAN_DESKTOP_PACKAGE_DEPENDS "fonts-dejavu-core, libgl1, libgl1-mesa-dri")

@@ -32,7 +32,7 @@ endfunction()
 
 # Environment of tests that open a context, or that start a program that opens one. When Mesa unloads its driver, the
 # driver has not freed all its memory. LeakSanitizer then cannot name the driver, so this memory looks like a leak of
-# our code.
+# our code. These tests therefore run without LeakSanitizer.
 set(THUNDERHEAD_GL_ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
 
 # thunderhead_test(NAME DEPENDS libraries...) builds the .cc files of the current folder, or SOURCES, into one

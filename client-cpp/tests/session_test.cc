@@ -107,7 +107,8 @@ TEST_F(SessionTest, OpensASessionAndTakesControlOfIt) {
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kTakeControl, 1));
 }
 
-// The server sends frames only to viewers that are known to be visible.
+// A client that joins hidden and becomes visible meanwhile must report this, because the server
+// sends frames only to visible viewers.
 TEST_F(SessionTest, AWindowToldWhileJoiningReachesTheServer) {
   SessionOptions options;
   options.window.set_hidden(true);
@@ -188,8 +189,8 @@ TEST_F(SessionTest, ComesBackToTheSameSessionWhenTheServerRestarts) {
   const v1::Join join = Newest(v1::InteractRequest::kJoin).join();
   EXPECT_EQ(join.session_key(), FakeService::kPresenterKey);
   EXPECT_EQ(join.participant_key(), "participant-key");
-  // The client steered, so it takes control again from the connection that the server may still
-  // consider alive.
+  // The client steered, so it takes control back from its lost connection, which the server may
+  // still consider alive.
   service.SendPresence(0);
   EXPECT_TRUE(AwaitCount(v1::InteractRequest::kTakeControl, 1));
 }
@@ -357,7 +358,7 @@ TEST_F(SessionTest, EndsWithoutWaitingForAServerThatHangs) {
     return grpc::Status::OK;
   };
   SessionOptions options;
-  options.patience = kPatience;  // a caller that waited for this timeout would hang
+  options.patience = kPatience;  // a destructor that waited so long would fail the test
   session = std::make_unique<Session>(service.Connect(), options, listener);
   asked.get_future().wait();
   const auto began = std::chrono::steady_clock::now();

@@ -11,8 +11,8 @@ using Stub = v1::ThunderheadService::Stub;
 // The first description of a storm takes long because the server reads the storm's file.
 constexpr std::chrono::seconds kPatience{60};
 
-// Returns true for an error that may vanish on its own. Other errors, such as an unknown storm, are
-// the answer until the catalogue changes.
+// Returns true for an error that may vanish on its own, so that the request is repeated. After
+// another error, such as an unknown storm, the request is repeated only when the catalogue changes.
 bool MayPass(const grpc::Status& status) {
   switch (status.error_code()) {
     case grpc::StatusCode::UNAVAILABLE:
@@ -52,7 +52,7 @@ void Catalogue::Refresh() {
 void Catalogue::Describe(const std::string& storm_id, std::uint32_t time_index) {
   const StormTime wanted{storm_id, time_index};
   const std::lock_guard lock(mutex_);
-  if (storm_id.empty() || wanted == described_ || wanted_ == wanted) return;
+  if (storm_id.empty() || wanted == wanted_.value_or(described_)) return;
   wanted_ = wanted;
   changed_.notify_all();
 }

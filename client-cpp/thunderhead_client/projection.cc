@@ -37,11 +37,13 @@ struct Projection {
     const Vector3 point_m = Of(position);
     return {point_m[0] - eye_m[0], point_m[1] - eye_m[1], point_m[2] - eye_m[2]};
   }
-  // All points of a parallel view have the same depth.
+  // In a parallel view the distance does not change a point's place, so every point gets the same
+  // depth.
   double Depth(const Vector3& from_eye_m) const {
     return parallel ? kNear_m : Dot(from_eye_m, forward);
   }
-  // Right and up are perpendicular to each other and to forward.
+  // Right and up are perpendicular to each other and to forward, so x and y are computed
+  // separately.
   PicturePoint Place(const Vector3& from_eye_m, double depth_m) const {
     return {Dot(from_eye_m, right) / (Dot(right, right) * depth_m),
             Dot(from_eye_m, up) / (Dot(up, up) * depth_m)};

@@ -99,8 +99,8 @@ void SceneSync::Taken(std::uint64_t ticket, std::uint64_t revision) {
   if (revision != sent.expected_revision + 1) drains_ = true;
   Drop(sent.last_edit);
   if (!revision_ || revision > *revision_) revision_ = revision;
-  // A later refusal returns to this scene, because the server sends its own scene only a few times
-  // a second.
+  // The server sends its own scene only a few times a second. The accepted scene is therefore
+  // remembered as the server's newest scene, to which a later refusal returns.
   if (!told_ || told_->revision < revision) told_ = Version{sent.scene, revision};
   Answered();
 }

@@ -15,7 +15,7 @@ enum class Link {
   kConnecting,  // the first attempt is running
   kLive,
   kLost,     // the connection was lost; the client reconnects automatically
-  kRefused,  // the token is unknown or its role is not allowed; retried slowly
+  kRefused,  // the server refuses the token or its role; the client retries slowly
   kGone,     // the session has ended
 };
 

@@ -25,7 +25,7 @@ class Statistics {
     std::uint64_t bytes = 0;   // bytes received since the start
   };
 
-  // Reports a new stream, whose scene revisions may start again.
+  // Reports a new stream, whose scene revisions may be counted from the start again.
   void StreamBegan();
   void Received(std::size_t bytes, TimePoint at);
   // Reports that the server accepted a scene of this client as this revision.
@@ -55,7 +55,7 @@ class Statistics {
   mutable std::mutex mutex_;
   std::deque<Shot> shots_;
   std::deque<Parcel> parcels_;
-  // When the scenes were sent that are accepted but not shown yet, by revision.
+  // Send times, by revision, of the scenes that the server has accepted and that are not shown yet.
   std::map<std::uint64_t, TimePoint> sent_;
   std::map<std::uint64_t, TimePoint> shown_;  // when the newest revisions were shown, because a
                                               // scene's response may arrive after its frame

@@ -208,7 +208,7 @@ bool App::TakeEvents(int timeout_ms) {
       TakeEvent(event);
       if (MovesFocus(event)) settling_draws_ = kFocusDraws;
       // ImGui sees a key only if the key is down during a drawing. A press and a release between
-      // two drawings would be lost.
+      // two drawings would be lost, so the window is drawn before more events are handled.
       const KeyFocus focus = FocusNow();
       if (event.type == SDL_KEYDOWN && (focus.text || focus.controls)) {
         settling_draws_ = std::max(settling_draws_, 1);

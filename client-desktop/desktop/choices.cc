@@ -3,7 +3,8 @@
 namespace thunderhead::desktop {
 
 bool Choices::Close() {
-  // A pen or pointer is put down before the drawer is closed.
+  // If the user holds a pen or pointer while the drawer (the panel of every setting) is open, the
+  // pen or pointer is put down first. The next Close() then closes the drawer.
   const bool drawer_stays = panel == Panel::kDrawer && hand != Hand::kCamera;
   if (panel != Panel::kNone && !drawer_stays) {
     panel = Panel::kNone;

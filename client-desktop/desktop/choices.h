@@ -15,7 +15,7 @@ struct Choices {
   Panel panel = Panel::kNone;
   Hand hand = Hand::kCamera;
   bool focuses_panel = false;  // the open panel gets the keyboard focus in the next drawing
-  std::string query;           // search text of the drawer
+  std::string query;           // search text of the panel of every setting
   std::string name;            // person's name that was typed but not sent yet
 
   // Opens a tool in place of the open tool, or closes it. If the marks tool is not open afterwards,

@@ -25,7 +25,7 @@ struct Flags {
   double scale = 0.0;
   bool saves_bytes = false;
   std::string status_file;     // file that gets one line of JSON a second; empty: writes no file
-  bool status_always = false;  // writes a line after every turn of the event loop instead
+  bool status_always = false;  // writes a line at every turn of the event loop, not once a second
   double seconds = 0.0;        // run time in seconds; 0: runs until the window is closed
   double turn_deg_per_s = 0.0;
 };

@@ -40,7 +40,8 @@ void Kiosk::Advance(Ui& ui, TimePoint now) {
   const bool known = state.link == client::Link::kLive && state.presence.people_size() > 0;
   if (views_.empty() || !known || (!state.Steers() && !state.MayLookAround())) return;
   const bool first = shown_ < 0;
-  // The view was undone by another session or by another viewer who steered meanwhile.
+  // True if the kiosk has joined again, or has gained or lost control, or if its own view has ended
+  // since the view was shown. The view must then be shown again.
   const bool undone = !first && (state.joined_count != shown_in_ || state.Steers() != steered_ ||
                                  (ShowsOwnView() && !state.Steers() && !state.looks_around));
   // A view's time begins when its picture is shown.

@@ -99,7 +99,8 @@ export function startDesktop(display, port, flags = []) {
     move(x, y) {
       return this.input({ at: { x, y } }, () => display.xdotool("mousemove", x, y));
     },
-    // The events are sent together. The window draws between a press and its release, however fast they arrive.
+    // All events are sent at once. The click is not lost, because the window draws between a press and its release,
+    // however fast they arrive.
     click(x, y) {
       return this.input({ at: { x, y }, buttons: 2 }, () => display.xdotool("mousemove", x, y, "click", 1));
     },

@@ -90,7 +90,7 @@ test("a view stands until it is due, whatever is pressed, and comes at once in a
   const { joined, ...now } = await kiosk.click(320, 380);
   assert.deepEqual({ edits: now.edits, tool: now.tool, panel: now.panel }, { edits: 1, tool: "", panel: "" }, "input was taken");
   assert.ok(Math.abs(now.azimuth_deg - 45) < 0.5, `it turned to ${now.azimuth_deg}`);
-  // A panel would cover a third of the picture.
+  // An open panel would change a third of the picture, so a small difference shows that no panel has opened.
   const changed = difference(pictureBefore, display.pixels());
   assert.ok(changed < 0.05, `${changed} of the picture is another one`);
   await server.stop("SIGKILL");

@@ -17,8 +17,8 @@ const { values } = parseArgs({
 const seconds = Number(values.seconds);
 const restartEvery = Number(values["restart-every"]);
 const VIEWS = ["west.json", "above.json"].map((name) => fileURLToPath(new URL(`../../deploy/views/${name}`, import.meta.url)));
-// Growth over the second half that counts as a leak, in bytes. A kiosk that leaked one picture of 960 x 540 per view
-// would exceed it.
+// Growth of the kiosk's resident memory over the second half of the run that counts as a leak, in bytes. A kiosk that
+// leaked one picture of 960 x 540 per view would exceed it.
 const MAX_GROWTH = 2e6;
 
 const display = await startDisplay(960, 540);

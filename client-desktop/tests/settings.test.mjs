@@ -30,7 +30,7 @@ after(async () => {
   await display?.stop();
 });
 
-// Acts, and waits for the picture of the changed scene for which `holds` returns true.
+// Calls `act`, and waits for the picture of the changed scene for which `holds` returns true.
 async function change(what, act, holds = () => true) {
   const { revision } = desktop.status();
   await act();
@@ -39,7 +39,7 @@ async function change(what, act, holds = () => true) {
   return now;
 }
 
-// Opens a tool or panel, acts in it, and closes it.
+// Opens a tool or panel by its key, calls `act`, and closes the tool or panel.
 async function within(key, act) {
   await desktop.key(key);
   try {
@@ -63,7 +63,7 @@ test("a quality and a goal take each other's place", async () => {
     });
     display.screenshot("goal");
     await eventually("a quality beside the goal", () => !chosen());
-    // This is the number field of the slider below.
+    // This is the number field of the slider that sets the goal's time.
     await change("another time", () => desktop.fill(356, 641, "5000"));
     await change("Fast", () => desktop.click(162, 131));
     await eventually("no quality after the goal", chosen);

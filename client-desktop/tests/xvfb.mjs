@@ -27,7 +27,8 @@ export async function startDisplay(width, height, { managed = false, dpi } = {})
     });
   });
   const env = { ...process.env, DISPLAY: `:${number}`, LIBGL_ALWAYS_SOFTWARE: "1", SDL_VIDEODRIVER: "x11" };
-  // Without RandR, SDL computes the resolution from the screen's size. By RandR Xvfb reports no size of its outputs.
+  // RandR is switched off, because Xvfb reports no physical size of its outputs through RandR. SDL then computes the
+  // resolution from the screen's size.
   if (dpi !== undefined) env.SDL_VIDEO_X11_XRANDR = "0";
   // The font "fixed" needs no font file.
   const manager = managed ? spawn("evilwm", ["-fn", "fixed"], { env, stdio: "inherit" }) : undefined;

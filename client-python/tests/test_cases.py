@@ -13,7 +13,7 @@ from thunderhead.scenes import limits_of
 from thunderhead.v1 import scene_pb2
 
 CASES = pathlib.Path(__file__).resolve().parents[2] / "tests/clients/cases"
-# Numbers may differ by this share, because messages store 32-bit floats.
+# The tolerated difference of two numbers, relative or absolute. Messages store 32-bit floats, so results are not exact.
 TOLERANCE = 1e-5
 
 

@@ -52,7 +52,7 @@ def error_of(error: grpc.RpcError) -> ThunderheadError:
 
 @contextlib.contextmanager
 def translated() -> Iterator[None]:
-    """Converts gRPC's errors in its block to ThunderheadError."""
+    """Converts gRPC's errors in the body of its `with` statement to ThunderheadError."""
     try:
         yield
     except grpc.RpcError as error:

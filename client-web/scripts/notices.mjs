@@ -1,13 +1,12 @@
 // Writes dist/third-party-notices.txt: the licences of the npm packages that the page contains, according to the lock
-// file. Debian's package and the image ship it with the page. The script fails for a package without a licence.
+// file. Debian's package and the image ship it with the page. The notices of the programs are another file, which
+// cmake/notices.cmake writes. The script fails for a package without a licence.
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
 const lock = JSON.parse(readFileSync("package-lock.json", "utf8"));
 const notices = [
   "Thunderhead's page contains the npm packages below, each under its licence.",
-  "The server and the native client contain no third-party code: they use Debian's packages, whose licences are in",
-  "/usr/share/doc/PACKAGE/copyright.",
 ];
 for (const [folder, found] of Object.entries(lock.packages)) {
   // The first entry is the page itself. Tools that only build or test the page are marked "dev".
@@ -15,7 +14,8 @@ for (const [folder, found] of Object.entries(lock.packages)) {
   const file = readdirSync(folder).find((name) => /^(licen[cs]e|copying)/i.test(name));
   const about = JSON.parse(readFileSync(join(folder, "package.json"), "utf8"));
   const licence = found.license ?? about.license;
-  // Some packages only name their licence. The text of Apache-2.0 is that of this project's own licence.
+  // Some packages only name their licence. If it is Apache-2.0, the text is taken from this project's LICENSE file,
+  // which has the same licence.
   const path = file !== undefined ? join(folder, file) : /Apache-2\.0/.test(licence) ? "../LICENSE" : undefined;
   const text = path === undefined ? `The package has no more than this name; see ${about.homepage}` : readFileSync(path, "utf8");
   if (path === undefined && licence === undefined) {

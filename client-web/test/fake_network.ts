@@ -8,11 +8,11 @@ import type { OpenInteract } from "../src/transport/session_client";
 import type { FakeService } from "./fake_service";
 
 export class FakeNetwork {
-  // No call reaches the server, and open calls receive nothing.
+  // If true, no call reaches the server, and open calls receive nothing.
   down = false;
-  // The server requires a token.
+  // If true, the server requires a token.
   locked = false;
-  // Open calls break as soon as they are joined.
+  // If true, open calls break as soon as they are joined.
   breaking = false;
   readonly called: string[] = [];
   joins = 0;

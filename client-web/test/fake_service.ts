@@ -22,11 +22,11 @@ export const END_NOT_SAVED =
 
 export class FakeService {
   readonly sessions: FakeSession[] = [];
-  // The server sends no map.
+  // If true, the server sends no map.
   mapless = false;
-  // The storm that cannot be described.
+  // The id of a storm that the server cannot describe; empty for none.
   undescribed = "";
-  // Sessions and their ends are not saved.
+  // If true, sessions and their ends are not saved.
   diskFull = false;
   #count = 0;
   #later = 0;

@@ -90,8 +90,8 @@ const PICTURE: Annotated = {
 
 const wrapped = (deg: number) => deg - 360 * Math.round(deg / 360);
 
-// Snyder's equations 15-1 to 15-5 for standard parallels at 30 and 60 degrees, on a sphere, from 35 N
-// 97 W.
+// A Lambert conic projection of a sphere with standard parallels at 30 and 60 degrees, from 35 N 97
+// W. The formulas are equations 15-1 to 15-5 of Snyder 1987, "Map Projections - A Working Manual".
 function lambert(longitudeDeg: number, latitudeDeg: number): [number, number] {
   const radian = Math.PI / 180;
   const stretched = (deg: number) => Math.tan(Math.PI / 4 + (deg * radian) / 2);
@@ -202,7 +202,7 @@ test("no text lies on another, wherever the horizon is", () => {
             );
         }
     }
-  // Most degrees still have a name.
+  // Texts that would overlap are left out, but most azimuths on the horizon must keep their names.
   expect(named / (4 * 241)).toBeGreaterThan(4);
 });
 
@@ -214,8 +214,8 @@ test("degrees stand above a horizon that is too low for them and the time", () =
   expect(north?.y).toBeLessThan(line?.[0]?.[1] ?? 0);
 });
 
-// The camera looks along the grid's north. With true north 10 degrees to the left of it, it looks to
-// 10 degrees, and N stands to the left of the picture's middle.
+// The camera looks along the grid's north. If true north is 10 degrees to the left of the grid's
+// north, the camera looks to 10 degrees, and N stands to the left of the picture's middle.
 test("degrees on the horizon count from true north", () => {
   const at = (trueNorthDeg: number, name: string) =>
     texts(annotationsOf({ ...PICTURE, trueNorthDeg }, FIRST_ANNOTATIONS)).find(
@@ -340,8 +340,8 @@ test("the map shows the domain and a camera near it, and leads back to the world
   expect(standOf(orbit)?.placeM[0]).toBeCloseTo(500, 6);
 });
 
-// The expected places are by PROJ (`echo LON LAT | proj STRING`), minus the result for the domain's
-// middle. The table is made with another projection's formulas of this test.
+// The expected places were computed with PROJ (`echo LON LAT | proj STRING`), minus the result for
+// the domain's middle. The table is made with lambert() above, so it does not depend on PROJ.
 test("places on the map are found by the server's table", () => {
   const middle = { longitudeDeg: -97, latitudeDeg: 35 };
   const world = worldByTable(middle, tableOf(middle, lambert, 10));

@@ -379,7 +379,8 @@ describe("pictures of a job", () => {
   test("who gives up waits no longer", async () => {
     const { calls } = callsTo([0]);
     const giving = new AbortController();
-    // The delay is drawn just before the wait begins.
+    // The back-off draws its random delay just before the wait, so this aborts the call during the
+    // wait.
     const backOff = new BackOff(() => {
       queueMicrotask(() => giving.abort());
       return 1;

@@ -58,7 +58,7 @@ describe("limits come from the schema", () => {
 
 describe("clamping", () => {
   it("keeps a 32-bit float from rounding to outside of its limits", () => {
-    // Both limits round outwards in 32 bits.
+    // The 32-bit floats nearest to 0.99 and -0.99 lie outside the limits.
     for (const value of [0.99, -0.99, 5, -5]) {
       const sent = Math.fround(clampToLimits(value, LIMITS.phaseAsymmetry));
       expect(Math.abs(sent)).toBeLessThanOrEqual(0.99);

@@ -16,7 +16,8 @@ export function tableOf(
   const along = (node: number) => radian * reachDeg * ((2 * node) / (NODES - 1) - 1);
   for (let row = 0; row < NODES; row += 1) {
     for (let column = 0; column < NODES; column += 1) {
-      // Snyder's equations 20-14 and 20-15.
+      // Latitude and longitude of a node by Snyder 1987, "Map Projections - A Working Manual",
+      // equations 20-14 and 20-15.
       const [x, y] = [along(column), along(row)];
       const c = Math.hypot(x, y);
       const up = c === 0 ? 0 : (y * Math.sin(c)) / c;

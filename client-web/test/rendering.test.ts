@@ -11,7 +11,6 @@ import {
   renderingOfPreset,
   resolved,
   type Settings,
-  settingLimits,
   settingsOf,
   sharedSettingsOf,
   techniqueNameOf,
@@ -179,8 +178,6 @@ describe("a technique's settings", () => {
     expect(has(create(ReferenceSchema))).toEqual(["falseColors"]);
     expect(has(create(CumulusSchema))).toEqual([]);
     expect(has(create(OtherTechniqueSchema))).toEqual([]);
-    expect(settingLimits(create(HalfAngleSchema), "slices")?.defaultValue).toBe(128);
-    expect(settingLimits(create(CumulusSchema), "slices")).toBeUndefined();
   });
 
   it("have the transport that is given, or else the technique's default", () => {

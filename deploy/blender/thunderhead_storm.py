@@ -18,7 +18,7 @@ import bpy
 from mathutils import Matrix, Vector
 
 # Cycles ignores a medium that scatters less than 1e-5 per unit. With a unit of one metre this would be an optical depth
-# of 1 in 100 km.
+# of 1 in 100 km, which is too much to ignore. The unit is therefore a kilometre.
 METRES_PER_UNIT = 1000.0
 
 
@@ -115,7 +115,7 @@ def add_medium(material, grids):
 def add_storm(scene, path, grids, step_voxels):
     volume = bpy.data.volumes.new("storm")
     volume.filepath = os.path.abspath(path)
-    # These settings keep the optical depths of the file: no compression to halves, and no thin parts left out.
+    # These settings keep the optical depths of the file: no compression to half floats, and no thin parts left out.
     volume.render.precision = "FULL"
     volume.render.space = "WORLD"
     volume.render.clipping = 0.0

@@ -32,9 +32,12 @@ chroot "$root" sh -euc '
   id thunderhead >/dev/null
   thunderhead --version
   test -f /usr/lib/systemd/system/thunderhead.service
+  grep -q "^libboost" /usr/share/doc/thunderhead/third-party-notices.txt
+  test -f /usr/share/thunderhead/page/third-party-notices.txt
   . /root/serve.sh
 '
 add 'xvfb xauth /root/*.deb'
+chroot "$root" grep -q ^libimgui /usr/share/doc/thunderhead-desktop/third-party-notices.txt
 chroot "$root" sh -euc '
   . /root/serve.sh
   python3 -c "

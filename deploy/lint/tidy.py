@@ -1,9 +1,9 @@
 """Runs clang-tidy on the files named on standard input, in as many processes at a time as there are processors.
 
-clang-tidy spends nearly all of its time on the headers that a file includes. So twelve files with the same compiler
-arguments and the same checks are examined as one text, as the build compiles them. If something is found in a text, its
-files are examined again one by one, and this result counts. With --alone each file is also compiled alone, which finds
-a forgotten include.
+clang-tidy spends nearly all of its time on the headers that a file includes. Twelve files with the same compiler
+arguments and checks are therefore examined as one text, as in the unity builds (CMakePresets.json). If something is
+found in a text, its files are examined again one by one, and this result counts. With --alone each file is also
+compiled alone, which finds a forgotten include.
 
 The checks of a file are those of the nearest .clang-tidy in the folders above it.
 

@@ -29,8 +29,9 @@ absl::StatusOr<std::unique_ptr<Authenticator>> TrustTokens(
     const std::string& path, const base::TimeSource& time = base::SteadyTime());
 
 // Identifies callers by JWTs that the key in the file at `path` verifies (jwt_key.h). The file is
-// read again when it changes. Logs a warning if no audience is wanted, because a token for another
-// service is then accepted, which RFC 7519, 4.1.3 forbids. Returns the same errors as TrustTokens.
+// read again when it changes. Logs a warning if `wanted` names no audience, because tokens for
+// other services are then accepted, which RFC 7519, 4.1.3 forbids. Returns the same errors as
+// TrustTokens.
 absl::StatusOr<std::unique_ptr<Authenticator>> TrustJwt(const std::string& path,
                                                         const JwtClaims& wanted);
 

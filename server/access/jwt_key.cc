@@ -63,7 +63,8 @@ absl::Status CheckPublicKey(const std::string& pem) {
 absl::StatusOr<json> ParsePart(const std::string& part, const char* what) {
   std::string text;
   if (!absl::WebSafeBase64Unescape(part, &text)) return WrongForm();
-  // The parser would end at a NUL byte, and would skip a byte order mark (RFC 8259, 8.1).
+  // A NUL byte or a byte order mark (RFC 8259, 8.1) is an error, although the parser would end at
+  // the first and skip the second.
   const bool is_json_alone =
       !absl::StrContains(text, '\0') && !absl::StartsWith(text, "\xEF\xBB\xBF");
   constexpr bool kThrows = false;
@@ -113,7 +114,8 @@ absl::StatusOr<ParsedToken> ParseToken(const std::string& token, const char* alg
   if (parts.size() != 3) return WrongForm();
   ParsedToken parsed;
   for (const std::string& part : parts) {
-    // The form is the canonical one, so that no one can write a token in another way.
+    // Each part must be the canonical base64url of its bytes. The same token could otherwise be
+    // written in other ways.
     const bool is_base64 = absl::WebSafeBase64Unescape(part, &parsed.signature) &&
                            absl::WebSafeBase64Escape(parsed.signature) == part;
     if (!is_base64 || (part.empty() && &part != &parts[2])) return WrongForm();
@@ -146,13 +148,15 @@ bool IsSignedByRs256(const ParsedToken& token, const std::string& pem) {
   const PublicKey key = ReadPublicKey(pem);
   const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(),
                                                                         &EVP_MD_CTX_free);
-  // The padding of an RSA key's signature is that of RS256 by default (PKCS #1, version 1.5).
+  // By default, OpenSSL verifies an RSA signature with the padding of PKCS #1, version 1.5, which
+  // RS256 uses.
   const bool is_signed =
       key != nullptr && context != nullptr &&
       EVP_DigestVerifyInit(context.get(), nullptr, EVP_sha256(), nullptr, key.get()) == 1 &&
       EVP_DigestVerify(context.get(), BytesOf(token.signature), token.signature.size(),
                        BytesOf(token.signed_text), token.signed_text.size()) == 1;
-  // Otherwise the next TLS call of this thread could report the errors of this one.
+  // OpenSSL keeps errors in a queue of this thread. If they stayed there, the thread's next TLS
+  // call could report them as its own.
   ERR_clear_error();
   return is_signed;
 }

@@ -19,8 +19,8 @@ namespace thunderhead::access {
 struct QuotaLimits {
   std::size_t max_streams = 2048;
   std::size_t max_streams_per_identity = 512;
-  // The maximum mean rate of requests for one identity. After a pause, a burst of twice as many
-  // requests is allowed. 0 means no limit.
+  // The maximum mean rate of requests for one identity. After a pause, the requests of two seconds
+  // are allowed at once. 0 means no limit.
   double requests_per_second = 500.0;
   // The maximum rate of invalid tokens from one network. Beyond it, the network may only present
   // tokens that were valid before.

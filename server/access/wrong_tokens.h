@@ -18,8 +18,8 @@ class WrongTokens {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  // `per_second` is the maximum mean rate of wrong tokens from one network. After a pause, a burst
-  // of twice as many is allowed. 0 means no limit.
+  // `per_second` is the maximum mean rate of wrong tokens from one network. After a pause, the
+  // wrong tokens of two seconds are allowed at once. 0 means no limit.
   explicit WrongTokens(double per_second) : left_(per_second) {}
 
   // Returns RESOURCE_EXHAUSTED with a retry delay if the token must not be checked.

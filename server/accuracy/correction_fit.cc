@@ -10,9 +10,9 @@ namespace thunderhead::accuracy {
 namespace {
 
 // kStep is the prior standard deviation of a texel's factor, divided by the spread of the factors
-// (docs/decisions/0012-traced-light.md). It applies to the difference from the coarser level and to
-// each term that depends on direction. For single colours it is multiplied by kColorShare, because
-// their estimates are the noisiest.
+// (their deviation from the mean, SpreadOf; see docs/decisions/0012-traced-light.md). It applies to
+// the difference from the coarser level and to each term that depends on direction. For single
+// colours it is multiplied by kColorShare, because their estimates are the noisiest.
 constexpr double kStep = 1.5;
 constexpr double kColorShare = 0.2;
 // The spread of the factors is computed on a level with at most this many texels along each side,
@@ -86,7 +86,8 @@ glm::vec4 SolveRidge(const std::array<float, 10>& matrix, const std::array<float
       for (int k = 0; k < column; ++k) factor[row][column] -= factor[row][k] * factor[column][k];
       if (column < row) factor[row][column] /= factor[column][column];
     }
-    // The lower limit is larger than the rounding errors of the sums in single precision.
+    // Rounding errors of the sums in single precision could make this value negative. The lower
+    // limit is larger than these errors.
     factor[row][row] = std::sqrt(std::max(factor[row][row], 1e-3 * ridge[row]));
     for (int k = 0; k < row; ++k) x[row] -= factor[row][k] * x[k];
     x[row] /= factor[row][row];
@@ -242,8 +243,8 @@ std::vector<Factors> CorrectionFit::Solve() const {
   std::vector<Factors> above(1, kNone);
   glm::ivec3 size_above(1);
   for (std::size_t i = coarser.size() + 1; i-- > 0;) {
-    // The coarsest level has one texel with all rays, so its factor is reliable and may differ from
-    // 1 by any amount.
+    // The coarsest level has one texel with all rays, so its factor is reliable. Its prior is
+    // therefore weak, and the factor may differ much from 1.
     const double step = i == coarser.size() ? kMaxSpread : spread;
     above = SolveLevel(level(i), above, size_above, variance, step);
     size_above = level(i).size;

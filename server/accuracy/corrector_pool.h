@@ -49,8 +49,9 @@ class CorrectorPool {
   // correctors and all are busy or claimed, or if there is no memory for another storm. It also
   // returns the errors of LightCorrector::Create and LightCorrector::Step. If the scene has no
   // light to trace (TracesLight), it does nothing and returns a progress without paths. If `claim`
-  // is not null, it receives a claim on the scene's light. The correction is published at
-  // intervals, and when `wanted_paths` paths are traced.
+  // is not null, it receives a claim on the scene's light, which keeps the corrector in the pool
+  // while a copy of the claim exists. The correction is published at intervals, and when
+  // `wanted_paths` paths are traced.
   absl::StatusOr<LightProgress> Trace(
       const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
       LightClaim* claim = nullptr, std::int64_t wanted_paths = kTracedPaths);
@@ -67,7 +68,7 @@ class CorrectorPool {
     base::Stopwatch since_traced;
     base::Stopwatch since_published;
     std::int64_t published_paths = 0;
-    LightClaim claim = std::make_shared<int>();  // copies of it are held by the claimants
+    LightClaim claim = std::make_shared<int>();  // its copies belong to callers of Trace()
 
     bool IsClaimed() const { return claim.use_count() > 1; }
   };

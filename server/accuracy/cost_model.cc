@@ -7,16 +7,17 @@ namespace thunderhead::accuracy {
 namespace {
 
 // The factor by which the weight of older frames decreases with each frame, to a third in five
-// frames. This is fast enough to follow a camera that flies into the cloud, and slow enough to
-// determine both coefficients a and b.
+// frames. This is fast enough to follow a camera that flies into the cloud. It is slow enough to
+// determine both coefficients of a + b (pixels x slices), the formula in cost_model.h.
 constexpr double kForgetting = 0.8;
 // If the variance of x (the number of samples), divided by its mean square, is below this value, a
 // and b cannot be determined separately.
 constexpr double kMinRelativeVariance = 1e-3;
 // The fitted line is used for frames with up to this multiple of the samples of the fitted frames.
-// A full frame has 64 times the samples of the coarsest frame that is not sparse. The first frames
-// of a server have only about 10 000 samples, and their time is mostly fixed. Extrapolated to an
-// image of 3840 x 2160 pixels, their line would predict an hour.
+// A full frame has 64 times the samples of the coarsest frame that is not sparse
+// (FrameQuality::sparse). The first frames of a server have only about 10 000 samples, and their
+// time is mostly fixed. Extrapolated to an image of 3840 x 2160 pixels, their line would predict an
+// hour.
 constexpr double kReach = 100.0;
 
 bool IsPreparation(const scene::StageTime& cost) {

@@ -13,9 +13,9 @@ namespace {
 // Student's t at 97.5 % for kGroups - 1 = 39 degrees of freedom.
 constexpr double kStudent = 2.0227;
 constexpr std::int64_t kMinPixels = 160;
-// The minimum half widths of the confidence intervals: of the error, relative to the error, and of
-// the bias, relative to the mean radiance. They correspond to the uncertainty of a reference with
-// 1000 samples per pixel.
+// kMinReach is the minimum half width of the error's confidence interval, relative to the error.
+// kMinBiasReach is that of the bias, relative to the mean radiance. Both correspond to the
+// uncertainty of a reference with 1000 samples per pixel.
 constexpr double kMinReach = 0.03;
 constexpr double kMinBiasReach = 0.002;
 
@@ -30,7 +30,8 @@ double Reach(double whole, const std::vector<double>& without) {
 
 // Returns a bound on the bias of the squared error. The bias arises because the light that clamping
 // removes from some pixels is added back to all pixels. `lost` is the root mean square of that
-// light. In the worst case, all of the light belongs to pixels whose error has the same sign.
+// light. The bound assumes the worst case, in which all of the light belongs to pixels whose error
+// has the same sign.
 double Misplaced(double squared_error, double lost) {
   return 2.0 * std::sqrt(std::max(squared_error, 0.0)) * std::abs(lost) + lost * lost;
 }

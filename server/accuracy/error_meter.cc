@@ -51,7 +51,8 @@ ErrorMeter::ErrorMeter(reference::RayTracer tracer, reference::Surroundings surr
 absl::StatusOr<std::unique_ptr<ErrorMeter>> ErrorMeter::Create(
     const scene::Scene& scene, const std::shared_ptr<const volume::HydrometeorFields>& fields,
     int threads, std::uint64_t seed, const reference::MakesTracer& makes_tracer) {
-  // The reference technique is used, in which each field has its own phase function.
+  // Errors are measured against the reference technique, in which each field has its own phase
+  // function, whatever technique has drawn the picture.
   scene::Scene reference_scene = scene;
   reference_scene.rendering.technique =
       scene::Reference{.false_colors = scene::FieldLookOf(scene.rendering.technique).false_colors};

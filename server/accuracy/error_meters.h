@@ -48,8 +48,9 @@ class ErrorMeters {
   using Draw = std::function<absl::StatusOr<picture::LinearPicture>(const scene::Scene& measured)>;
 
   // There are at most `max_meters` meters, because each holds a copy of its storm's extinction. The
-  // memory for it is reserved in `memory`. A meter that was used within the last `busy_s` seconds
-  // is not replaced. A meter that was not used for `unused_s` seconds is dropped at the next call.
+  // memory for these copies is reserved in `memory`. A meter that was used within the last `busy_s`
+  // seconds is not replaced. A meter that was not used for `unused_s` seconds is dropped at the
+  // next call.
   explicit ErrorMeters(std::shared_ptr<base::MemoryBudget> memory = base::MemoryBudget::Unlimited(),
                        std::size_t max_meters = 8, double busy_s = 3.0, double unused_s = 60.0,
                        reference::MakesTracer makes_tracer = reference::TracerOnProcessors)

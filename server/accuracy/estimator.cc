@@ -53,8 +53,8 @@ std::optional<AccuracyReport> Estimator::Report(const scene::Scene& scene,
   report.image_scale = drawn.image_scale;
   report.model_error = row->relative_rmse;
   report.discretisation_error = evidence.discretisation_error;
-  // The table's error already includes some of the slices' error; counting it twice is
-  // conservative.
+  // The table's error already includes part of the error that a finite number of slices causes. The
+  // result therefore contains this part twice, so the estimate is rather too high than too low.
   report.estimated_error =
       std::hypot(row->relative_rmse, evidence.discretisation_error.value_or(0.0));
   report.measured = evidence.measured;

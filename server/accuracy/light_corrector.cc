@@ -23,15 +23,17 @@ namespace {
 
 constexpr int kWidth_px = 128;
 constexpr int kHeight_px = 96;
-// The maximum number of texels along a side. More texels made the result noisier for the same
-// number of paths, and not better after many paths.
+// The maximum number of the correction's texels along one side of the storm's box. With more
+// texels, the result was noisier for the same number of paths, and not better after many paths.
 constexpr int kMaxTexels = 96;
 constexpr double kMaxTexelCount = 262144.0;
-// Rays with a higher transmittance through the storm carry little information about its light.
+// Rays with a higher transmittance than this are not traced, because they carry little information
+// about the storm's light.
 constexpr double kMaxTransmittance = 0.8;
 // The angle below which the forward peak of phase functions is cut off
-// (MediumOptions::peak_cut_deg). 20 degrees give less noise than 3 degrees. The difference between
-// pictures was too small to measure (docs/lab/0012-traced-light.md).
+// (MediumOptions::peak_cut_deg). A cut at 20 degrees gives less noise than one at 3 degrees. The
+// difference between the corrected pictures was too small to measure
+// (docs/lab/0012-traced-light.md).
 constexpr double kPeakCut_deg = 20.0;
 
 // The number of paths for each ray. Drawing a probe takes as long as tracing one path for each of
@@ -81,8 +83,8 @@ scene::Scene ProbedScene(const scene::Scene& asked, const volume::HydrometeorFie
   return scene;
 }
 
-// Returns the source of particle sizes for computing the storm's box: the papers if all fields use
-// their radii, otherwise the model.
+// Returns the source of the particle sizes with which the storm's box is computed: the papers'
+// constants if all fields use them, otherwise the sizes of the weather model.
 physics::SizeSource SizesOf(const scene::Scene& scene) {
   const bool papers = std::ranges::all_of(scene.fields, [](const scene::FieldParameters& field) {
     return field.sizes == physics::SizeSource::kPapers;
@@ -268,7 +270,8 @@ absl::Status LightCorrector::TraceGround() {
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<glm::dvec3> traced,
                                Traced(over_ground_, rays, kGroundSeed + pass, 1));
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    // The clear sky's known mean is a control variate: rays that miss the storm add no noise.
+    // The mean radiance of the clear sky is known, so it replaces the sky that each ray would see
+    // (a control variate). Rays that miss the storm therefore add no noise.
     ground_fit_.Add({places[i], glm::dvec3(0.0), mean_sky, mean_sky + traced[i] - skies[i]});
   }
   sky_sum_ = sky_sum;

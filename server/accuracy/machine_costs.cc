@@ -30,8 +30,8 @@ void MachineCosts::CompareWithTable(const scene::Scene& scene, double view_ms) {
   if (!table.ok()) return;
   const Setting setting = Untraced(SettingOf(scene));
   const PricedSetting* const row = NearestRow(*table, setting);
-  // If the table has no row for exactly this setting, the ratio would also contain the difference
-  // between the setting and the nearest row.
+  // The measured time is compared only with a row of exactly this setting. With the nearest other
+  // row, the ratio of the times would also contain the difference between the two settings.
   if (row == nullptr || Distance(row->setting, setting) > 0.0) return;
   correction_.Observe(setting, TableMs(*table, *row, scene), view_ms);
 }

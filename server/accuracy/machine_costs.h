@@ -68,8 +68,8 @@ class MachineCosts {
   const OfferTables& tables_;
   std::set<Shaders> compiled_;
   Models machine_;
-  std::map<std::string, Models> views_;  // the models of each view, which begin as a copy of
-                                         // machine_
+  std::map<std::string, Models> views_;  // models by view; each begins as a copy of machine_, which
+                                         // learns from the frames of all views
   TableCorrection correction_;
 };
 

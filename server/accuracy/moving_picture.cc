@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kChannels = 3;
 
-// The contrast limit of larger pictures grows with the number of pixels to the power of
+// Above kMovingContrastPixels, the contrast limit grows with the number of pixels to the power of
 // kContrastGrowth, up to the factor kMostContrast.
 constexpr double kContrastGrowth = 0.4;
 constexpr double kMostContrast = 2.25;

@@ -73,7 +73,7 @@ class Offers {
 };
 
 // Returns `technique` with those settings of `asked` that the tables do not distinguish: turbulent
-// detail, false colours and theta_f.
+// detail, false colours and theta_f (MediumSettings::theta_f_deg).
 scene::Technique WithTasteOf(const scene::Technique& asked, scene::Technique technique);
 
 }  // namespace thunderhead::accuracy

@@ -21,7 +21,8 @@ struct PricedSetting {
 
 struct PricedSettings {
   glm::ivec2 size_px{0};
-  // Rows with the table's most frequent JPEG quality, which changes bytes but not the radiance.
+  // The rows with the table's most frequent JPEG quality. Rows that differ only in this quality are
+  // left out, because it changes the bytes but not the radiance.
   std::vector<PricedSetting> rows;
 };
 

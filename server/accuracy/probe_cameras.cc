@@ -27,7 +27,8 @@ glm::dvec3 Spread(std::uint64_t index) {
   return turns - glm::floor(turns);
 }
 
-// A function object that moves any kind of camera by the same amounts.
+// A function object that moves a camera of any kind. All kinds turn, tilt and move away by the same
+// amounts, as far as they can.
 struct Nudge {
   glm::dvec2 middle_m;
   double turn_deg;  // clockwise, seen from above

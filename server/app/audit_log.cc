@@ -34,7 +34,8 @@ absl::Status Create(const std::string& path) {
   const base::FileDescriptor file(::open(
       path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0600));
   struct stat about {};
-  // Only a FIFO or a socket gives ENXIO.
+  // The error ENXIO means that the path is a FIFO, a socket or a device that does not exist. Such a
+  // path gets the message below.
   if (!file.IsOpen() && errno != ENXIO) return refused(strerror(errno));
   if (file.IsOpen() && fstat(file.Get(), &about) == 0 && S_ISREG(about.st_mode)) {
     return absl::OkStatus();

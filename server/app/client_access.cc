@@ -10,7 +10,8 @@ namespace thunderhead::app {
 namespace {
 
 constexpr std::size_t kMaxToken_bytes = 64 << 10;
-// The certificates of all public authorities together have about 200 KiB.
+// This limit is far above the 200 KiB that the certificates of all public authorities have
+// together.
 constexpr std::size_t kMaxTlsRoots_bytes = 4 << 20;
 
 absl::StatusOr<std::string> ReadNamed(const char* flag, const std::string& path,

@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kTemporary = "thunderhead-clouds-";
-// A starting server creates its folder shortly before it locks it, so folders younger than this are
-// kept.
+// Folders younger than this are kept even if no server has locked them. A starting server creates
+// its folder first and locks the folder shortly afterwards.
 constexpr std::chrono::minutes kStarting{1};
 
 // Deletes the folders of servers that were killed.

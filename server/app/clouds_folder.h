@@ -13,9 +13,9 @@ namespace thunderhead::app {
 class CloudsFolder {
  public:
   // Opens the folder, and creates it if it does not exist. If `path` is empty, creates a temporary
-  // folder, after deleting the temporary folders of servers that were killed. Returns
-  // INVALID_ARGUMENT if the folder cannot be created, or FAILED_PRECONDITION for a temporary
-  // folder.
+  // folder, after deleting the temporary folders of servers that were killed. If the folder cannot
+  // be created, returns INVALID_ARGUMENT for a named folder and FAILED_PRECONDITION for a temporary
+  // one.
   static absl::StatusOr<CloudsFolder> Open(const std::string& path);
   CloudsFolder(CloudsFolder&& other) noexcept;
   CloudsFolder& operator=(CloudsFolder&&) = delete;

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kMaxFile_bytes = 1 << 20;
 
-// Returns the settings in the file. A key may contain dots. CLI11 would take the parts before them
-// for sections, and ignore a key with very many of them.
+// Returns the settings in the file. A key may contain dots. By default CLI11 would treat the parts
+// before the dots as sections, and would ignore a key with very many dots.
 absl::StatusOr<std::vector<CLI::ConfigItem>> ReadSettings(const std::string& path) {
   const absl::StatusOr<std::string> text = base::ReadBoundedFile(path, kMaxFile_bytes);
   if (!text.ok()) return base::Annotate(text.status(), "--config");

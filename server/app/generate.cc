@@ -111,7 +111,7 @@ absl::StatusOr<CloudShape> ShapeOf(const GenerateFlags& flags) {
   if (flags.water_g_per_m3.has_value()) shape.water_kg_per_m3 = 1e-3 * *flags.water_g_per_m3;
   if (!flags.ellipsoids.empty()) {
     shape.ellipsoids.clear();
-    shape.base_m.reset();  // because the preset's base belongs to the preset's ellipsoids
+    shape.base_m.reset();  // the preset's base belongs to the removed ellipsoids
   }
   for (const std::string& text : flags.ellipsoids) {
     THUNDERHEAD_ASSIGN_OR_RETURN(const clouds::Ellipsoid ellipsoid, ParseEllipsoid(text));

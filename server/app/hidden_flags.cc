@@ -8,7 +8,7 @@
 namespace thunderhead::app {
 namespace {
 
-// The heading of these flags in the file of --print-config.
+// The heading of the hidden flags in the file of --print-config.
 constexpr char kHidden[] = "Rarely changed";
 
 class Formatter final : public CLI::Formatter {

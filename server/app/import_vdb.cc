@@ -96,7 +96,8 @@ absl::Status ImportVdb(const ImportVdbFlags& flags) {
   spdlog::set_level(spdlog::level::warn);
   THUNDERHEAD_RETURN_IF_ERROR(CheckEnding("-o", flags.output, {".nc"}));
   std::optional<interchange::ImportOptions> options;
-  // Without the name of a grid, reading the file gives the error that lists its grids.
+  // Without the name of a grid, the options are not needed: reading the file then returns an error
+  // that lists its grids.
   if (!flags.grid.empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(options, OptionsOf(flags));
   }

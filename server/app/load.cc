@@ -100,8 +100,8 @@ absl::Status Load(const LoadFlags& flags) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const LoadTarget target, ParseTarget(flags.server));
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::LoadOptions options, LoadOptionsOf(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const load::Access access, ReadClientAccess(flags.access));
-  // The signals must be blocked before the transport starts its threads, so that these do not
-  // receive them.
+  // The signals must be blocked before the transport starts its threads. The threads then inherit
+  // the blocked signals, and only the thread of `interruption` receives them.
   const Interruption interruption;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::unique_ptr<load::Transport> transport,
                                TransportTo(target, access));
@@ -206,7 +206,7 @@ Command AddLoad(CLI::App& app) {
           "it the connection to HOST:PORT is not encrypted, and https:// uses this machine's "
           "authorities");
   AddImageFlags("--images", *load, *flags);
-  // The earlier names are still accepted.
+  // The flags --images were called --stills before. The earlier names are still accepted.
   for (CLI::Option* earlier : AddImageFlags("--stills", *load, *flags)) HideFromHelp(*earlier);
   AddBounds(*load, flags->bounds);
   load->add_flag("--json", flags->json, "Print JSON");

@@ -117,7 +117,8 @@ Operation::~Operation() {
 }
 
 void Operation::SetServer(service::Server* server, Resources resources) {
-  // The thread is ended before the lock is taken, because it takes the same lock.
+  // The thread that reports to gRPC's clients takes the same lock, so it is ended before the lock
+  // is taken here.
   telling_ = {};
   if (server != nullptr) {
     telling_ = std::jthread([this, server](const std::stop_token& stop) {

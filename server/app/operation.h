@@ -40,8 +40,8 @@ void SetLogFormat(const std::string& format);
 std::jthread EndIfToldWhileStarting(const sigset_t& signals);
 
 // Starts a thread that ends the process after `patience`, unless the thread is told to stop before.
-// It calls `last` and exits with the result of `code`. Without it, a call that hangs with its
-// storage could keep the server from ending.
+// It calls `last` and exits with the result of `code`. Without this thread, a call that hangs with
+// its storage could keep the server from ending.
 std::jthread EndAnywayAfter(std::chrono::seconds patience, const std::function<int()>& code,
                             const std::function<void()>& last);
 

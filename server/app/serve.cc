@@ -165,7 +165,7 @@ absl::Status Serve(ServeFlags flags) {
   // them receives them.
   const sigset_t signals = StopSignals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  // The end of the process that reads the log must not end the server.
+  // SIGPIPE is ignored, so that the server continues if the process that reads its log ends.
   std::signal(SIGPIPE, SIG_IGN);
 
   THUNDERHEAD_RETURN_IF_ERROR(CheckClock(std::chrono::system_clock::now()));
@@ -200,7 +200,8 @@ absl::Status Serve(ServeFlags flags) {
   store_options.read_deadline = read_deadline + std::chrono::seconds(5);
   store_options.live = LiveCatalogueOf(flags.catalogue);
   THUNDERHEAD_ASSIGN_OR_RETURN(const State state, OpenState(flags.state));
-  // If the folders are not searched again, no new storm can take another storm's id.
+  // Ids are kept only if the folders are searched again. Otherwise no new storm can appear and take
+  // another storm's id.
   if (store_options.live.has_value()) KeepStormIds(state, *store_options.live);
   THUNDERHEAD_RETURN_IF_ERROR(ProbeReaders(reader_limits));
   store_options.borders = storm_store::BorderData::Find(storm_store::kBorderFolder);

@@ -170,7 +170,7 @@ void AddLimitFlags(CLI::App& serve, ServeFlags& flags) {
   AddLimit(serve, "--max-predicted-render-time", flags.render_loop.image_limits.max_predicted_s,
            0.001, 1e6,
            "Maximum predicted seconds of drawing for a single image; costlier ones are refused");
-  // The second names of these two flags are earlier ones, which are still accepted.
+  // The names --max-stills and --max-stills-each are earlier names, which are still accepted.
   AddLimit(serve, "--max-images,--max-stills", flags.render_loop.max_waiting_images, 0, 1e6,
            "Maximum number of single images that wait to be drawn");
   AddLimit(serve, "--max-images-each,--max-stills-each", flags.render_loop.max_waiting_images_each,

@@ -16,7 +16,8 @@ namespace {
 
 // Each of these functions returns the error for a text, or an empty text if it is valid.
 
-// CLI11 refuses a text that is no number.
+// Returns an error only for a number that is not finite. A text that is no number is left to CLI11,
+// which refuses it.
 std::string CheckDecimal(const std::string& text) {
   double value = 0.0;
   if (!absl::SimpleAtod(text, &value) || std::isfinite(value)) return "";
@@ -30,7 +31,8 @@ std::string CheckInteger(const std::string& text) {
   if (digits.empty() || is_padded || !std::ranges::all_of(digits, absl::ascii_isdigit)) {
     return absl::StrCat("'", text, "' is not an integer in decimal digits without leading zeros");
   }
-  // Other checks refuse a negative number where none is possible.
+  // A short text can fail here only because it is negative and Number is unsigned. Other checks
+  // refuse negative numbers where none is possible.
   Number value = 0;
   if (absl::SimpleAtoi(text, &value) || digits.size() <= 18) return "";
   return absl::StrCat("'", text, "' is too large for an integer of 64 bits");

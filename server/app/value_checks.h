@@ -7,7 +7,8 @@ namespace thunderhead::app {
 
 // Lets each option of the command and of its subcommands refuse values that CLI11 alone would
 // accept or misread:
-// - For a decimal number: "nan" and "inf", because "nan" is neither too small nor too large.
+// - For a decimal number: "nan" and "inf". Checks of a range would accept "nan", because it is
+//   neither below the minimum nor above the maximum.
 // - For an integer: all but decimal digits. CLI11 reads "010" as 8, and
 //   "99999999999999999999" as the largest number of 64 bits.
 // - For a flag without a value: all but "true" and "false", which it has in a settings file. CLI11

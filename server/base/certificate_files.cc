@@ -15,7 +15,8 @@ namespace thunderhead::base {
 namespace {
 
 constexpr std::chrono::seconds kPause{1};
-// A longer chain of certificates is longer than clients accept.
+// Maximum size of each file. Clients do not accept chains of certificates that are longer than
+// this.
 constexpr std::size_t kMost_bytes = 1 << 20;
 
 absl::StatusOr<std::string> Read(const std::string& what, const std::string& path) {
@@ -33,7 +34,7 @@ absl::Status CannotUseForTls(const std::string& what, const std::string& path,
                    "; it must be a PEM file, and the certificate must belong to the key"));
 }
 
-// Only the thread that checks the files uses this, after Open.
+// The state of the checks. After Open, only the thread that checks the files uses it.
 struct CertificateFiles::State {
   using Stamps = std::pair<std::optional<FileStamp>, std::optional<FileStamp>>;
 

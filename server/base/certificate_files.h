@@ -20,9 +20,9 @@ struct CertificatePem {
 
 class CertificateFiles {
  public:
-  // Begins to use these contents. Returns INVALID_ARGUMENT if they cannot be used. The contents
-  // before then stay in use. The function must own everything that it uses, because a check that
-  // hangs can outlive the object.
+  // A function that begins to use the contents `pem`. It returns INVALID_ARGUMENT if they cannot be
+  // used; the previous contents then stay in use. It must own everything that it uses, because a
+  // check that hangs can outlive this object.
   using Take = std::function<absl::Status(const CertificatePem& pem)>;
 
   // Reads the files and passes them to `take`, and does so again whenever a file has changed.

@@ -11,7 +11,7 @@ namespace thunderhead::base {
 namespace {
 
 constexpr std::size_t kNetworkBytes = 8;
-constexpr std::size_t kMappedBytes = 12;  // bytes before an IPv4 address
+constexpr std::size_t kMappedBytes = 12;  // bytes before the IPv4 address in a mapped IPv6 address
 
 // Returns "1.2.3.4" for "1.2.3.4:80", and "::1" for "[::1]:80".
 std::string HostOf(const std::string& peer) {

@@ -199,7 +199,7 @@ void Executor::Work(const std::shared_ptr<Shared>& shared, const std::shared_ptr
     task.reset();
     lock.lock();
     End(*shared, *worker);
-    // The owner may have tasks that waited for this one to end.
+    // Tasks of this owner may have waited for this task to end, so the threads look for work again.
     shared->changed.notify_all();
   }
   shared->workers.remove(worker);

@@ -1,7 +1,7 @@
 // A few threads that run blocking work for callers that must not block, with a bounded queue.
-// Owners of work get equal shares of the threads' time. No owner can fill the queue or occupy every
-// thread. When a task hangs, for example because its storage is unreachable, a new thread replaces
-// the task's thread after Limits::hangs_after.
+// Owners of work get equal shares of the threads' time. No client can fill the queue or occupy
+// every thread. When a task hangs, for example because its storage is unreachable, a new thread
+// replaces the task's thread after Limits::hangs_after.
 #pragma once
 
 #include <chrono>
@@ -101,7 +101,8 @@ class Executor {
   // The functions below, except Watch, require the mutex.
   //
   // Takes the next task for the worker, from the owner that has used the least time. Returns
-  // nothing if no task may start. Every owner must leave one thread free for others.
+  // nothing if no task may start. Every owner except the server itself must leave one thread free
+  // for others.
   static std::optional<Task> Take(Shared& shared, Worker& worker);
   static void End(Shared& shared, Worker& worker);
   static void Leave(Shared& shared, const std::string& owner);

@@ -42,7 +42,8 @@ void FairShare::Charge(const std::string& id, double expected_ms) {
 void FairShare::Settle(const std::string& id, double charged_ms, double used_ms) {
   const auto known = accounts_.find(id);
   if (known == accounts_.end()) return;
-  // A client that was forgotten since the charge has a new account without the charge.
+  // The charge may be missing: a client that was forgotten after the charge has a new account
+  // without the charge. The result is therefore limited to 0.
   known->second.charged_ms = std::max(0.0, known->second.charged_ms - charged_ms);
   known->second.settled_ms += used_ms;
 }

@@ -21,7 +21,7 @@ class LooseThread {
   static constexpr std::chrono::seconds kPatience{5};
 
   LooseThread() = default;
-  // `time` measures the wait for the thread's end and must outlive this.
+  // `time` measures the wait for the thread's end and must outlive this object.
   LooseThread(std::string name, std::function<void()> run, const TimeSource& time = SteadyTime());
   // Waits up to kPatience for the thread to end, and then abandons it. The owner must have
   // requested the end before.

@@ -53,7 +53,8 @@ std::uint64_t CgroupBytes(const std::string& root) {
   std::uint64_t least = kUnlimited;
   std::ifstream groups(root + "/proc/self/cgroup");
   for (std::string line; std::getline(groups, line);) {
-    // A line holds number, controllers and path. Version 2 has the number 0 and no controllers.
+    // A line holds the hierarchy's number, its controllers and the group's path. Version 2 of
+    // cgroups has the number 0 and no controllers.
     const std::vector<std::string> parts = absl::StrSplit(line, absl::MaxSplits(':', 2));
     if (parts.size() != 3) continue;
     const std::string group = parts[2] == "/" ? "" : parts[2];

@@ -192,8 +192,9 @@ bool MemoryBudget::MakeRoomAndTake(MemoryUse use, std::size_t bytes) {
     oldest->DropOldestUnused();
     dropped = true;
   }
-  // The allocator keeps freed blocks of about a megabyte in the arena of the thread that took them,
-  // where other threads cannot use them. The process would grow beyond the budget.
+  // Freed memory is returned to the system. Otherwise the allocator would keep blocks of about a
+  // megabyte in the arena of the thread that took them, where other threads cannot use them. The
+  // process would then grow beyond the budget.
   if (dropped) GiveBackFreedMemory();
   return true;
 }

@@ -30,7 +30,7 @@ absl::StatusOr<std::string> ReadStart(const std::string& path, std::size_t max_b
   if (!file.IsOpen()) return Unreadable(path, errno);
   struct stat found {};
   if (::fstat(file.Get(), &found) != 0) return Unreadable(path, errno);
-  // The reads of a pipe wait for its writers.
+  // O_NONBLOCK is cleared for a pipe, because reading a pipe must wait for its writers.
   if (S_ISFIFO(found.st_mode) && ::fcntl(file.Get(), F_SETFL, 0) != 0)
     return Unreadable(path, errno);
   if (!S_ISREG(found.st_mode) && !(may_be_pipe && S_ISFIFO(found.st_mode))) {

@@ -13,7 +13,7 @@ namespace thunderhead::base {
 // Returns the contents of the file or pipe at `path`, which may have at most `max_bytes`. A pipe is
 // read until its writers have closed it. A FIFO without a writer is empty. Returns
 // INVALID_ARGUMENT, which names the path and the limit, if the file cannot be read, is neither a
-// regular file nor a pipe, or is larger.
+// regular file nor a pipe, or has more than `max_bytes`.
 absl::StatusOr<std::string> ReadBoundedFile(const std::string& path, std::size_t max_bytes);
 
 // Returns the contents of the regular file at `path`, or of one to which a link leads. A pipe is an
@@ -27,8 +27,8 @@ absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t m
 absl::Status TooLarge(const std::string& what, std::size_t max_bytes);
 
 // Returns FAILED_PRECONDITION if there is something other than a regular file at the path, such as
-// a pipe, whose opening could hang. A link to a regular file is accepted. Returns OK if nothing can
-// be found there, because reading it says why.
+// a pipe, whose opening could hang. A link to a regular file is accepted. Also returns OK if there
+// is nothing at the path, because the later attempt to read it returns an error that says so.
 absl::Status CheckRegularFile(const std::string& path);
 
 }  // namespace thunderhead::base

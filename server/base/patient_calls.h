@@ -24,7 +24,7 @@ inline constexpr char kStorageHangs[] = "STORAGE_HANGS";
 
 class PatientCalls {
  public:
-  // `time` must outlive this.
+  // `time` must outlive this object.
   explicit PatientCalls(std::chrono::milliseconds patience, const TimeSource& time = SteadyTime())
       : patience_(patience), time_(time) {}
   // Abandons the threads of calls that hang.

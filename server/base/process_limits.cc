@@ -12,8 +12,9 @@ namespace thunderhead::base {
 namespace {
 
 constexpr rlim_t kMiB = rlim_t{1} << 20;
-// A server with software rendering on two cores does not start with 1.4 GiB. It starts with 2 GiB,
-// of which it uses 450 MiB; most is reserved for the stacks and the memory pools of threads.
+// The smallest address space in which a server starts. With software rendering on two cores, it
+// does not start in 1.4 GiB. It starts in 2 GiB, of which it uses 450 MiB. Most of the rest is
+// reserved for the stacks and the memory pools of threads.
 constexpr rlim_t kLeast_bytes = 2048 * kMiB;
 
 rlim_t SoftLimit(__rlimit_resource resource) {

@@ -28,7 +28,8 @@ inline const TimeSource& SteadyTime() {
     Clock::time_point Now() const override { return Clock::now(); }
     Clock::time_point LookAgainAt(Clock::time_point deadline) const override { return deadline; }
   };
-  // Never destroyed, because threads may still read it while static objects are.
+  // The object is never destroyed, because threads may still read it while static objects are being
+  // destroyed.
   static const auto* const steady = new Steady;
   return *steady;
 }

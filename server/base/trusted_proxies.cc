@@ -13,7 +13,7 @@
 namespace thunderhead::base {
 namespace {
 
-constexpr int kMappedBits = 96;  // bits before an IPv4 address
+constexpr int kMappedBits = 96;  // bits before the IPv4 address in a mapped IPv6 address
 
 // Returns "1.2.3.4" for "1.2.3.4:80" and "1.2.3.4", and "::1" for "[::1]:80" and "::1".
 std::string_view HostOf(std::string_view address) {

@@ -48,8 +48,8 @@ constexpr std::array kHidden = {
 
 constexpr std::uint32_t kNonJoiner = 0x200c;
 constexpr std::uint32_t kJoiner = 0x200d;
-constexpr std::uint32_t kTextStyle = 0xfe0e;  // a variation selector, as is the next
-constexpr std::uint32_t kEmojiStyle = 0xfe0f;
+constexpr std::uint32_t kTextStyle = 0xfe0e;   // variation selector for text
+constexpr std::uint32_t kEmojiStyle = 0xfe0f;  // variation selector for emoji
 
 // The first character of the scripts that need joiners. Latin, Greek and Cyrillic come before it.
 constexpr std::uint32_t kFirstJoined = 0x590;

@@ -170,7 +170,8 @@ absl::Status PublishFile(const std::string& path) {
     return replaceable;
   }
   {
-    // fsync flushes what any descriptor of the file has written. It refuses a FIFO.
+    // The file is opened again for fsync, which flushes what any descriptor of the file has
+    // written. fsync fails if the file was replaced by a FIFO.
     Descriptor file(open(partial.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     if (file.Number() < 0 || fsync(file.Number()) != 0) return Drop(path);
   }
@@ -178,7 +179,8 @@ absl::Status PublishFile(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const Descriptor entries(
       open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  // Some file systems cannot sync folders. The new name exists anyway.
+  // Some file systems cannot sync folders. Their error is ignored, because the file already has its
+  // new name.
   if (entries.Number() >= 0 && fsync(entries.Number()) != 0 && errno == EIO) {
     return NotWritten(path);
   }

@@ -24,7 +24,7 @@ void AddScales(const CauliflowerOptions& options, int scales, CumulusSurface* su
     const std::size_t end = surface->bubbles.size();
     Sprouting sprouting;
     sprouting.seed = options.seed;
-    sprouting.lowest_sine = -1.0;  // overhanging bubbles are cut off by the base
+    sprouting.lowest_sine = -1.0;  // no lower limit; the base cuts off the bubbles below it
     Sprout(sprouting, first, surface);
     first = end;
   }

@@ -69,7 +69,8 @@ glm::dvec3 RandomDirection(CounterRandom* random) {
   return {across * CosineOfDegrees(azimuth_deg), across * SineOfDegrees(azimuth_deg), z};
 }
 
-// Returns the number of bubbles that cover the share Sprouting::cover of a parent's whole surface.
+// Returns the number of bubbles of mean size that would cover the share Sprouting::cover of a
+// parent's whole surface. It only determines the number of darts.
 int Wanted(const Sprouting& sprouting) {
   return static_cast<int>(sprouting.cover * 4.0 /
                           (sprouting.relative_radius * sprouting.relative_radius));

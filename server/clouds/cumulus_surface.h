@@ -56,7 +56,7 @@ void LayOnLarger(CumulusSurface* surface);
 struct Sprouting {
   double relative_radius = 0.34;  // radius of a new bubble divided by its parent's radius; varied
                                   // by up to a third
-  double cover = 0.8;             // share of the parent's upper side that bubbles cover
+  double cover = 0.8;             // share of the parent's surface that its bubbles would cover
   double lowest_sine = -0.6;      // the smallest sine of the normal's elevation angle at which
                                   // bubbles grow
   double min_radius_m = 0.0;      // parents that are smaller than this get no bubbles

@@ -9,7 +9,8 @@ namespace {
 constexpr int kGainOver = 10;  // number of iterations over which the decrease of H is measured
 constexpr int kPowerIterations = 16;
 
-// This margin is needed because the power method underestimates the largest eigenvalue.
+// The factor by which the computed largest eigenvalue is increased, because the power method
+// underestimates it. A step that is too long would overshoot.
 constexpr double kStepMargin = 1.05;
 
 double SumOfSquares(const std::vector<float>& field) {

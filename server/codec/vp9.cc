@@ -56,7 +56,7 @@ vpx_codec_enc_cfg_t ConfigFor(int width_px, int height_px) {
   config.rc_max_quantizer = kCoarsestQuantizer;
   config.rc_undershoot_pct = 50;
   config.rc_overshoot_pct = 50;
-  config.rc_buf_sz = 1000;  // in milliseconds, as in the next two lines
+  config.rc_buf_sz = 1000;  // the three sizes of the buffer are in milliseconds
   config.rc_buf_initial_sz = 500;
   config.rc_buf_optimal_sz = 600;
   config.rc_dropframe_thresh = 0;

@@ -110,13 +110,13 @@ class FrameHub {
   // these viewers is due.
   std::optional<Time> WakeWaiting(Time now);
 
-  // Returns the video pictures of a frame that must be encoded before it is published. Viewers get
-  // a frame at rest as JPEG. If a resting frame follows, viewers that take resting frames get video
-  // instead, or wait if they already have a resting frame of the scene.
+  // Returns orders for the video pictures that must be encoded before the frame is published.
+  // Viewers get a frame at rest as JPEG. If a resting frame follows, viewers that take resting
+  // frames get video instead, or wait if they already have a resting frame of the scene.
   std::vector<VideoOrder> OrderVideo(const EncodedFrame& described, bool resting_frame_follows,
                                      std::optional<Time> at = std::nullopt);
   // Replaces the newest frame and returns its sequence. `described` is the frame without a picture.
-  // `encode` makes the JPEG of each tier that a viewer needs.
+  // `encode` makes the JPEG of each tier (link_estimate.h) that a viewer needs.
   std::uint64_t Publish(EncodedFrame described, EncodeFrame encode = nullptr,
                         std::vector<EncodedVideo> video = {}, bool resting_frame_follows = false,
                         std::optional<Time> at = std::nullopt);

@@ -7,8 +7,9 @@ namespace {
 
 // Number of samples needed before a step is left, and before a step on trial is judged.
 constexpr int kFewestSamples = 4;
-// A smaller picture is kept only if it arrives in at most kWorthIt times the previous time. A
-// larger picture may take kBearable times as long.
+// After a step to smaller pictures, the step is kept only if a picture arrives in at most kWorthIt
+// times the time that a larger picture took before. After a step to larger pictures, a picture may
+// take up to kBearable times as long as a smaller picture did.
 constexpr double kWorthIt = 0.8;
 constexpr double kBearable = 1.25;
 

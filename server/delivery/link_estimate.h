@@ -2,7 +2,8 @@
 // the times at which frames were sent and acknowledged. A plain value; the time is an argument.
 //
 // Frames take long both on a link with low bandwidth and on a link with a long delay. To tell the
-// two apart, the estimate tries the next smaller step and keeps it only if frames arrive faster.
+// two apart, the estimate tries the next smaller step and keeps it only if frames arrive faster
+// than before.
 #pragma once
 
 #include <chrono>

@@ -25,7 +25,8 @@ absl::StatusOr<codec::Vp9Picture> VideoEncoders::Encode(const frame::RgbImage& p
                                  codec::Vp9Encoder::Create(picture.width_px, picture.height_px));
   }
   auto encoded = encoder.vp9->Encode(picture, order->kind);
-  // After an error the encoder's reference pictures may differ from those that viewers have.
+  // The encoder is discarded after an error, because its reference pictures may then differ from
+  // those that viewers have.
   if (!encoded.ok()) encoder = {};
   if (encoded.ok() && encoded->key) order->kind = codec::Vp9Kind::kKey;
   return encoded;

@@ -1,4 +1,4 @@
-// Compiles shaders/paths/bindings.glsl as C++.
+// Compiles shaders/paths/bindings.glsl as C++, so that C++ code and shaders use the same constants.
 #pragma once
 
 namespace thunderhead::shaders {

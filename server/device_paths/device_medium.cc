@@ -31,8 +31,8 @@ struct GroupTexels {
   std::int32_t colors;
 };
 
-// Returns the values of the exact and the similar optics interleaved. If the medium has no similar
-// optics, each exact value appears twice.
+// Returns the values of the exact and the similar optics (reference::Optics) interleaved. If the
+// medium has no similar optics, each exact value appears twice.
 std::vector<float> Interleaved(const std::vector<float>& exact, const std::vector<float>& similar) {
   std::vector<float> both;
   both.reserve(2 * exact.size());

@@ -6,8 +6,9 @@
 namespace thunderhead::drawing {
 namespace {
 
-// The costs are measured on drawn frames. After this many decisions, the costs are either known or
-// do not converge.
+// The maximum number of times that a scene's setting is decided again. The costs of settings become
+// known by drawing frames. After this many decisions, the costs are either known or do not
+// converge.
 constexpr int kMaxDecidedAgain = 3;
 
 }  // namespace

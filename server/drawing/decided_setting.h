@@ -17,7 +17,7 @@ namespace thunderhead::drawing {
 
 class DecidedSetting {
  public:
-  // `offers` must outlive it.
+  // `offers` must outlive this object.
   explicit DecidedSetting(const accuracy::Offers& offers) : offers_(offers) {}
 
   // Returns the newest scene with its setting decided. If no setting can be decided for a revision,

@@ -14,11 +14,12 @@
 namespace thunderhead::drawing {
 namespace {
 
-// The JPEG quality of a coarse frame. Its smaller buffer blurs it anyway, and it is soon replaced.
-// With fewer bytes it arrives sooner.
+// The JPEG quality of a coarse frame. Such a frame is blurred anyway, because its buffer is smaller
+// than the picture, and it is soon replaced. With fewer bytes it arrives sooner.
 constexpr int kCoarseJpegQuality = 75;
 
-// The JPEG quality of a coarse frame in a smaller tier, which goes to viewers with slow links.
+// The JPEG quality of a coarse frame in a smaller tier (delivery/link_estimate.h), which goes to
+// viewers with slow links.
 constexpr int kReducedJpegQuality = 70;
 
 using Pictures = delivery::PictureSizes<frame::RgbImage>;
@@ -115,7 +116,7 @@ std::vector<delivery::EncodedVideo> VideoOf(const delivery::EncodedFrame& descri
     });
     if (encoded.ok()) {
       video.push_back(*std::move(encoded));
-      // Refusals for lack of memory are counted elsewhere.
+      // Refusals for lack of memory are not logged here. They are counted elsewhere.
     } else if (!absl::IsResourceExhausted(encoded.status())) {
       base::LogError(base::Annotate(encoded.status(), "encoding video"));
     }
@@ -232,7 +233,7 @@ void FrameEncoder::Run() {
     lock.lock();
     encoding_.erase(std::find(encoding_.begin(), encoding_.end(), session.get()));
     lock.unlock();
-    // Another frame of the same session may have waited for this one.
+    // Another frame of the same session may have waited for this one, so a thread is woken for it.
     changed_.notify_one();
     on_encoded_();
     lock.lock();

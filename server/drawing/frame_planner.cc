@@ -89,7 +89,8 @@ FramePlan FramePlanner::Coarse(const scene::Scene& scene,
     const bool large = output_scale < 1.0;
     FrameQuality moving;
     double speed_scale = 1.0;
-    // Within a gesture the size changes only in clear cases because viewers see a change of size.
+    // If the last frame of the gesture was reduced in size, the full size returns only if frames
+    // are clearly fast enough, because viewers see each change of size.
     const bool capped = !drawn_.refined && drawn_.quality.output_scale < 1.0;
     const double longest_ms = large ? targets_.coarse_ms : targets_.smooth_ms;
     if (whole_ms > (capped ? longest_ms / kKept : longest_ms)) {

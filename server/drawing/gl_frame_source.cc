@@ -110,8 +110,8 @@ class GlFrameSource final : public FrameSource {
   absl::StatusOr<accuracy::ErrorProgress> MeasureError(
       const scene::Scene& scene,
       const std::shared_ptr<const volume::HydrometeorFields>& fields) override {
-    // If memory is scarce, pictures need it more. The error from the accuracy table is then still
-    // reported.
+    // If memory is scarce, no error is measured, because pictures need the memory more. The error
+    // from the accuracy table is then still reported.
     if (!HasRoomToMeasure(scene, *fields)) return accuracy::ErrorProgress{.ended = true};
     const Correction correction = CorrectionOf(scene, fields);
     auto progress = base::Guarded([&] {
@@ -120,8 +120,8 @@ class GlFrameSource final : public FrameSource {
           THUNDERHEAD_ASSIGN_OR_RETURN(const renderers::LinearFrame linear,
                                        renderers_.Draw(measured, fields, Applied(correction, {})));
           auto picture = frame::PictureOf(*linear.radiance, programs_->Pieces());
-          // If memory is scarce, unused renderers are freed, because tracing the correction draws
-          // the storm with a separate renderer.
+          // If memory is scarce, unused renderers are freed. Tracing needs their memory, because it
+          // draws the storm with a separate renderer.
           if (!HasRoomToMeasure(scene, *fields)) renderers_.DropUnusedFor(0.0);
           return picture;
         });
@@ -211,7 +211,7 @@ class GlFrameSource final : public FrameSource {
   // picture of the scene's size. Errors are measured only when memory is plentiful.
   bool HasRoomToMeasure(const scene::Scene& scene, const volume::HydrometeorFields& fields) const {
     constexpr std::size_t kBytesPerPixel = 64;
-    constexpr std::size_t kBytesPerCell = 160;  // rounded up from 154 bytes for five fields
+    constexpr std::size_t kBytesPerCell = 160;  // for five fields: 154 bytes, rounded up
     const auto pixels = static_cast<std::size_t>(scene.output.width_px) *
                         static_cast<std::size_t>(scene.output.height_px);
     return BudgetOf(shared_.options)

@@ -9,11 +9,13 @@
 namespace thunderhead::drawing {
 namespace {
 
-// The display pixels (3 bytes), and as much again while they are encoded.
+// Bytes per pixel of a picture with 8 bits per channel: 3 for the display pixels, and as many while
+// the pixels are encoded.
 constexpr std::size_t kBytesPerPixel = 6;
-// The same for a picture with 16 bits per channel, including its smaller tiers.
+// Bytes per pixel of a picture with 16 bits per channel, with its smaller tiers
+// (delivery/link_estimate.h) and while it is encoded.
 constexpr std::size_t kFineBytesPerPixel = 16;
-// For a linear picture: radiance, opacity and optical depths.
+// Bytes per pixel of a linear picture, which has radiance, opacity and optical depths.
 constexpr std::size_t kLinearBytesPerPixel = 24;
 
 class GuardedSource final : public FrameSource {

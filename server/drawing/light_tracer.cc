@@ -81,7 +81,8 @@ LightTracer::Progress LightTracer::Trace(FrameSource& source, const Request& req
     step.error = *std::move(error);
     return step;
   }
-  // The device was lost, or the server is stopping.
+  // UNAVAILABLE means that the device was lost, or that the server is stopping. In both cases the
+  // step fails.
   if (absl::IsUnavailable(error.status())) return error.status();
   // The picture can be shown without its error. A failure that may pass is retried with the next
   // step.

@@ -41,7 +41,7 @@ class LightTracer {
     std::shared_ptr<const scene::Scene> scene;
     std::shared_ptr<const volume::HydrometeorFields> fields;
     std::int64_t wanted_paths = 0;
-    bool claims = false;  // its light is not evicted for another scene while it is traced
+    bool claims = false;  // keep the light while it is traced: do not evict it for another scene
     bool light = true;    // trace light
     bool error = false;   // measure the error
     // Maximum tracing time for measuring the error.

@@ -179,7 +179,7 @@ void ReferenceTracer::Keep(Job& job, Found found, bool ended) {
 }
 
 void ReferenceTracer::Run() {
-  // Threads that this thread starts inherit its low priority.
+  // This thread gets a low priority, which the threads that it starts inherit.
   base::LowerPriority(base::kLowestPriority);
   std::unique_lock lock(mutex_);
   while (true) {

@@ -28,8 +28,8 @@
 namespace thunderhead::drawing {
 namespace {
 
-// Niceness of the workers that draw single pictures. It is above that of sessions' frames, for
-// which viewers wait, but below that of tracing, which could use all CPU cores indefinitely.
+// Niceness of the workers that draw single pictures. They yield to sessions' frames, for which
+// viewers wait. Tracing yields to them, because it could use all CPU cores indefinitely.
 constexpr int kImageNiceness = 5;
 // Niceness of the worker that draws frames at rest, which yields to frames of changing scenes.
 constexpr int kSessionNiceness = 1;
@@ -283,7 +283,8 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
       contenders.push_back({session->id(), session->IsOwnView(), wish.work});
       look_again_at = Earlier(look_again_at, wish.look_again_at);
     }
-    // This follows the sessions' work, because a session may just have requested light.
+    // The light tracer begins its step after all sessions were asked for their work, because a
+    // session may just have requested light.
     look_again_at = Earlier(look_again_at, light_tracer.Begin(time_.Now()));
     for (const Workers::Entry& entry : workers->All()) {
       contenders.push_back({entry.name, false, std::nullopt});

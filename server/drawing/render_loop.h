@@ -120,7 +120,8 @@ class RenderLoop {
   session::Sessions& sessions_;
   base::WakeSignal& wake_;
   const base::TimeSource& time_;  // the sessions' time source
-  DeviceInfo device_;             // constant after Start, like the next two
+  // device_, techniques_ and preparation_ are constant after Start.
+  DeviceInfo device_;
   std::vector<scene::TechniqueInfo> techniques_;
   std::shared_ptr<Preparation> preparation_;
   std::atomic<bool> stopping_{false};
@@ -128,7 +129,8 @@ class RenderLoop {
   std::atomic<bool> device_lost_{false};
   std::atomic<bool> recovering_{false};
   DeviceLosses losses_;
-  // Since the clock's epoch; 0 while there is no turn.
+  // The time at which the current turn began, as a duration since the clock's epoch. 0 while there
+  // is no turn.
   std::atomic<session::Clock::rep> turn_began_{0};
 
   mutable std::mutex workers_mutex_;

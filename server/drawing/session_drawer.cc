@@ -115,7 +115,8 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<session::Session>&
                       std::holds_alternative<ShowLight>(turn.kept.work);
   if (!traces) light_tracer_.Stop(session->id());
   Wish wish = std::visit([&](const auto& work) { return Need(turn, work); }, turn.kept.work);
-  // Need may have replaced the work, for example by work that shows the light traced meanwhile.
+  // The work is read again here, because Need may have replaced it, for example by work that shows
+  // the light traced meanwhile.
   turn.kept.in_worker = turn.kept.in_worker || IsLong(turn, turn.kept.work);
   if (turn.kept.in_worker && !worker_.IsFree()) wish.work.reset();
   return wish;
@@ -175,7 +176,8 @@ void SessionDrawer::TakeDrawn(const std::vector<std::shared_ptr<session::Session
   const auto kept = kept_.find(session_id);
   if (session == nullptr || kept == kept_.end() || absl::IsCancelled(picture->status())) return;
   const Turn turn{session, kept->second};
-  // The session may show a newer scene by now, or have released its fields.
+  // The frame is dropped if the session shows a newer scene by now, or has released the fields of
+  // the frame.
   const std::uint64_t revision = drawn.shown.revision;
   if (revision < turn.kept.view.shown_revision()) return;
   if (picture->ok()) {
@@ -296,7 +298,8 @@ SessionWork SessionDrawer::Placed(const Turn& turn, const session::NewestScene& 
   turn.kept.in_worker = false;
   if (draw != nullptr && moves) {
     // If a picture was drawn at rest by the worker and only its tone map changes, the worker's
-    // source still has the picture's radiance.
+    // source still has the picture's radiance. The worker then draws the new frame if its picture
+    // is finer than that of the render loop.
     const scene::Scene& scene = *draw->shown.scene;
     const auto has_light = [&](const std::optional<LastDrawn>& last) {
       return FirstDirty(last, scene) >= scene::Stage::kTone;
@@ -321,8 +324,8 @@ bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
   const session::NewestScene* shown = ShownBy(work);
   if (shown == nullptr || shown->revision == turn.kept.whole_revision) return false;
   if (turn.kept.view.state() == SessionView::State::kMoving) return false;
-  // If memory is scarce, a second copy of the storm for the worker would make other sessions free
-  // memory.
+  // If memory is scarce, the render loop draws the frame. A second copy of the storm for the worker
+  // would make other sessions free memory.
   if (!worker_.HasRoomFor(*shown->scene, turn.kept.device_bytes)) return false;
   const scene::Stage first_dirty =
       std::min(FirstDirty(IfDrawnFrom(turn.kept.fields.Fields(), source_.Last()), *shown->scene),
@@ -348,7 +351,7 @@ SessionDrawer::Wish SessionDrawer::Need(const Turn& /*turn*/, const CheckSlices&
 
 SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const TraceLight& work) {
   const std::string& id = turn.session->id();
-  // An own view shows the light that is traced for its session.
+  // A viewer's own view traces no light itself. It shows the light that is traced for its session.
   if (turn.session->IsOwnView()) {
     turn.kept.view.LightIsOthers();
     return {};

@@ -28,13 +28,14 @@ class SessionDrawer {
  public:
   // Limits for all sessions and own views of one identity together.
   struct Share {
-    // Maximum bytes of their newest frames.
+    // Maximum bytes of the newest frames of these sessions and views.
     std::size_t picture_bytes = std::numeric_limits<std::size_t>::max();
-    // Maximum number of references being traced.
+    // Maximum number of pictures that the Monte Carlo reference traces for these sessions and
+    // views.
     std::size_t references = std::numeric_limits<std::size_t>::max();
   };
 
-  // All references must outlive it.
+  // All references must outlive this object.
   SessionDrawer(const PlannerTargets& targets, const FieldsAccess& fields, MeasuredSource& source,
                 FrameEncoder& encoder, ReferenceTracer& tracer, LightTracer& light_tracer,
                 SessionWorker& worker, const Share& share,
@@ -110,8 +111,8 @@ class SessionDrawer {
   // longer shows the scene of that frame.
   std::optional<Wish> LookInWorker(const Turn& turn, const session::NewestScene& newest);
   // Returns the work, moved to the worker if it takes too long for the render loop or if the
-  // worker's source can reuse more stages. The frame's quality is then planned again for the
-  // stages that the worker must rerun.
+  // worker's source can reuse more stages than the render loop's source. The frame's quality is
+  // then planned again for the stages that the worker must rerun.
   SessionWork Placed(const Turn& turn, const session::NewestScene& newest,
                      const std::optional<session::NewestScene>& drawable, SessionWork work);
   bool IsLong(const Turn& turn, const SessionWork& work) const;

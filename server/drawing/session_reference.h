@@ -15,7 +15,7 @@ namespace thunderhead::drawing {
 
 class SessionReference {
  public:
-  // `tracer` must outlive it.
+  // `tracer` must outlive this object.
   SessionReference(ReferenceTracer& tracer, std::string session_id)
       : tracer_(tracer), id_(std::move(session_id)) {}
 

@@ -44,7 +44,8 @@ SessionView::State SessionView::EnteredFor(
   const scene::Technique& technique = scene.scene->rendering.technique;
   if (scene::IsTraced(technique)) return State::kReference;
   if (scene.revision > planner_.revision()) return State::kMoving;
-  // The fields were released while there were no viewers.
+  // If the view still waited for fields, they had been released while there were no viewers. The
+  // revision was already drawn, so the view continues with finer frames.
   return state_ == State::kWaitingForFields ? State::kRefining : state_;
 }
 
@@ -103,7 +104,7 @@ SessionWork SessionView::DrawAnew(const Now& now) {
 
 bool SessionView::IsRefuted(const Now& now) {
   if (!error_.error().has_value() || now.shown.revision != now.newest.revision) return false;
-  // While light is being traced, the error still falls.
+  // The error is judged only when tracing has ended, because it falls while light is being traced.
   const bool traced =
       scene::TracedLightOf(now.shown.scene->rendering.technique) != scene::TracedLight::kOff;
   if (traced && !(light_.ended() && error_.ended())) return false;

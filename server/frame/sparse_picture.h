@@ -13,9 +13,9 @@
 
 namespace thunderhead::frame {
 
-// Factor of the contrast limit for the last, full-size picture. Its pixels are so small that
-// roughness is less visible. Rays have more effect in the half-size picture before it
-// (docs/decisions/0052-sparse-pictures.md).
+// Factor of the contrast limit for the last, full-size picture. The pixels of this picture are so
+// small that roughness is hardly visible. Rays improve the result more in the half-size picture
+// that is completed before it (docs/decisions/0052-sparse-pictures.md).
 inline constexpr double kLastContrast = 10.0 / 3.0;
 
 // Returns the size of the first picture: a quarter of `size_px` in each direction, rounded up.

@@ -29,8 +29,8 @@ void SetOption(int socket, int level, int name, int value) {
 
 void TuneSocket(int socket) {
   SetOption(socket, IPPROTO_TCP, TCP_NODELAY, 1);
-  // The keepalive detects a client that disappeared without closing the connection after about a
-  // minute, even while its stream is idle.
+  // The keepalive detects within about a minute that a client has disappeared without closing the
+  // connection, even while its stream is idle.
   SetOption(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
   SetOption(socket, IPPROTO_TCP, TCP_KEEPIDLE, 30);
   SetOption(socket, IPPROTO_TCP, TCP_KEEPINTVL, 10);

@@ -281,7 +281,7 @@ net::awaitable<bool> FileAnswers::SendPart(const Request& request,
     std::vector<char> into = std::vector<char>(kFilePart);
     std::ptrdiff_t bytes = 0;
     absl::Status status;
-    streams::Sha256Digest digest;  // of all bytes that were read
+    streams::Sha256Digest digest;  // digest of all bytes that were read
   };
   const auto read = std::make_shared<Read>();
   const std::string owner = FilesOwnerOf(request);

@@ -11,7 +11,7 @@ base::Executor::Limits Limits() {
   limits.threads = 2;
   limits.hangs_after = std::chrono::seconds(1);
   limits.max_hanging = 16;
-  // A file in the queue stays open in any case, so it may wait for a long time.
+  // Files may wait for a long time, because a file that was dropped from the queue would stay open.
   limits.max_wait = std::chrono::hours(24);
   return limits;
 }

@@ -10,7 +10,8 @@
 
 namespace thunderhead::gateway {
 
-// Serves the connection and closes `link` at the end. It throws nothing. `site` must outlive it.
+// Serves the connection and closes `link` at the end. It throws nothing. `site` must outlive the
+// call.
 boost::asio::awaitable<void> ServeConnection(std::shared_ptr<ClientLink> link, Site& site);
 
 }  // namespace thunderhead::gateway

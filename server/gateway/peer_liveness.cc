@@ -17,7 +17,8 @@ PeerLiveness::Verdict PeerLiveness::Judge(const Observation& seen, Clock::time_p
   const bool is_sending = seen.is_writing || seen.is_pinging;
   if (is_sending && now - last_sent_ >= limits_.write_stall_timeout) return Verdict::kDrop;
   if (seen.is_closing) {
-    // Data sent before the close frame may still be in flight on a slow link.
+    // The timeout begins again with each delivery, because data sent before the close frame may
+    // still be in flight on a slow link.
     const Clock::time_point since = std::max(closing_since_, last_delivered_);
     return now - since >= limits_.close_timeout ? Verdict::kDrop : Verdict::kFine;
   }

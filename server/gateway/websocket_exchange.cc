@@ -190,8 +190,8 @@ net::awaitable<void> WebSocketExchange::Close() {
     co_await changed_.AwaitTrue(reader_ended_);
     co_await link_->Stream().LingeringClose();
   } else if (!close_reason_.has_value() || !socket_.is_open()) {
-    // Beast's reader answers a client that closes the WebSocket, and closes the WebSocket of a
-    // client that breaks the protocol.
+    // No close frame is written here. Beast's reader answers a client that closes the WebSocket,
+    // and closes the WebSocket of a client that breaks the protocol.
     co_await changed_.AwaitTrue(reader_ended_);
   } else if (reader_ended_) {
     error_code ignored;

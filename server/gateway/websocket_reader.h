@@ -22,8 +22,8 @@ class WebSocketReader {
  public:
   explicit WebSocketReader(Socket& socket) : socket_(socket) {}
 
-  // Limits the size of a message's payload. Beast closes the connection of a client that sends
-  // more.
+  // Limits the size of a message's payload. Beast closes the connection of a client that sends a
+  // larger message.
   void Limit(std::size_t max_message_bytes) {
     socket_.read_message_max(max_message_bytes + sizeof(kind_));
   }

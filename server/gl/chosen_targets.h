@@ -1,4 +1,4 @@
-// The choice of a user how whole targets are drawn (whole_target.h).
+// A user's choice whether compute shaders or rasterization draw whole targets (gl/whole_target.h).
 #pragma once
 
 #include <optional>

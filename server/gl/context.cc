@@ -179,7 +179,8 @@ absl::StatusOr<std::unique_ptr<Context>> OpenSoftware() {
     auto context = std::make_unique<EglContext>(display);
     status = context->Open("software");
     if (status.ok() && DrawsInSoftware()) return context;
-    // Another driver than Mesa may also offer the surfaceless platform.
+    // This is an error, because the user asked for software: a driver other than Mesa's may also
+    // offer the surfaceless platform.
     if (status.ok()) {
       status = absl::UnavailableError(
           absl::StrCat("the surfaceless EGL platform draws on ", context->Info().renderer));

@@ -85,7 +85,7 @@ class Pieces {
   struct Pace {
     double worst = 0.0;
     double last = 0.0;
-    double unmeasured;  // assumed cost as long as few items have been measured
+    double unmeasured;  // lower limit of the cost while few pieces have been measured
   };
 
   struct Held {

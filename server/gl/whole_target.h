@@ -1,4 +1,5 @@
-// Draws the pixels of a target with a program whose source is ProgramSource::WholeTarget.
+// Draws every pixel of a render target (a whole target), by rasterization or by a compute shader.
+// The program's source must be made by ProgramSource::WholeTarget or BlendedWholeTarget.
 #pragma once
 
 #include "absl/status/status.h"
@@ -8,10 +9,10 @@
 
 namespace thunderhead::gl {
 
-// Returns true if the thread's device draws whole targets faster by compute shaders. The speed is
-// measured once for each kind of device in a process. Software GL always rasterizes. The
-// environment variable THUNDERHEAD_WHOLE_TARGETS overrides the measurement with the value "raster"
-// or "compute".
+// Returns true if the thread's device draws whole targets faster by compute shaders than by
+// rasterization. The speed is measured once for each kind of device in a process. Software GL
+// always rasterizes. The environment variable THUNDERHEAD_WHOLE_TARGETS overrides the measurement
+// with the value "raster" or "compute".
 bool ComputesWholeTargets();
 
 class WholeTarget {

@@ -234,7 +234,7 @@ class Decompressor {
 
   const base::ByteSource& file_;
   const std::uint64_t most_bytes_;
-  std::uint64_t at_ = 0;  // of the next byte to read
+  std::uint64_t at_ = 0;  // offset of the next byte to read
   Bytes buffer_;
   std::span<std::byte> input_;
   Blocks contents_;

@@ -150,7 +150,7 @@ absl::StatusOr<double> StepOf(const Octets& section, std::size_t octet, double u
         absl::StrFormat("has %s %.6g degrees apart, but its first and last point say %.6g", name,
                         step_deg, from_range_deg));
   }
-  // The range is exact where the step is a rounded number.
+  // The step that follows from the range is preferred, because the step in the file may be rounded.
   return count > 1 ? from_range_deg : step_deg;
 }
 

@@ -133,7 +133,8 @@ class Reader {
 absl::StatusOr<std::optional<std::uint64_t>> Reader::NextStart(std::uint64_t from) {
   constexpr std::uint64_t kStep = 64 << 10;
   for (std::uint64_t at = from; at + kStart.size() <= window_.Size();) {
-    // The first bytes suffice in a file without anything between messages.
+    // In a file without anything between messages, the next message begins at `from`, so only a few
+    // bytes are read at first.
     const std::uint64_t count = at == from ? kStart.size() : kStep;
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::span<const std::byte> bytes, window_.At(at, count));
     const auto* const begin = reinterpret_cast<const char*>(bytes.data());
@@ -154,7 +155,8 @@ absl::Status Reader::ReadIdentification(Octets section) {
                                 static_cast<int>(part(15)), static_cast<int>(part(16)),
                                 static_cast<int>(part(17)), static_cast<int>(part(18)),
                                 static_cast<int>(part(19)));
-  // CivilSecond turns a date that does not exist into another.
+  // CivilSecond turns a date that does not exist into another date. If month or day have changed,
+  // the date is therefore wrong.
   if (given.month() != static_cast<int>(part(15)) || given.day() != static_cast<int>(part(16)) ||
       part(17) > 23 || part(18) > 59 || part(19) > 59) {
     return Damaged(absl::StrCat("has the reference time ", section.Unsigned(13, 2), "-", part(15),
@@ -370,11 +372,12 @@ std::string NumbersOf(const Parameter& parameter) {
 
 bool BeginsLikeGrib(std::string_view start) {
   constexpr std::size_t kEditionAt = 7;    // bytes after the start of a message
-  constexpr unsigned char kFirstText = 8;  // a text has no smaller characters
+  constexpr unsigned char kFirstText = 8;  // control characters below this do not occur in a text
   const std::size_t last = std::min(start.size(), kLongestPreamble);
   for (std::size_t at = start.find(kStart); at < last; at = start.find(kStart, at + 1)) {
     if (at + kEditionAt >= start.size()) return false;
-    // A text may also contain the word GRIB, but then a character follows it here.
+    // A text that is no GRIB file may also contain the word GRIB. It then has a character at the
+    // place of the edition, and not a small number.
     if (static_cast<unsigned char>(start[at + kEditionAt]) < kFirstText) return true;
   }
   return false;

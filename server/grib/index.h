@@ -69,7 +69,7 @@ struct Field {
   // month. `is_instant` is then false.
   std::optional<int> unknown_unit;
   int process = 0;            // number of the generating process, which the centre defines
-  absl::Duration forecast;    // from the reference time
+  absl::Duration forecast;    // time from the reference time to the forecast's time
   std::optional<int> member;  // number of the ensemble's member
   Surface first;
   Surface second;

@@ -16,7 +16,8 @@
 namespace thunderhead::grib {
 namespace {
 
-// The last lines name the last messages. A line has fewer than 200 characters.
+// The number of bytes that are read from the end of a listing. They hold the lines of the last
+// messages, because a line has fewer than 200 characters.
 constexpr std::uint64_t kTail_bytes = 4096;
 
 // Returns the end of the file, or nothing if it cannot be read.

@@ -1,5 +1,6 @@
 // Checks a GRIB file against the listing (.idx) that weather centres serve with it. A file that
-// was cut short between two messages looks complete, but its listing names the others.
+// was cut short between two messages looks complete, but its listing also names the missing
+// messages.
 #pragma once
 
 #include <cstdint>

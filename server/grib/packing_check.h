@@ -25,7 +25,7 @@ enum class Packing {
 
 // Whole sections, with their lengths and numbers.
 struct PackedField {
-  std::uint64_t points = 0;            // of the grid, by section 3
+  std::uint64_t points = 0;            // number of the grid's points, by section 3
   std::span<const std::byte> packing;  // section 5
   std::span<const std::byte> bitmap;   // section 6 that contains the bitmap; empty if there is none
   std::span<const std::byte> data;     // section 7

@@ -27,21 +27,22 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 
-// No field has this value. The default of ecCodes, 9999, can be a height.
+// The number that stands for a missing value while ecCodes decodes. Its default, 9999, is also a
+// possible height. No quantity is as large as this number.
 constexpr double kMissingValue = 1e30;
 
 // Maximum number of points of a field. A field of one value needs only a few bytes in a file, so
 // the file's size says nothing about the memory that it needs.
 constexpr std::uint64_t kMaxPoints = 200'000'000;
 
-// An assertion in ecCodes failed. By default ecCodes would end the process.
+// Thrown if an assertion in ecCodes fails. By default ecCodes would end the process.
 class FailedAssertion : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// The exception passes through C functions, which Debian's compilers allow. It leaks what ecCodes
-// held.
+// The exception passes through the C functions of ecCodes, which works with Debian's compilers. The
+// memory that these functions had allocated is lost.
 [[noreturn]] void OnFailedAssertion(const char* message) { throw FailedAssertion(message); }
 
 void IgnoreLog(const codes_context* /*context*/, int /*level*/, const char* /*message*/) {}
@@ -87,7 +88,7 @@ Bytes PlainMessage(const PackedField& field, const Shape& shape) {
   Append(message, 21, 4);          // section 1
   Append(message, 1, 1);
   Append(message, 0, 4);       // centre, subcentre
-  Append(message, 0x0400, 2);  // version of the tables, no local ones
+  Append(message, 0x0400, 2);  // version of the tables; no local tables
   Append(message, 1, 1);       // start of forecast
   Append(message, 2000, 2);    // reference time
   Append(message, 0x0101000000, 5);
@@ -96,7 +97,7 @@ Bytes PlainMessage(const PackedField& field, const Shape& shape) {
   Append(message, 3, 1);
   Append(message, 0, 1);
   Append(message, field.points, 4);
-  Append(message, 0, 4);  // no list, template 3.0
+  Append(message, 0, 4);  // no list of points per row; template 3.0
   Append(message, 6, 1);  // a sphere
   Append(message, 0, 15);
   Append(message, shape.columns, 4);

@@ -7,7 +7,8 @@ namespace thunderhead::interchange {
 MemoryBuffer::MemoryBuffer(std::span<const std::byte> bytes,
                            std::function<void(double share)> progress)
     : progress_(std::move(progress)) {
-  // The interface of streams wants bytes that are not constant, but reading never writes to them.
+  // The cast is safe, because a stream buffer takes pointers to bytes that are not constant, but
+  // reading never writes to them.
   char* const begin = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
   setg(begin, begin, begin + bytes.size());
 }

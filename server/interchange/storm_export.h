@@ -22,8 +22,9 @@ inline constexpr int kDetailVoxelsPerCell = 4;
 struct ExportOptions {
   // If false, each voxel is a cell of the storm's grid, so that each column keeps its water path.
   // If true, there are kDetailVoxelsPerCell voxels along each cell edge, with the detailed medium
-  // that the light volume draws (scene/detailed_medium.h). Then each group of fields keeps its
-  // water path within 1 %, and each column as described in volume/water_paths.h.
+  // that the light volume draws (scene/detailed_medium.h). Then each group of fields
+  // (scene/field_groups.h) keeps its water path within 1 %, and each column as described in
+  // volume/water_paths.h.
   bool detail = false;
 };
 

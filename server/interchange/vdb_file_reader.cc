@@ -44,7 +44,7 @@ sandbox::ReaderLimits LimitsFor(const std::string& path, const VdbReaderOptions&
   if (limits.memory_bytes > 0) return limits;
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
-  // A file whose size is unknown cannot be opened, either.
+  // If the size is unknown, the limit does not matter, because such a file cannot be opened either.
   limits.memory_bytes = DefaultVdbMemory_bytes(error ? 0 : size);
   return limits;
 }
@@ -75,7 +75,7 @@ absl::StatusOr<VdbVolume> ReadVdb(const std::string& path, const std::string& gr
                                             Visit(from_reader, volume);
                                             return CheckPlausible(volume);
                                           }));
-  volume.grid = grid;  // not a text that another process sent
+  volume.grid = grid;  // replaces the name that the other process sent
   return volume;
 }
 

@@ -13,9 +13,9 @@ namespace thunderhead::interchange {
 
 // Returns the memory in bytes that the reader of an OpenVDB file may use by default, if the file
 // has `file_bytes` bytes. It is 512 MiB plus 100 times the file's size, but at most this machine's
-// memory. The limit depends on the file's size because a small hostile file may state any size. The
-// tree of any other file takes up to 40 times its bytes in the file. The dense array of a cloud
-// that fills a tenth of its box takes about 30 times these bytes.
+// memory. The limit depends on the file's size because a small hostile file may state any size.
+// Other files need less. Their tree of voxels takes up to 40 times the file's size. The dense array
+// of a cloud that fills a tenth of its box takes about 30 times the file's size.
 std::uint64_t DefaultVdbMemory_bytes(std::uint64_t file_bytes);
 
 struct VdbReaderOptions {

@@ -29,7 +29,8 @@ using openvdb::FloatGrid;
 using openvdb::io::GridDescriptor;
 
 constexpr int kMostGrids = 1000;
-// OpenVDB has other readers for older files. They trust positions and sizes that the file states.
+// The oldest format that is read. OpenVDB reads older formats with other code, which trusts
+// positions and sizes that the file states.
 constexpr std::uint32_t kFirstFormat = openvdb::OPENVDB_FILE_VERSION_NODE_MASK_COMPRESSION;
 // The share of the reported progress that reading the file takes. The rest is filling the dense
 // array.
@@ -300,8 +301,9 @@ absl::Status TooLarge(const std::string& path) {
 
 void PrepareVdb() {
   openvdb::initialize();
-  // This metadata helps to read a file later, piece by piece. Its parser trusts sizes that the file
-  // states. If its type is unknown, its bytes are skipped.
+  // Metadata of this type serve to read the voxels of a file later, piece by piece. Their parser
+  // trusts sizes that the file states. When the type is not registered, OpenVDB skips such
+  // metadata.
   openvdb::io::DelayedLoadMetadata::unregisterType();
 }
 

@@ -44,7 +44,8 @@ struct Axes {
 
 // Returns the axis (0, 1, 2) along which `step` points, or nothing if it is along none.
 std::optional<int> AxisAlong(const glm::dvec3& step) {
-  // The transform of a grid that was turned by a right angle is not exact.
+  // The tolerance is needed because the transform of a grid that was turned by a right angle has
+  // rounding errors.
   constexpr double kSlack = 1e-6;
   const double length = glm::length(step);
   if (!std::isfinite(length) || !(length > 0.0)) return std::nullopt;

@@ -38,8 +38,7 @@ class ResultFolder {
 
   // Writes the picture with index `place` of a job, and its description. Returns the errors of
   // base::WriteProblem, and FAILED_PRECONDITION if the job's folder is a link. Returns
-  // DEADLINE_EXCEEDED while the storage hangs. In the latter case, the files may still be written
-  // later.
+  // DEADLINE_EXCEEDED while the storage hangs; the files may then still be written later.
   absl::Status Write(const std::string& job_id, std::size_t place,
                      std::shared_ptr<const DrawnPicture> picture) const;
 

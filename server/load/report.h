@@ -44,7 +44,7 @@ struct ServerFigures {
 struct ImageBurstFigures {
   int asked = 0;
   int came = 0;
-  std::optional<double> median_ms;  // from the request to the picture
+  std::optional<double> median_ms;  // median time from the request to the picture
   std::optional<double> most_ms;
 };
 

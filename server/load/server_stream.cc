@@ -28,7 +28,7 @@ void ServerStream::Handshake(const std::string& host, Then then) {
   if (tls == nullptr) return then(error_code());
   error_code is_no_address;
   net::ip::make_address(host, is_no_address);
-  // The name is sent for servers that have certificates for several names.
+  // The name is sent, so that a server with certificates for several names chooses the right one.
   if (is_no_address) SSL_set_tlsext_host_name(tls->native_handle(), host.c_str());
   tls->set_verify_callback(net::ssl::host_name_verification(host));
   tls->async_handshake(net::ssl::stream_base::client, std::move(then));

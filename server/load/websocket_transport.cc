@@ -87,7 +87,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
   }
 
   void Send(std::string message) {
-    // No message may follow a half-close.
+    // A message after a half-close is dropped, because the protocol allows none.
     if (half_closed_) return;
     half_closed_ = message.front() == kHalfCloseKind;
     unsent_.push_back(std::move(message));
@@ -148,7 +148,7 @@ class WebSocketCall : public std::enable_shared_from_this<WebSocketCall> {
     if (!writing_) return;
     socket_.async_write(net::buffer(unsent_.front()),
                         [self = shared_from_this()](error_code error, std::size_t) {
-                          // The pending read reports the error.
+                          // The error is not reported here, because the pending read reports it.
                           if (error) return;
                           self->unsent_.pop_front();
                           self->WriteNext();

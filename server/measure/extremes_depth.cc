@@ -38,8 +38,9 @@ Extreme DepthPerSlice(const accuracy::PlainTechnique& plain, double per_slice,
             const auto fields = FieldsOf({.optical_depth = depth});
             THUNDERHEAD_ASSIGN_OR_RETURN(const Seen seen,
                                          probe.Draw(scene, *fields, {.single_precision = thin}));
-            // Along the ray towards the eye, delta scaling removes the forward peak from the
-            // extinction. Similarity scaling removes all forward scattering.
+            // The extinction along the ray towards the eye is scaled. Delta scaling removes the
+            // forward peak from it. In diffusion transport, similarity scaling removes all forward
+            // scattering.
             const renderers::GroupWeights weights(
                 scene::GroupedFieldsOf(scene, *fields),
                 *scene::MediumSettingsOf(scene.rendering.technique));
@@ -106,7 +107,8 @@ Extreme Radius(const accuracy::PlainTechnique& plain, float radius_m) {
             scene::Scene scene = PlainScene(plain);
             scene::FieldParameters& cloud =
                 scene.fields[physics::IndexOf(physics::Hydrometeor::kCloud)];
-            // Extinction is inversely proportional to the radius.
+            // The optical depth is inversely proportional to the radius, because the amount of
+            // water stays the same.
             const double depth = static_cast<double>(cloud.optics.radius_m) / radius_m;
             const bool thin = depth < kThin;
             cloud.sizes = physics::SizeSource::kGiven;

@@ -59,8 +59,8 @@ Extreme Depth(double depth) {
                  std::exp(-1.2 * depth), std::exp(-0.8 * depth));
 }
 
-// Checks light scattered once by a thin box, with the same tolerance. The light is measurable even
-// if 1 minus the optical depth rounds to 1.
+// Checks the light that a thin box scatters once. It may differ from the expected light by at most
+// a fifth. The light can be measured even if the box is so thin that its transmittance rounds to 1.
 Extreme ThinLight(double depth) {
   return {absl::StrFormat("%s: light scattered at optical depth %g", kPlain.name, depth),
           [=](Probe& probe) -> absl::StatusOr<Verdict> {
@@ -83,10 +83,10 @@ Extreme Empty() {
           }};
 }
 
-// Returns the optical depth of the balls along a ray from `origin_m`, as in Man's paper. Each ball
-// contributes a product of three factors. They are tau, the ball's density relative to the mean
-// density (at most 1), and the ball's field function. The field function is taken at the point of
-// the ray nearest to the ball's centre.
+// Returns the optical depth of the balls along a ray from `origin_m`, as in P. Man, "Generating and
+// Real-Time Rendering of Clouds". Each ball contributes a product of three factors. They are tau,
+// the ball's density relative to the mean density (at most 1), and the ball's field function. The
+// field function is taken at the point of the ray nearest to the ball's centre.
 double PaperDepth(const std::vector<renderers::Ball>& balls, double tau, const glm::dvec3& origin_m,
                   const glm::dvec3& direction) {
   double sum = 0.0;
@@ -103,8 +103,8 @@ double PaperDepth(const std::vector<renderers::Ball>& balls, double tau, const g
   return depth;
 }
 
-// In Man's transport, densities are relative and the optical depth is a setting. The picture must
-// therefore not depend on the storm's own optical depth.
+// In the paper's transport, densities are relative and the optical depth is a setting. The picture
+// must therefore not depend on the storm's own optical depth.
 Extreme Paper(double depth) {
   return {
       absl::StrFormat("%s: paper transport, optical depth %g", kPlain.name, depth),

@@ -41,9 +41,9 @@ struct FrameRateRow {
   double sun_fps = 0.0;     // frames per second if the sun moves before every frame
   // The stages that a camera move reruns, and the light stage, which only a sun move reruns.
   std::vector<StageMedian> stages;
-  // FLIP difference between a frame as drawn during a move and one with one ray a pixel and fully
-  // solved light, after a camera move and after a sun move. No value if frames during a move are
-  // drawn in full anyway.
+  // FLIP difference (measure/image_error.h) between a frame as drawn during a move and one with one
+  // ray a pixel and fully solved light. It is measured after a camera move and after a sun move. No
+  // value if frames during a move are drawn in full anyway.
   std::optional<double> camera_flip{};
   std::optional<double> sun_flip{};
 };

@@ -32,8 +32,8 @@ void InspectRoot(float root, const char* where, Soundness* found) {
   }
 }
 
-// Checks that both optical depths do not decrease along the ray. Layers that no cell reads are
-// never written and are 0.
+// Checks that both optical depths do not decrease along the ray. A value of 0 is skipped, because
+// layers that no cell reads are never written and are 0.
 void InspectRays(const gl::Texture3D& carried, Soundness* found) {
   const std::vector<float> texels = TwoChannels(carried);
   const glm::ivec3 size = carried.Size();

@@ -13,8 +13,9 @@ namespace thunderhead::measure {
 // factors.
 inline constexpr float kMaxShare = 1.0F + 1e-5F;
 
-// Upper limit of the fluence of multiply scattered light, relative to the sun's irradiance. It is
-// reached deep in an infinite conservative cloud with the sun in the zenith (Eddington).
+// Upper limit of the fluence of multiply scattered light, relative to the sun's irradiance. In
+// Eddington's approximation, the fluence has this value deep in an infinitely thick cloud without
+// absorption, with the sun in the zenith.
 inline constexpr double kMaxFluence = 5.0;
 
 // The result of a check.

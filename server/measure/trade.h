@@ -36,7 +36,7 @@ struct TradeRow {
   // Error of linear radiance, without the part that the reference's noise causes.
   double relative_rmse = 0.0;
   double relative_bias = 0.0;
-  double flip = 0.0;  // FLIP difference of the decoded JPEG
+  double flip = 0.0;  // FLIP difference (image_error.h) of the decoded JPEG
   // The estimate of the relative RMSE that a server without a reference picture makes. NaN if it
   // was not estimated.
   accuracy::Estimated estimated_error{kUnmeasured, kUnmeasured, kUnmeasured};

@@ -42,7 +42,7 @@ std::string NameOfFilter(unsigned id) {
 }
 
 std::string LackingFilter(int group, int variable) {
-  constexpr std::size_t kMost = 32;  // maximum of HDF5 (H5Z_MAX_NFILTERS)
+  constexpr std::size_t kMost = 32;  // HDF5's limit of filters per variable (H5Z_MAX_NFILTERS)
   std::size_t count = 0;
   std::array<unsigned, kMost> ids{};
   if (nc_inq_var_filter_ids(group, variable, &count, nullptr) != NC_NOERR || count > kMost ||

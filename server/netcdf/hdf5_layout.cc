@@ -14,9 +14,9 @@
 namespace thunderhead::netcdf {
 namespace {
 
-// The maximum number of groups and datasets in a file, and of groups within groups. NetCDF-C takes
-// seconds for 10,000 datasets, and its time grows with the square of the depth. Model output has
-// far less of both.
+// The maximum number of groups and datasets in a file, and the maximum depth of nested groups.
+// NetCDF-C takes seconds for 10,000 datasets, and its time grows with the square of the depth.
+// Model output stays far below both limits.
 constexpr int kMostObjects = 10'000;
 constexpr std::ptrdiff_t kDeepest = 16;
 
@@ -150,7 +150,7 @@ absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> 
   }
   if (!found) return absl::OkStatus();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), &H5Pclose);
-  void* const image = const_cast<std::byte*>(bytes.data());  // the file is only read
+  void* const image = const_cast<std::byte*>(bytes.data());  // HDF5 only reads the image
   H5FD_file_image_callbacks_t callbacks = ImageInPlace(image);
   constexpr std::size_t kGrowth_bytes = 1 << 16;
   if (!access.ok() || H5Pset_fapl_core(access.get(), kGrowth_bytes, false) < 0 ||
@@ -158,7 +158,7 @@ absl::Status CheckHdf5Bytes(const std::string& path, std::span<const std::byte> 
       H5Pset_file_image(access.get(), image, bytes.size()) < 0) {
     return absl::ResourceExhaustedError(absl::StrCat(path, ": HDF5 has no memory to look at it"));
   }
-  // HDF5 refuses the name of a file that exists, so this name is one that no file has.
+  // The name has no meaning, but HDF5 fails if a file with this name exists.
   return Look(path, H5Fopen("bytes in memory, no file", H5F_ACC_RDONLY, access.get()));
 }
 

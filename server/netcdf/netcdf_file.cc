@@ -39,9 +39,9 @@ constexpr int kNoHandle = -1;
 // Maximum length in bytes of a text attribute. No attribute that a reader needs is longer.
 constexpr std::size_t kLongestText = 1 << 20;
 
-// Returns whether a program that is writing the file has locked it. HDF5 locks a file that it
-// writes with flock(2). Opening a locked file for reading fails with NC_EHDFERR, which netCDF-C
-// also returns for any damage.
+// Returns whether a program that is writing the file has locked it. HDF5 uses flock(2) to lock a
+// file that it writes. Opening a locked file for reading fails with NC_EHDFERR, which netCDF-C also
+// returns for any damage.
 bool IsHeldByWriter(int file) {
   if (flock(file, LOCK_SH | LOCK_NB) != 0) return errno == EWOULDBLOCK;
   flock(file, LOCK_UN);
@@ -542,8 +542,8 @@ absl::StatusOr<NetcdfFile::Variable> NetcdfFile::NumbersId(const std::string& va
     case NC_CHAR:
       return ReadError(variable, NC_ECHAR);
     default:
-      // NetCDF-C reports NC_STRING for strings, and for numbers that it does not know, such as long
-      // double. It would write pointers into the memory of the numbers.
+      // NetCDF-C reports NC_STRING for strings, and for number types that it does not know, such as
+      // long double. Reading such a variable would write pointers into the array of numbers.
       return absl::InvalidArgumentError(
           absl::StrCat(path_, ": ", variable,
                        " is of a type other than integers of up to 64 bits, float and double; "

@@ -16,7 +16,8 @@
 
 namespace thunderhead::netcdf {
 
-// How reading treats a value that is too large for any quantity, such as an infinite one.
+// What happens to a value that is too large for any quantity in a storm, such as infinity. Either
+// reading fails, or the value becomes NaN.
 enum class HugeValue { kRefused, kMissing };
 
 class NetcdfFile {
@@ -33,7 +34,7 @@ class NetcdfFile {
   NetcdfFile& operator=(NetcdfFile&& other) noexcept;
   ~NetcdfFile();
 
-  // Returns whether these are the first bytes of a netCDF file.
+  // Returns whether `start` can be the start of a netCDF file.
   static bool BeginsLikeNetcdf(std::string_view start);
 
   // Checks an open file before anything parses it. Returns INVALID_ARGUMENT if it does not begin

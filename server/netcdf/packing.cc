@@ -25,7 +25,8 @@ double OneNumberOr(int group, int variable, const char* name, double otherwise) 
   return numbers.size() == 1 ? numbers.front() : otherwise;
 }
 
-// Returns the number of scale_factor or add_offset, or `otherwise` if the attribute is absent.
+// Returns the value of the attribute scale_factor or add_offset, or `otherwise` if the attribute is
+// absent.
 absl::StatusOr<double> PackingNumber(int group, int variable, const char* name, double otherwise) {
   if (nc_inq_att(group, variable, name, nullptr, nullptr) != NC_NOERR) return otherwise;
   const std::vector<double> numbers = NumbersOf(group, variable, name);
@@ -46,13 +47,14 @@ double DefaultFill(nc_type type) {
       return NC_FILL_USHORT;
     case NC_UINT:
       return NC_FILL_UINT;
-    default:  // bytes have no default; the defaults of floating-point types exceed kLargestValue
+    // Bytes have no default fill value, and those of floating-point types exceed kLargestValue.
+    default:
       return kMissingValue;
   }
 }
 
-// Returns the number of values of an integer type of at most 32 bits, with a minus if the type has
-// no sign. Returns 0 for any other type.
+// Returns how many different values an integer type of at most 32 bits has. The result is negative
+// if the type is unsigned, and 0 for any other type.
 double SignedSpan(nc_type type) {
   switch (type) {
     case NC_BYTE:
@@ -100,8 +102,9 @@ double Meant(double stored, const Packing& packing) {
   return upper_half ? stored + packing.wrap : stored;
 }
 
-// Returns the numbers of an attribute of the valid range as packed values. They are unpacked values
-// in the file if they are floating-point numbers and the stored values are not.
+// Returns the numbers of an attribute of the valid range as packed values. If the attribute has
+// floating-point numbers and the variable has integers, the attribute holds unpacked values, which
+// this function packs.
 std::vector<double> PackedLimits(int group, int variable, const char* name, bool integers,
                                  const Packing& packing) {
   std::vector<double> limits = NumbersOf(group, variable, name);
@@ -218,7 +221,7 @@ double Unpacked(double stored, const Packing& packing) {
   const double packed = Meant(stored, packing);
   if (IsMissing(packed, packing)) return kMissingValue;
   const double value = packed * packing.scale + packing.offset;
-  // The comparison fails for NaN.
+  // The comparison fails for NaN, so NaN becomes kMissingValue too.
   return std::abs(value) < kLargestValue ? value : kMissingValue;
 }
 
@@ -251,7 +254,7 @@ std::optional<double> CleanPlainFloats(const Packing& packing, std::vector<float
   std::size_t huge_values = 0;
   for (float& value : values) {
     const float size = std::abs(value);
-    // All comparisons fail for NaN.
+    // The comparisons with the limits fail for NaN, so NaN counts as missing.
     const bool present = value != fill && value >= lowest && value <= highest;
     huge_values += present && size >= static_cast<float>(kLargestValue) ? 1 : 0;
     const float flushed = size < std::numeric_limits<float>::min() ? 0.0F : value;

@@ -50,7 +50,7 @@ double Unpacked(double stored, const Packing& packing);
 std::optional<double> Unpack(absl::Span<const double> packed, const Packing& packing,
                              absl::Span<float> values);
 
-// Changes `values` in place. For Packing::PlainFloat().
+// Changes `values` in place. packing.PlainFloat() must be true.
 std::optional<double> CleanPlainFloats(const Packing& packing, std::vector<float>& values);
 
 }  // namespace thunderhead::netcdf

@@ -79,8 +79,8 @@ glm::vec3 Between(const std::vector<glm::vec3>& table, int columns, float column
 
 // Table of the amounts of air, haze and ozone from a point to space, in metres at their maximum
 // densities. The amounts do not depend on turbidity, so one table serves all atmospheres. Its axes
-// are the height, and the sine of the elevation from the horizon upwards. Both are spaced evenly in
-// the square root.
+// are the height, and the sine of the elevation from the horizon upwards. Both axes are spaced
+// evenly in the square root of the value.
 class ColumnsToSpace {
  public:
   static const ColumnsToSpace& Get() {
@@ -255,8 +255,8 @@ glm::vec3 Atmosphere::SumOrders(const AirPlace& place, float ground_albedo) cons
   constexpr int kDirections = 40;
   const float across = std::sqrt(std::max(1.0F - place.sun_sine * place.sun_sine, 0.0F));
   glm::vec3 second(0.0F);
-  // Sum over the directions of the share of uniform light that reaches the point after one more
-  // scattering or reflection.
+  // If light of radiance 1 arrived everywhere from all directions, this sum divided by kDirections
+  // would be the mean radiance that the point receives after one more scattering or reflection.
   glm::vec3 again(0.0F);
   for (int i = 0; i < kDirections; ++i) {
     // A Fibonacci spiral spreads the directions evenly over the sphere.

@@ -22,7 +22,7 @@ struct Aureole {
   static constexpr int kDepths = 32;
   static constexpr double kMaxDepth = 16.0;  // optical depth of the peak
 
-  double share = 0.0;  // f by luminance, as in CutForwardPeak
+  double share = 0.0;  // the cut share f of the luminance, as in CutForwardPeak
   // The largest angle, which is twice the cut angle. The radiance beyond it counts as zero.
   double end_rad = 0.0;
   std::vector<glm::vec3> radiances;  // kAngles by kDepths values; the angle varies fastest

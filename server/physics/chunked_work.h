@@ -47,7 +47,7 @@ void ForEachChunk(int chunks, const WorkPlan& plan, const Work& work) {
     try {
       for (int i = 1; i < std::min(plan.threads, chunks); ++i) threads.emplace_back(run);
     } catch (const std::system_error&) {
-      // The system starts no further thread.
+      // The system cannot start another thread, so the existing threads do all the work.
     }
     run();
   }

@@ -20,9 +20,10 @@ constexpr double kWarpDeviation = 0.4;  // standard deviation relative to the fu
 constexpr double kFibreStretch = 6.0;   // stretch along the shear
 constexpr double kFibreWidth = 0.7;     // width across the shear, relative to that of the billows
 constexpr double kMinShear_m_per_s = 1.0;
-constexpr double kDriftPeriod_s = 3.0 * 3600.0;  // a divisor of a day
+// A divisor of a day, so that the noise does not jump at midnight.
+constexpr double kDriftPeriod_s = 3.0 * 3600.0;
 constexpr double kWarpInCells = 1.0;
-// Larger than the horizontal warp, because layers are thin.
+// Larger than kWarpInCells, because a grid's cells are usually much lower than wide.
 constexpr double kUpwardWarpInCells = 2.0;
 constexpr double kWarpInWavelengths = 0.25;
 

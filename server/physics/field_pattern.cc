@@ -13,7 +13,8 @@ namespace {
 constexpr int kPatternSide = glsl::kFieldMapCells;
 constexpr std::uint64_t kFieldSeed = 1862;
 constexpr std::uint64_t kGrainSeed = 1803;
-constexpr float kBrightest = 2.35F;  // largest factor of the reflectance, including the grain
+// Maximum of reflectance / mean reflectance, including the grain.
+constexpr float kBrightest = 2.35F;
 
 // The crop of a field. Brightness ranges from -1 (dark) to 1 (bright), dryness from -1 (green) to 1
 // (dry).

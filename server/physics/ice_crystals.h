@@ -1,8 +1,8 @@
 // The light scattering of randomly oriented hexagonal ice crystals much larger than the wavelength,
 // by geometric optics. Rays are traced through the crystal with Fresnel's equations and split at
-// every face. They account for half of the extinction. The other half is diffraction by the
-// crystal's shadow. Sources: Wendling, Wendling and Weickmann 1979 (Appl. Opt. 18, 2663); Macke,
-// Mueller and Raschke 1996 (J. Atmos. Sci. 53, 2813).
+// every face. The traced rays account for half of the extinction. The other half is diffraction by
+// the crystal's shadow. Sources: Wendling, Wendling and Weickmann 1979 (Appl. Opt. 18, 2663);
+// Macke, Mueller and Raschke 1996 (J. Atmos. Sci. 53, 2813).
 //
 // Roughness follows Macke et al. and Yang and Liou 1998 (Contrib. Atmos. Phys. 71, 223). Each time
 // a ray meets a face, the face is tilted at random. The tilt has normally distributed slopes along

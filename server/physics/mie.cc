@@ -17,9 +17,10 @@ using Complex = std::complex<double>;
 constexpr std::size_t kBlock = 256;
 
 // Returns the logarithmic derivative D_n(z) of psi_n for n = 0 ... count, by downward recurrence
-// (eq. 4.89). The recurrence is stable for any absorption. It starts from the value 0. The error of
-// this start vanishes before n = |z| if the start index exceeds |z| by a few times the cube root of
-// |z|. With the usual excess of 15, an error of 1e-5 would remain in the efficiencies.
+// (Bohren and Huffman 1983, eq. 4.89). The recurrence is stable for any absorption. It starts from
+// the value 0. The error of this start vanishes before n = |z| if the start index exceeds |z| by a
+// few times the cube root of |z|. With the usual excess of 15, an error of 1e-5 would remain in the
+// efficiencies.
 std::vector<Complex> LogarithmicDerivatives(Complex z, std::size_t count) {
   const double turning = std::abs(z);
   const auto above = static_cast<std::size_t>(turning + 8.0 * std::cbrt(turning) + 16.0);
@@ -47,7 +48,8 @@ std::vector<double> PsiFunctions(double x, std::size_t count) {
   }
   std::vector<double> psi(count + 1);
   psi[0] = std::sin(x);
-  // For small x, the closed form of psi_1 is a difference of nearly equal numbers.
+  // For small x, the closed form of psi_1 is a difference of nearly equal numbers and would lose
+  // digits.
   psi[1] = x < 0.1 ? psi[0] * ratios[1] : psi[0] / x - std::cos(x);
   for (std::size_t n = 2; n <= count; ++n) {
     psi[n] = static_cast<double>(n) < x

@@ -16,7 +16,7 @@ enum class SizeSource {
   // The file or the model's microphysics scheme gives a size for each cell. If neither does, the
   // size is an observed constant, the radius of DefaultOptics.
   kModel,
-  kPapers,  // the constants of the papers
+  kPapers,  // the constants of Riley et al. 2003 (PapersRadius_m)
   kGiven    // one radius, given by the scene
 };
 

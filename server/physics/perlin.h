@@ -24,7 +24,7 @@ struct PerlinGradient {
 // The gradients of an octave at its lattice points, and the positions of its texels in a lattice
 // cell. Positions are in units of 1 / kPerlinPlaceUnits of a cell.
 struct PerlinOctave {
-  int cells = 0;            // number along an edge of the tile
+  int cells = 0;            // number of lattice cells along an edge of the tile
   int texels_per_cell = 0;  // at least 1
   std::vector<PerlinGradient> gradients;
   std::vector<std::int64_t> place;  // position of texel i in its cell

@@ -58,8 +58,8 @@ void PhaseAccumulator::Add(const PhaseAccumulator& other, const PhaseRgb& factor
 std::vector<PhaseRgb> PhaseAccumulator::Values() const {
   std::vector<PhaseRgb> values(energies_.size());
   for (std::size_t i = 0; i < energies_.size(); ++i) {
-    // Each angle represents a share of the sphere, which is the integral of the angle's hat
-    // function.
+    // Each angle represents a share of the sphere. It is the mean over the sphere of a function
+    // that is 1 at this angle and falls linearly to 0 at the two neighbouring angles.
     double share = 0.0;
     if (i > 0) share += ShareOf({angles_rad_[i - 1], angles_rad_[i], 0.0, 1.0});
     if (i + 1 < energies_.size()) share += ShareOf({angles_rad_[i], angles_rad_[i + 1], 1.0, 0.0});

@@ -23,7 +23,7 @@ inline double IntegralOverSine(const LinearPiece& piece, double k) {
   const double half = k * 0.5 * (piece.end_rad - piece.start_rad);
   const double mean = 0.5 * (piece.start_value + piece.end_value);
   const double rise = 0.5 * (piece.end_value - piece.start_value);
-  // sin h - h cos h suffers from cancellation when h is small.
+  // sin h - h cos h suffers from cancellation when h is small, so its series is used there.
   const double bend = half < 0.02 ? half * half * half * (1.0 / 3.0 - half * half / 30.0)
                                   : std::sin(half) - half * std::cos(half);
   const double tilt = half > 0.0 ? rise / half * bend : 0.0;

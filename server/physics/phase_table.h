@@ -79,7 +79,7 @@ class PhaseTable {
 
   PhaseTableContent content_;
   std::vector<double> angles_rad_;
-  std::vector<PhaseRgb> cumulative_;  // share up to each angle
+  std::vector<PhaseRgb> cumulative_;  // share of light scattered by less than each angle
   PhaseRgb asymmetry_{};
 };
 

@@ -5,7 +5,7 @@
 namespace thunderhead::physics {
 
 double WaterRefractiveIndex(double wavelength_um) {
-  constexpr double kDensity = 999.70 / 1000.0;  // density relative to the formulation's 1000 kg/m3
+  constexpr double kDensity = 999.70 / 1000.0;  // density of water, relative to 1000 kg/m3
   constexpr double kTemperature = 283.15 / 273.15;
   // Converts an index relative to vacuum to an index relative to air.
   constexpr double kAir = 1.00028;

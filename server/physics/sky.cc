@@ -73,7 +73,8 @@ ClearSky::Seen ClearSky::At(const glm::vec3& direction) const {
 }
 
 SkyLight ClearSky::Light() const {
-  // Cells of equal size in the sine of the elevation and in the azimuth have equal solid angles.
+  // Cells of equal size in the sine of the elevation and in the azimuth have equal solid angles, so
+  // all samples have the same weight.
   constexpr int kElevations = 24;
   constexpr int kAzimuths = 48;
   SkyLight light;

@@ -169,7 +169,7 @@ absl::StatusOr<std::string> EncodeExr(const LinearPicture& picture,
     for (const auto& [name, number] : attributes.numbers) {
       header.insert(name.c_str(), Imf::FloatAttribute(number));
     }
-    // OpenEXR requires non-const addresses even for writing a file.
+    // OpenEXR requires non-const addresses even for writing a file, so it gets a copy.
     LinearPicture copy = picture;
     const std::vector<Channel> channels = ChannelsOf(copy);
     for (const Channel& channel : channels) {

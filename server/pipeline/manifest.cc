@@ -176,8 +176,9 @@ std::vector<std::string> ByDate(const std::vector<std::string>& manifests) {
   return sorted;
 }
 
-// Locks another manifest. The process of another share may hold the lock briefly, to remove a line.
-// Returns -1 if a process holds the lock for longer, or if the manifest no longer exists.
+// Locks another manifest. A process that makes another share of the pictures may hold the lock
+// briefly, to remove a line. Returns -1 if a process holds the lock for longer, or if the manifest
+// no longer exists.
 int LockOther(const std::string& path) {
   constexpr int kTries = 50;
   std::error_code error;
@@ -212,7 +213,8 @@ std::string ToLine(const ManifestEntry& entry) {
                    {"bytes", entry.input.bytes},
                    {"modified_ns", entry.input.modified_ns},
                    {"sha256", entry.input.sha256}};
-  // File names may be in any encoding.
+  // File names may be in any encoding. Bytes that are not valid UTF-8 are replaced, because JSON
+  // cannot hold them.
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

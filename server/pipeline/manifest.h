@@ -53,9 +53,9 @@ absl::StatusOr<ManifestEntry> FromLine(std::string_view line);
 // The other manifests in the folder of a manifest.
 struct OtherManifests {
   std::vector<std::string> count;  // manifests whose products count as finished too
-  // Manifests of shares that have ended. Their lines are moved into this manifest, and the files
-  // are deleted. A manifest whose lock another process still holds is treated like those in
-  // `count`.
+  // Manifests of processes that have ended and that each made a share of the pictures (Shard in
+  // plan.h). Their lines are moved into this manifest, and the files are deleted. A manifest whose
+  // lock another process still holds is treated like those in `count`.
   std::vector<std::string> take_over;
 };
 

@@ -173,7 +173,7 @@ class Pen {
 bool HasFonts() {
   PangoFontFamily** families = nullptr;
   int count = 0;
-  // The default font map belongs to this thread.
+  // Pango has one default font map for each thread, so no lock is needed.
   pango_font_map_list_families(pango_cairo_font_map_get_default(), &families, &count);
   g_free(families);
   return count > 0;
@@ -219,7 +219,7 @@ absl::Status Annotate(const Annotation& annotation, frame::RgbImage& image) {
   Pen pen(surface.get(), image.width_px, image.height_px);
   double room_px = pen.Width_px() - 2.0 * pen.Margin_px();
   if (annotation.logo != nullptr) room_px -= pen.Mark(*annotation.logo);
-  // If the picture is hardly wider than its logo, the title still keeps some letters.
+  // If the picture is hardly wider than its logo, the title still has room for some letters.
   room_px = std::max(room_px, 3.0 * pen.Line_px());
   const double below_title_px =
       pen.TextAt(pen.Margin_px(), pen.Margin_px(), room_px, annotation.title, PANGO_WEIGHT_BOLD);

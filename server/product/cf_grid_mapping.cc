@@ -112,7 +112,7 @@ bool SetProjected(const volume::ProjectionText& text, CfGridMapping& mapping) {
   } else {
     return false;
   }
-  // False origins are in the unit of the axes.
+  // CF requires false origins in the unit of the axes, and `text` has them in metres.
   set.Set("false_easting", set.Number("x_0") * mapping.x.per_metre);
   set.Set("false_northing", set.Number("y_0") * mapping.y.per_metre);
   return true;

@@ -142,7 +142,8 @@ class LightFile {
     const int variable = file_.Variable(name, NC_DOUBLE, {});
     file_.Text(variable, "standard_name", name);
     file_.Text(variable, "units", absl::StrCat("seconds since ", Iso(epoch)));
-    // Models use the proleptic Gregorian calendar. CF's default calendar changes in 1582.
+    // Models use the proleptic Gregorian calendar. It must be named, because CF's default calendar
+    // is Julian before 1582.
     file_.Text(variable, "calendar", "proleptic_gregorian");
     doubles_.emplace_back(variable, std::vector{absl::ToDoubleSeconds(time - epoch)});
     coordinates_.emplace_back(name);

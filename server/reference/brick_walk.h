@@ -36,7 +36,8 @@ struct Stretch {
   double begin_m = 0.0;
   double end_m = 0.0;
   double majorant_per_m = 0.0;
-  glm::ivec3 brick{0};  // x and y continue beyond the lattice if the medium is periodic
+  // Index in the lattice. If the medium is periodic, x and y continue beyond the lattice.
+  glm::ivec3 brick{0};
 };
 
 class BrickWalk {
@@ -59,7 +60,8 @@ class BrickWalk {
   glm::dvec3 inverse_;
   double at_m_;
   double end_m_;
-  glm::ivec3 brick_{0};  // x and y continue beyond the lattice if the medium is periodic
+  // Index in the lattice. If the medium is periodic, x and y continue beyond the lattice.
+  glm::ivec3 brick_{0};
   glm::ivec3 step_{0};
   glm::dvec3 next_m_{0.0};   // distance at which the ray leaves the brick along each axis
   glm::dvec3 delta_m_{0.0};  // distance along the ray between two faces of each axis

@@ -11,8 +11,8 @@
 namespace thunderhead::reference {
 namespace {
 
-// Share of the paths that also trace light which arrives from the medium at a place in the air and
-// which the air scatters to the eye.
+// Share of the paths that also trace a ray for AirFromMedium (the medium's light that the air
+// scatters to the eye).
 constexpr double kAirPathShare = 0.25;
 
 // Returns the part of `ray` up to `distance_m` that begins where the ray enters the first of the

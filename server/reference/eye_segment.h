@@ -56,7 +56,7 @@ struct EyeSegment {
   glm::dvec3 throughput{1.0};         // throughput of the rest of the path
   enum class Then {
     kEnds,
-    kScatters,  // scattered by the medium at `onward`'s origin, arriving in its direction
+    kScatters,  // `onward` is the arriving ray, from the point where the medium scatters it
     kFlies      // leaves the ground along `onward`
   };
   Then then = Then::kEnds;

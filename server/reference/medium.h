@@ -34,7 +34,7 @@ enum class Optics { kExact, kSimilar };
 
 // The result of delta scaling, in which a share of the scattered light counts as not scattered.
 struct DeltaScaled {
-  double extinction = 1.0;  // factor of the extinction
+  double extinction = 1.0;  // scaled extinction / original extinction
   glm::dvec3 albedo{1.0};
 };
 
@@ -71,7 +71,7 @@ struct Scattering {
 
 // A group's optics, either exact or similar.
 struct GroupOptics {
-  double share = 1.0;  // factor of the group's exact extinction
+  double share = 1.0;  // extinction in these optics / exact extinction
   glm::dvec3 albedo;
   double choice_albedo;  // albedo averaged over colours, used to choose a collision's group
   std::shared_ptr<const SampledPhase> phase;

@@ -13,7 +13,8 @@ namespace thunderhead::reference {
 std::vector<bool> NearSun(const Camera& camera, const glm::dvec3& towards_sun,
                           const glm::ivec2& size_px, double peak_cut_deg) {
   const double apart_rad = std::max(glm::radians(peak_cut_deg), physics::kSunRadius_rad);
-  const double apart = 2.0 * std::sin(0.5 * apart_rad);  // distance between the unit vectors
+  // Length of the difference of two unit vectors at this angle.
+  const double apart = 2.0 * std::sin(0.5 * apart_rad);
   const auto towards = [&](double x_px, double y_px) {
     return camera.RayThrough(2.0 * x_px / size_px.x - 1.0, 1.0 - 2.0 * y_px / size_px.y).direction;
   };

@@ -44,11 +44,11 @@ struct RefineLimits {
 
 struct ImageProgress {
   int samples_per_pixel = 0;  // the smallest number over all pixels
-  double seconds = 0.0;       // duration of this call
+  double seconds = 0.0;       // duration of the call of Refine so far
   // The root mean square of the standard error over pixels and colours, divided by the picture's
   // mean radiance. It is infinite below two samples for each pixel.
   double relative_error = 0.0;
-  double samples_per_second = 0.0;  // paths per second, in this call
+  double samples_per_second = 0.0;  // paths per second, in that call
 };
 
 // A callback that Refine calls between passes, on its caller's thread.

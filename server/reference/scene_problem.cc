@@ -214,10 +214,10 @@ Air AirBefore(const Around& around, const Ray& ray, double distance_m, Behind be
 // Upper limit of the ratio in LightOfAir. In the Earth's shadow the divisor is nearly zero.
 constexpr float kMostGathered = 2.0F;
 
-// Returns the light that a metre of lit air at `distance_m` on a ray sends to the eye. It is that
-// metre's part of the airlight of AirBefore. Sun and sky share it in proportion to the light that
-// they make the air scatter. AirBefore distributes the sky's light along the ray in proportion to
-// extinction, although haze near the eye contributes more next to the sun.
+// Returns the light that a metre of lit air at `distance_m` on a ray sends to the eye. This light
+// is that metre's part of the airlight of AirBefore. It is divided between sunlight and skylight in
+// proportion to how much of each the air scatters. AirBefore distributes the sky's light along the
+// ray in proportion to extinction, although haze near the eye contributes more next to the sun.
 AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
                     const glm::dvec3& towards_sun) {
   namespace air = physics::glsl;
@@ -243,8 +243,8 @@ AirLight LightOfAir(const Around& around, const Ray& ray, double distance_m,
   const glm::vec3 of_sky = scale * scattered * around.light->atmosphere.DiffuseMeanRadiance(place);
   const glm::vec3 seen = glm::min(gathered / glm::max(of_sun + of_sky, glm::vec3(1e-20F)),
                                   kMostGathered * transmittance);
-  // `brightness` is applied without the irradiance, because the medium's radiance already includes
-  // it.
+  // The last value is a factor of the medium's radiance, which already includes the sun's
+  // irradiance. Its factor is therefore `brightness` alone instead of `scale`.
   return {glm::dvec3(seen * of_sun), glm::dvec3(seen * of_sky),
           glm::dvec3(seen * static_cast<float>(around.brightness) * scattered)};
 }
@@ -305,7 +305,7 @@ std::function<SeenGround(const glm::dvec2&)> SeenGroundOf(const scene::Scene& sc
 
 std::size_t MediumBytes(const volume::HydrometeorFields& fields, bool similar) {
   constexpr std::size_t kOfField = sizeof(float);
-  // Bytes of the sum of extinctions and of its upper bound.
+  // Bytes for the sum of the fields' extinctions and for an upper bound of the sum.
   constexpr std::size_t kOfAll = 2 * sizeof(float);
   return fields.grid.CellCount() * (kOfField * fields.fields.size() + (similar ? 2 : 1) * kOfAll);
 }

@@ -53,8 +53,8 @@ struct Air {
 // Radiance that one metre of lit air on a ray adds to what the eye sees.
 struct AirLight {
   glm::dvec3 of_sun{0.0};
-  glm::dvec3 of_sky{0.0};        // part of the light that was skylight before
-  glm::dvec3 per_radiance{0.0};  // part for uniform light of radiance 1 from all directions
+  glm::dvec3 of_sky{0.0};        // part that was skylight before the air scattered it
+  glm::dvec3 per_radiance{0.0};  // what light of radiance 1 from all directions would add
 };
 
 // The air in which the medium casts its shadow.
@@ -72,7 +72,7 @@ struct DirectionalLight {
 // The sun's disc as an eye sees it directly. For all other purposes, sunlight comes from one
 // direction.
 struct SunDisc {
-  double cosine = 1.0;       // cosine of its angular radius
+  double cosine = 1.0;       // cosine of the disc's angular radius
   glm::dvec3 radiance{0.0};  // uniform over the disc
 };
 

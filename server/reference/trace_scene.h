@@ -29,9 +29,9 @@ struct TraceOptions {
   int detail_voxels_per_cell = 0;  // MediumOptions::detail_voxels_per_cell
 };
 
-// Path-traces the picture of a scene that renderers approximate. It has the same ground as the
-// renderers draw. Depending on the scene, each field has its own phase function or all have the
-// same.
+// Path-traces the picture of a scene that renderers approximate, with the ground that the renderers
+// draw. The scene's technique decides whether each field has its own phase function or all fields
+// have the same one.
 absl::StatusOr<TracedScene> TraceScene(const scene::Scene& scene,
                                        const volume::HydrometeorFields& fields,
                                        const TraceOptions& options, const RefineLimits& limits,

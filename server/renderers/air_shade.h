@@ -5,9 +5,9 @@
 //
 // The air also scatters light that the air has already scattered (skylight). A place gets skylight
 // from the part of the sky that the storm leaves open. From the hidden part, a place in the storm's
-// shadow gets the light that passes through a layer of the storm's depth. A place outside the
-// shadow gets the light that the storm's faces reflect, which is brighter on the sun's side. The
-// hidden part of the sky is computed once for a medium.
+// shadow gets the light that would pass through a level layer with the storm's optical depth. A
+// place outside the shadow gets the light that the storm's faces reflect, which is brighter on the
+// sun's side. The hidden part of the sky is computed once for a medium.
 //
 // The class owns GL objects, so use it on the context's thread.
 #pragma once

@@ -110,7 +110,7 @@ class Ground {
     gl::Texture2D distance_m;
     gl::Framebuffer target;
   };
-  std::array<Distances, 2> distances_;  // the second entry is for chosen rays
+  std::array<Distances, 2> distances_;  // the second entry is for ChosenRays
   std::size_t drawn_distance_ = 0;      // index in distances_ of the entry that was drawn last
 };
 

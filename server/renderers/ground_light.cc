@@ -23,7 +23,8 @@ constexpr double kCoarsest_m = 2000.0;
 absl::StatusOr<LitGround> GroundLight::Find(const Ground& ground, const SkyAndGround& surroundings,
                                             const volume::WorldBox& storm,
                                             const Illumination& light) {
-  // Ground farther than this margin from the storm's box counts as open.
+  // The margin is the height of the storm's top above the lowest ground. Ground farther from the
+  // storm's box counts as open.
   const glm::dvec2 margin_m(storm.high_m.z - ground.Lowest_m());
   const glm::dvec2 low_m = glm::dvec2(storm.low_m) - margin_m;
   const glm::dvec2 size_m = glm::dvec2(storm.high_m) + margin_m - low_m;

@@ -29,7 +29,7 @@ struct GroupWeights {
   std::vector<double> diffusing;   // scattering scaled by similarity: omega (1 - g)
   std::vector<double> absorption;  // absorption, 1 - omega
   // Scattering by angles from theta_f / 4 to theta_f / 2, the outer ring around the forward
-  // direction.
+  // direction (theta_f is MediumSettings::theta_f_deg).
   std::vector<double> peripheral;
   // Offset and slope with which the paper normalises phase functions for display.
   std::vector<glm::vec2> phase_display;

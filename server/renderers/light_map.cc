@@ -33,8 +33,8 @@ constexpr std::array<double, 9> kWeights = {
 std::vector<glm::vec3> LightMapOf(
     const std::function<glm::vec3(const glm::vec3& direction)>& radiance_from) {
   std::array<glm::dvec3, 9> sums{};
-  // Midpoints in the sine of the elevation and in the azimuth divide the sphere into equal solid
-  // angles.
+  // The directions are evenly spaced in the sine of the elevation and in the azimuth. Each of them
+  // represents the same solid angle, so all have the same weight.
   for (int i = 0; i < kSines; ++i) {
     const double sine = 2.0 * (i + 0.5) / kSines - 1.0;
     const double cosine = std::sqrt(1.0 - sine * sine);

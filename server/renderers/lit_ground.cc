@@ -13,8 +13,9 @@
 namespace thunderhead::renderers {
 namespace {
 
-// Radii of the three discs, relative to the height h. The share of the sum's discs that have a
-// radius below R is R^4 / (R^2 + h^2)^2. For the three radii this share is 1/6, 1/2 and 5/6.
+// Radii of the three discs that approximate the sum of discs in lit_ground.h, relative to the
+// height h. In that sum, the share of the discs with a radius below R is R^4 / (R^2 + h^2)^2. For
+// the three radii this share is 1/6, 1/2 and 5/6.
 constexpr std::array<float, 3> kDiscRadii = {0.830F, 1.554F, 3.238F};
 
 // For each disc, the level of the map at which the disc is looked up from a height of one texel.

@@ -51,7 +51,8 @@ inline constexpr double kLightTolerance = 2e-4;  // default of DrawQuality::ligh
 
 // The quality with which a scene is drawn.
 struct DrawQuality {
-  // Scale of the eye buffer's width and height, (0, 2]. A scale of 2 gives 4 rays a pixel.
+  // Scale of the width and height of the eye buffer (the picture of the storm alone), (0, 2]. A
+  // scale of 2 gives 4 rays a pixel.
   double image_scale = 1.0;
   double slice_share = 1.0;  // share of the scene's slices that are drawn, (0, 1]
   // Frames of sessions have the default `light_detail` and `single_precision`. Only measurements of

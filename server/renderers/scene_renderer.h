@@ -111,8 +111,8 @@ class SceneRenderer {
   absl::StatusOr<const Cover*> DrawContent(const scene::Scene& scene, RenderSettings& settings,
                                            StageTimes* times);
   // Draws the storm's shadow on the ground, if it has changed and the technique does not draw it.
-  // If `packed` is false, it also draws the distance of the ground where ground may hide a part of
-  // the storm.
+  // Unless the rays are drawn as chosen rays (`packed`, see DrawPacked), it also draws the distance
+  // of the ground where ground may hide a part of the storm.
   absl::Status DrawGround(RenderSettings* settings, bool packed, StageTimes* times);
   absl::Status ShadeAir(const scene::Scene& scene, const RenderSettings& settings,
                         StageTimes* times);

@@ -184,8 +184,8 @@ Illumination SkyAndGround::IlluminationOf(const scene::Scene& scene) const {
         irradiance * atmosphere_->SunTransmittance({height_m, static_cast<float>(towards_sun_.z)}));
   }
   light.from_sky = sky_light_.mean_radiance * irradiance * static_cast<float>(scene.sky.brightness);
-  // from_ground is the ground's light without the storm's shadow. Renderers that support it apply
-  // the shadow with LitGround.
+  // from_ground is the ground's light without the storm's shadow. Renderers that can show this
+  // shadow add it by LitGround.
   const float sine = std::max(static_cast<float>(towards_sun_.z), 0.0F);
   const glm::vec3 diffuse =
       sky_light_.irradiance * irradiance * static_cast<float>(scene.sky.brightness);

@@ -66,9 +66,10 @@ class SkyAndGround {
     const gl::Texture2D* distances_m = nullptr;  // from Technique::Distances_m
     volume::WorldBox box;                        // bounding box of what was drawn; may be empty
   };
-  // Draws `front` in front of the sky and the ground with its cover to `target`, all seen through
-  // the air. `cover` may be null. Otherwise it is the cover of `target`, and the storm was not
-  // drawn outside it. If `chosen` is not null, only these rays are drawn.
+  // Draws `front`, and behind it the sky and the ground with `ground_cover` (land use, borders,
+  // rings), to `target`. All are seen through the air. `cover` marks the pixels of `target` that
+  // the storm may cover (cover.h). It is null if the storm may be anywhere. If `chosen` is not
+  // null, only these rays are drawn.
   absl::Status Composite(const scene::Scene& scene, const scene::View& view, const Ground& ground,
                          const GroundCover& ground_cover, const Front& front,
                          const CoveredTarget& target, const Cover* cover, const ChosenRays* chosen);

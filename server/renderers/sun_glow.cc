@@ -123,7 +123,7 @@ absl::Status SunGlow::AddThrough(const ResidentMedium& medium,
                                  const scene::View& view, Ground* ground, const Picture& picture) {
   if (IsDark(sun)) return absl::OkStatus();
   const GroupWeights weights(medium.Content(), settings);
-  // If phase functions are not cut, all scattered light is already drawn.
+  // If phase functions are not cut, all scattered light is already drawn and no aureole is added.
   const bool cuts = weights.phase_cut > 0.0F;
   const double cut_rad = cuts ? glm::radians(settings.theta_f_deg) / 2.0 : 0.0;
   const double reach_rad = std::max(2.0 * cut_rad, kDiscReach_rad);

@@ -60,8 +60,8 @@ class Technique {
   // Returns true if the technique draws the workspace's medium. The scene renderer then creates and
   // keeps the medium.
   virtual bool DrawsMedium() const { return false; }
-  // Creates everything else that the technique draws. Returns INVALID_ARGUMENT for unsupported
-  // settings.
+  // Creates everything that the technique draws except the workspace's medium. Returns
+  // INVALID_ARGUMENT for unsupported settings.
   virtual absl::Status MakeContent(const scene::Scene& scene, const Fields& fields,
                                    StageTimes* times);
   // Returns true if there is nothing to draw.

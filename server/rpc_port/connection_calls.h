@@ -20,7 +20,7 @@ class ConnectionCalls {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // `time` must outlive this object and the calls.
+  // `time` must outlive this object and the results of Begin.
   explicit ConnectionCalls(const base::TimeSource& time = base::SteadyTime())
       : shared_(std::make_shared<Shared>(time)) {}
 

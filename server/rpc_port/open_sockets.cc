@@ -22,7 +22,8 @@ namespace {
 
 constexpr std::chrono::milliseconds kLookPause{100};
 constexpr std::chrono::milliseconds kMeasurement{10};
-// A client with ordinary calls sends less in that time, a flood of calls more.
+// A client with ordinary calls sends less than this within kMeasurement, a flood of calls sends
+// more.
 constexpr std::uint64_t kMuch_bytes = 4096;
 
 // A connection counts as used until this long after its last call, because some handlers release

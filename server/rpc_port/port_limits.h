@@ -24,9 +24,9 @@ struct PortLimits {
   // time that its bytes take at min_bytes_per_second. After that the call is cancelled.
   std::chrono::milliseconds delivery_time = std::chrono::minutes(2);
   double min_bytes_per_second = 8192.0;
-  // Timeout of a connection to gRPC's port that has no admitted call, even if its client has
-  // announced calls. The connection is then closed. Slightly earlier, gRPC itself gracefully closes
-  // a connection without any call.
+  // Timeout of a connection to gRPC's port that has no admitted call, even if its client has begun
+  // calls that were not admitted. The connection is then closed. Slightly earlier, gRPC itself
+  // gracefully closes a connection without any call.
   std::chrono::milliseconds unused_connection = std::chrono::seconds(75);
   // Maximum size of a request; a scene takes at most a few kilobytes.
   std::size_t max_request_bytes = 1u << 20;

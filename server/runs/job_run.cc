@@ -301,7 +301,7 @@ absl::Status JobRun::Watch(JobShare& share, const std::stop_token& stop) {
 
 absl::Status JobRun::Make(JobShare& share, const std::stop_token& stop) {
   bool is_lost = false;
-  auto lost_since = steady_clock::now();  // if lost: the end of the first call that failed
+  auto lost_since = steady_clock::now();  // if is_lost: when the first call failed
   while (true) {
     const std::size_t left = share.pictures.size();
     absl::Status status = share.job_id.empty() ? Create(share) : absl::OkStatus();

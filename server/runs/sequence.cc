@@ -156,9 +156,9 @@ absl::StatusOr<std::vector<PlannedPicture>> PlanSequence(
 }
 
 // Returns the number of a time, which determines the share that it belongs to. If all times are
-// requested, the number is made of the time's index in its file and of the file's index among all
-// files, readable or not. No time is therefore omitted if one share searches before a file is
-// complete and another share after.
+// requested, the number is the sum of the time's index in its file and the file's index among all
+// files, readable or not. A file that becomes complete between the searches of two shares therefore
+// does not change the numbers of other times.
 std::size_t NumberOf(const PlannedPicture& picture, std::size_t index, const Found& found,
                      const std::string& times) {
   const auto place = found.places.find(picture.input);

@@ -97,7 +97,7 @@ absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRu
                          RunProgress& progress, const std::stop_token& stop) {
   Watching watching(watch, server, run, progress);
   bool is_lost = false;
-  auto lost_since = steady_clock::now();  // if lost: the end of the first look that failed
+  auto lost_since = steady_clock::now();  // if is_lost: when the first Look failed
   while (!stop.stop_requested()) {
     absl::Status looked = watching.Look(stop);
     if (stop.stop_requested()) break;

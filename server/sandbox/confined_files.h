@@ -26,7 +26,7 @@ struct ConfinedOptions {
   CheckOpened check_opened = {};
   std::string program = {};                            // path of the reader program; if empty,
                                                        // ReaderProgram()
-  const base::TimeSource* time = &base::SteadyTime();  // must outlive the files
+  const base::TimeSource* time = &base::SteadyTime();  // must outlive ConfinedFiles
 };
 
 class ConfinedFiles : public std::enable_shared_from_this<ConfinedFiles> {

@@ -17,7 +17,7 @@ namespace thunderhead::sandbox {
 
 struct FileBundle {
   base::FileDescriptor file;            // an anonymous file in memory
-  std::vector<base::FileStamp> stamps;  // of the files, in the order of the paths
+  std::vector<base::FileStamp> stamps;  // a stamp of each file, in the order of the paths
 };
 
 // Opens a file for reading and checks it.

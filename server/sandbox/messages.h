@@ -36,7 +36,7 @@ struct Request {
   // 1 if the descriptor holds several files (file_bundle.h), else 0. For kDescriptions, the files
   // are described one by one. For other requests, they are together one time.
   std::uint8_t bundle = 0;
-  std::vector<std::string> bundled;  // the paths of these files; not sent, as the bundle has them
+  std::vector<std::string> bundled;  // paths of these files; not sent, because the bundle has them
   std::uint64_t record = 0;
   std::optional<storm_files::ColumnWindow> window;  // for kFields
   std::int32_t stride = 1;                          // for kFields

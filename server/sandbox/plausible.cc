@@ -59,7 +59,7 @@ bool AllOf(std::span<const float> values, const Question& question) {
 }
 
 bool AllFinite(std::span<const float> values, float least) {
-  // NaN fails the first comparison.
+  // The first comparison fails for NaN, so NaN is refused too.
   return AllOf(values, [least](float value) { return (value >= least) & (value <= 3.4e38F); });
 }
 

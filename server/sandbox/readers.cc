@@ -189,7 +189,8 @@ std::unique_ptr<StartedReader> RestingReader::Take(const Request& request) {
 
 void RestingReader::Put(std::unique_ptr<StartedReader> reader) {
   reader->Arrays().Empty();
-  std::unique_ptr<StartedReader> before;  // ended after the lock is released
+  // The previous reader, which ends after the lock is released.
+  std::unique_ptr<StartedReader> before;
   {
     const std::lock_guard lock(mutex_);
     before = std::exchange(reader_, std::move(reader));

@@ -60,7 +60,8 @@ std::vector<char*> Environment() {
     if (known) kept.push_back(*variable);
   }
   // Reading allocates and frees arrays of some 100 MB repeatedly. By default, the allocator would
-  // map each array anew, and the kernel would clear each of its pages of 4 kB separately.
+  // map each array anew, and the kernel would clear each of its pages of 4 kB separately. With
+  // these settings the allocator keeps freed memory and asks for pages of 2 MB.
   static char malloc_keeps_memory[] =
       "GLIBC_TUNABLES=glibc.malloc.hugetlb=1:glibc.malloc.mmap_max=0:"
       "glibc.malloc.trim_threshold=1099511627776";

@@ -115,7 +115,7 @@ class StartedReader {
   const std::string path_;
   const base::TimeSource::Clock::time_point began_;
   std::vector<std::string> bundled_;
-  std::vector<base::FileStamp> stamps_;  // of the file, or of the bundled files
+  std::vector<base::FileStamp> stamps_;  // of the file, or of each bundled file
   SharedArrays arrays_;
   base::FileDescriptor requests_;
   // The other end of `requests_`. It stays open here so that a request to a reader that has exited

@@ -28,8 +28,8 @@ class DetailedMedium {
   volume::DrawnMedium::Channels At_per_m(const glm::dvec3& place_m) const;
 
   // Returns the extinction on the grid's cells, with the bounding box of the cells that are not
-  // empty. It does not include the noise, but it includes the factors that make up for the mean
-  // loss caused by noise.
+  // empty. It does not include the noise, but it includes the factors that compensate for the mean
+  // loss of extinction by the noise.
   const volume::ExtinctionVolume& Volume() const { return volume_; }
 
   // Returns an upper bound of each field's extinction in 1/m.

@@ -94,8 +94,8 @@ using Camera = std::variant<OrbitCamera, SpotterCamera, TopDownCamera>;
 struct Sun {
   double azimuth_deg = 275.0;
   double elevation_deg = 18.0;
-  double irradiance =
-      1.0;  // on a plane facing the sun above the atmosphere; this is the unit of radiance
+  // Irradiance on a plane facing the sun, above the atmosphere. Radiance is in the same unit.
+  double irradiance = 1.0;
 
   bool operator==(const Sun&) const = default;
 };
@@ -154,7 +154,8 @@ using Accuracy = std::variant<std::monostate, MaxError, MaxMilliseconds>;
 // How a picture is computed: the technique with its settings.
 struct Rendering {
   Technique technique;
-  // Scale of the eye buffer at full quality, (0, 2]; the picture's size does not change.
+  // Scale of the eye buffer (the picture of the storm alone) at full quality, (0, 2]. The size of
+  // the final picture does not change.
   double image_scale = 1.0;
 
   bool operator==(const Rendering&) const = default;
@@ -191,7 +192,8 @@ struct Scene {
   Rendering rendering;
   Display display;
   Output output;
-  Accuracy accuracy;  // determines most of `rendering`; renderers receive a scene with it resolved
+  // Determines most of `rendering`. Renderers receive a scene in which that has been done.
+  Accuracy accuracy;
 
   // Creates a scene with the default optics of every field.
   Scene();

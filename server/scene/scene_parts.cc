@@ -50,7 +50,7 @@ bool SameDetailSwitch(const Scene& a, const Scene& b) {
   return FieldLookOf(a.rendering.technique).detail == FieldLookOf(b.rendering.technique).detail;
 }
 
-// Returns the technique with default values for the settings that are parts of their own.
+// Returns the technique with default values for the settings that have their own rows in kParts.
 Technique WithoutOwnParts(Technique technique) {
   SetTracedLight(&technique, TracedLight::kOff);
   if (MediumSettings* medium = MediumSettingsOf(&technique); medium != nullptr) {
@@ -122,7 +122,8 @@ constexpr std::array kParts = {
     ScenePart{"storm_id", Same<&Scene::storm_id>, Stage::kStorm, true, true},
     ScenePart{"time_index", Same<&Scene::time_index>, Stage::kStorm, true, true},
     ScenePart{"fields", SameFieldsButDetail, Stage::kExtinction, true, true},
-    // The measured picture of metaballs shows the detail as roughness.
+    // The measured error depends on the detail, because metaballs show the detail as roughness even
+    // in the measured picture.
     ScenePart{"fields.detail", SameDetail, Stage::kExtinction, true, true, DirtiedByDetail},
     ScenePart{"rendering.technique", SameTechnique, Stage::kExtinction, true, true,
               DirtiedByTechnique},
@@ -148,7 +149,8 @@ constexpr std::array kParts = {
     ScenePart{"output.jpeg_quality", SameIn<&Scene::output, &Output::jpeg_quality>, Stage::kTone,
               false, false},
     ScenePart{"display", Same<&Scene::display>, Stage::kTone, false, false},
-    // The accuracy takes effect through the rendering that is chosen for it.
+    // A change of the target accuracy invalidates nothing, because it takes effect through the
+    // rendering that is chosen for it.
     ScenePart{"accuracy", Same<&Scene::accuracy>, Stage::kNothing, false, false},
 };
 

@@ -9,12 +9,13 @@ namespace thunderhead::scene {
 namespace {
 
 // Margin around the storm for air under a partly hidden sky. At this distance, a storm 12 km high
-// hides less than 8 % of the sky.
+// takes 7 % (20 km wide) to 11 % (much wider) of a uniform sky's light from level ground.
 constexpr double kSkyMargin_m = 1.5e4;
 // Maximum length of the storm's shadow. The shadow of a low sun is longer, but its far end lies in
 // air that hardly affects the picture.
 constexpr double kLongestShadow_m = 1.5e5;
-// Depth of the round Earth's ground below the plane of world coordinates at a distance of 200 km.
+// The boxes end this far below the lowest ground, because at a distance of 200 km the round Earth
+// lies that far below the plane of world coordinates.
 constexpr double kFallOfGround_m = 2700.0;
 
 }  // namespace

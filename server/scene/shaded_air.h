@@ -11,7 +11,7 @@ namespace thunderhead::scene {
 struct ShadedAir {
   // Air in the storm's shadow: a box around the storm and its shadow, down to the ground.
   volume::WorldBox from_sun;
-  // Air from which the storm hides a large part of the sky.
+  // Air from which the storm hides more than about a tenth of the sky's light.
   volume::WorldBox from_sky;
 };
 

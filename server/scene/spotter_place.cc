@@ -19,9 +19,10 @@ constexpr double kTallTower_m = 12e3;
 constexpr double kNearest_m = 15e3;
 constexpr double kFarthest_m = 25e3;
 constexpr double kStep_m = 500.0;
-constexpr double kMaxSteps = 4000.0;  // enough to leave the domain
+constexpr double kMaxSteps = 4000.0;  // the search leaves the domain within this many steps
 
-// Shares of the picture's height that ground fills, and that stay free above the tower's top.
+// Shares of the picture's height. Ground fills kMinGround to kMaxGround, and kSkyAboveTop stays
+// free above the tower's top.
 constexpr double kMinGround = 1.0 / 6.0;
 constexpr double kMaxGround = 0.25;
 constexpr double kSkyAboveTop = 0.05;
@@ -90,8 +91,8 @@ class Stands {
         sight_(fields, core, sizes) {}
 
   // Returns `camera` placed so that it looks towards the core in the direction `azimuth_deg`. The
-  // place is the nearest place that shows the top, is clear of cloud and rain, and is at least
-  // `nearest_m` away.
+  // place is the nearest one, at least `nearest_m` away, that is clear of cloud and rain and shows
+  // the top. From Farthest_m() on, it need not show the top.
   SpotterCamera Standing(SpotterCamera camera, double azimuth_deg, double nearest_m) const {
     camera.azimuth_deg = azimuth_deg;
     const glm::dvec2 towards(Direction(azimuth_deg, 0.0));
@@ -138,7 +139,7 @@ class Stands {
   const volume::StormCore& core_;
   glm::dvec3 towards_sun_;
   double aspect_ratio_;
-  double scale_;  // scale of lengths for low towers
+  double scale_;  // factor of the distances; below 1 for a tower lower than kTallTower_m
   volume::CoreSight sight_;
 };
 

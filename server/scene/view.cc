@@ -140,7 +140,7 @@ View ViewOf(const Scene& scene, const volume::HydrometeorFields& fields) {
 double FramingElevation_deg(const glm::dvec3& low_m, const glm::dvec3& high_m) {
   constexpr double kStormElevation_deg = OrbitCamera().elevation_deg;
   constexpr double kDomainElevation_deg = 35.0;
-  constexpr double kStormHeight = 0.1;  // height divided by width
+  constexpr double kStormHeight = 0.1;  // height / width of a single storm
   constexpr double kDomainHeight = 0.02;
   const glm::dvec3 size_m = high_m - low_m;
   const double height = size_m.z / std::max(std::max(size_m.x, size_m.y), 1.0);

@@ -52,11 +52,11 @@ struct ServerOptions {
 // The current load of a server.
 struct ServerLoad {
   int sessions = 0;
-  int viewers = 0;  // viewers of sessions and of own views
+  int viewers = 0;  // viewers of sessions' views and of their own views
   int storms = 0;
   double cached_bytes = 0.0;  // size of the storms' fields in memory
   int pictures = 0;           // single pictures that were requested and not yet delivered
-  int waiting_pictures = 0;   // pictures among these that wait for a worker
+  int waiting_pictures = 0;   // those of `pictures` that wait for a worker
   // Seconds for which a read of a storm file has made no progress, because its storage hangs; 0 if
   // no read hangs.
   double reading_stuck_s = 0.0;

@@ -12,7 +12,7 @@
 
 namespace thunderhead::service {
 
-// Returns the service. All arguments must outlive it.
+// Returns the service. All arguments must outlive the service.
 std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine, access::Door& door,
                                                       rpc_port::ConnectionCalls& calls);
 

@@ -134,7 +134,7 @@ class FrameStream : public FramesReactor,
   }
 
   const std::shared_ptr<session::Session> session_;
-  const CallerRef caller_;  // holds the place of the stream in its quota
+  const CallerRef caller_;  // the stream counts towards the caller's quota while this exists
   std::shared_ptr<FrameStream> held_by_grpc_;
   v1::WatchFramesResponse response_;
   // The revision of the scene that was sent last. Like `response_`, it is used only while

@@ -160,10 +160,10 @@ test("a fresh page is balanced: diffusion with detail", async () => {
   await unfoldSettings();
   const label = (choice) => choice.evaluate((select) => select.selectedOptions[0].label);
   assert.equal(await page.getByTestId("technique-choice").inputValue(), "light_volume");
-  assert.equal(await label(page.getByTestId("transport")), "Diffusion");
-  assert.equal(await label(page.getByTestId("traced-light")), "At rest");
-  assert.equal(await page.getByTestId("detail").isChecked(), true);
-  assert.equal(await page.getByTestId("per-field-phase").isChecked(), true);
+  assert.equal(await label(page.getByTestId("technique-transport")), "Diffusion");
+  assert.equal(await label(page.getByTestId("technique-traced-light")), "At rest");
+  assert.equal(await page.getByTestId("technique-detail").isChecked(), true);
+  assert.equal(await page.getByTestId("technique-per-field-phase").isChecked(), true);
   await screenshot("1-settings");
   await foldSettings();
   await tool("fields");
@@ -179,7 +179,7 @@ test("traced light corrects the picture while it rests, and stays when it turns"
   await changing(() => drag(60, 0));
   await pathsBeyond(paths);
   await unfoldSettings();
-  await changing(() => page.getByTestId("traced-light").selectOption({ label: "Off" }));
+  await changing(() => page.getByTestId("technique-traced-light").selectOption({ label: "Off" }));
   assert.equal(await page.getByTestId("traced-paths").count(), 0);
   assert.deepEqual(await chosenQuality(), []);
   assert.match(await page.getByTestId("quality-choice-about").innerText(), /Custom/);
@@ -191,7 +191,7 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
   await unfoldSettings();
   const balanced = await restingFrameAfter(() => chooseQuality("Balanced"));
   assert.deepEqual(await chosenQuality(), ["Balanced"]);
-  const slices = () => page.getByTestId("slices-number").inputValue();
+  const slices = () => page.getByTestId("technique-slices-number").inputValue();
   const fine = Number(await slices());
   await tool("fields");
   assert.equal(await page.getByTestId("field-cloud").getByText("Detail").count(), 1);
@@ -201,7 +201,7 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
   await changing(() => page.keyboard.press("ArrowLeft"));
   assert.deepEqual(await chosenQuality(), ["Fast"]);
   assert.equal(Number(await slices()), fine / 2);
-  assert.equal(await page.getByTestId("detail").isChecked(), false);
+  assert.equal(await page.getByTestId("technique-detail").isChecked(), false);
   await tool("fields");
   assert.equal(await page.getByTestId("field-cloud").count(), 1);
   assert.equal(await page.getByTestId("field-cloud").getByText("Detail").count(), 0);
@@ -210,21 +210,21 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
   await screenshot("2-fast");
   assert.ok(difference(balanced, fast) > 0.1, "without detail the picture is the same");
 
-  await changing(() => setNumber(page, "slices", fine / 2 + 1));
+  await changing(() => setNumber(page, "technique-slices", fine / 2 + 1));
   assert.deepEqual(await chosenQuality(), []);
-  await changing(() => setNumber(page, "slices", fine / 2));
+  await changing(() => setNumber(page, "technique-slices", fine / 2));
   assert.deepEqual(await chosenQuality(), ["Fast"]);
 
-  const transport = page.getByTestId("transport");
+  const transport = page.getByTestId("technique-transport");
   await changing(() => transport.selectOption({ label: "Consistent" }));
-  assert.equal(await page.getByTestId("traced-light").count(), 0);
+  assert.equal(await page.getByTestId("technique-traced-light").count(), 0);
   assert.equal(await page.getByTestId("not-shown").count(), 0, "nothing is asked for in vain");
   const paper = page.getByTestId("papers-choice");
   const darker = await restingFrameAfter(() => paper.selectOption({ label: "Uniform phase, low albedo" }));
   assert.deepEqual(await chosenQuality(), []);
   assert.match(await page.getByTestId("quality-choice-about").innerText(), /low albedo/);
-  assert.equal(await page.getByTestId("per-field-phase").isChecked(), false);
-  assert.equal(await page.getByTestId("traced-light").count(), 0);
+  assert.equal(await page.getByTestId("technique-per-field-phase").isChecked(), false);
+  assert.equal(await page.getByTestId("technique-traced-light").count(), 0);
   assert.ok(difference(fast, darker) > 1, "single scattering looks like diffusion");
   // The following tests compare pictures at rest. Fast has no path-traced correction that would change them.
   await changing(() => chooseQuality("Fast"));
@@ -234,14 +234,14 @@ test("fast draws fewer samples without detail, and the arrow keys change the qua
 test("fields in their false colours", async () => {
   await unfoldSettings();
   const usual = await restingFrame();
-  const coloured = await restingFrameAfter(() => page.getByTestId("false-colors").check());
+  const coloured = await restingFrameAfter(() => page.getByTestId("technique-false-colors").check());
   assert.ok(difference(usual, coloured) > 1, "false colours look like true ones");
   await tool("fields");
   const swatches = await page.locator("[data-testid^=field-][data-testid$=-color]").count();
   assert.ok(swatches > 1, `there are ${swatches} colours to choose`);
   await screenshot("2-false-colours");
   await unfoldSettings();
-  await changing(() => page.getByTestId("false-colors").uncheck());
+  await changing(() => page.getByTestId("technique-false-colors").uncheck());
   assert.deepEqual(await chosenQuality(), ["Fast"]);
   await foldSettings();
 });
@@ -388,8 +388,8 @@ test("the reference refines the picture while it rests, and begins again when it
     return Number(revision) > Number(traced.revision) && revision === agreed;
   });
   await reached(2);
-  assert.equal(await page.getByTestId("slices").count(), 0, "it has no slices");
-  assert.equal(await page.getByTestId("per-field-phase").isChecked(), true);
+  assert.equal(await page.getByTestId("technique-slices").count(), 0, "it has no slices");
+  assert.equal(await page.getByTestId("technique-per-field-phase").isChecked(), true);
   await changing(async () => {
     await chooseQuality("Fast");
     await drag(-60, 0);
@@ -402,10 +402,10 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await unfoldSettings();
   const choice = page.getByTestId("technique-choice");
   const before = await restingFrame();
-  assert.equal(await page.getByTestId("metaball-count").count(), 0);
+  assert.equal(await page.getByTestId("technique-count").count(), 0);
   const balls = await restingFrameAfter(() => choice.selectOption({ label: "Metaballs" }));
   assert.deepEqual(await chosenQuality(), []);
-  assert.equal(await page.getByTestId("per-field-phase").isChecked(), true);
+  assert.equal(await page.getByTestId("technique-per-field-phase").isChecked(), true);
   await screenshot("9-metaballs");
   const { deviation } = spread(balls);
   assert.ok(deviation > 8, `the picture is nearly uniform: deviation ${deviation}`);
@@ -415,28 +415,28 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await page.getByTestId("readout-summary").click();
   assert.match(await page.getByTestId("stages").innerText(), /Metaballs\s+\d+/);
   await page.getByTestId("readout-summary").click();
-  const isotropic = await restingFrameAfter(() => page.getByTestId("metaball-isotropic").click());
+  const isotropic = await restingFrameAfter(() => page.getByTestId("technique-isotropic").click());
   assert.ok(difference(balls, isotropic) > 0.01);
-  await changing(() => page.getByTestId("metaball-isotropic").click());
+  await changing(() => page.getByTestId("technique-isotropic").click());
 
   // A slider that makes the server fit balls again reports its value only on release.
-  const slider = page.getByTestId("metaball-count");
+  const slider = page.getByTestId("technique-count");
   await slider.scrollIntoViewIfNeeded();
   const { x, y, width, height } = await slider.boundingBox();
   const updatesBefore = sceneUpdates();
-  const ballsBefore = await page.getByTestId("metaball-count-number").inputValue();
+  const ballsBefore = await page.getByTestId("technique-count-number").inputValue();
   await page.mouse.move(x + 0.7 * width, y + height / 2);
   // Pausing during the drag also reports the value.
   const dragSlider = async () => {
     await page.mouse.down();
     await page.mouse.move(x + 0.5 * width, y + height / 2, { steps: 15 });
-    assert.notEqual(await page.getByTestId("metaball-count-number").inputValue(), ballsBefore);
+    assert.notEqual(await page.getByTestId("technique-count-number").inputValue(), ballsBefore);
     assert.equal(sceneUpdates() - updatesBefore, 0, "balls are not fitted at each step of a drag");
     await page.mouse.up();
   };
   await changing(() => atOneMoment(page, dragSlider));
   assert.equal(sceneUpdates() - updatesBefore, 1);
-  const before2 = await restingFrameAfter(() => setNumber(page, "metaball-count", ballsBefore));
+  const before2 = await restingFrameAfter(() => setNumber(page, "technique-count", ballsBefore));
 
   const lights = async () => {
     await tool("light");
@@ -466,7 +466,7 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
   await until("the light volume has its own defaults", async () =>
     (await chosenQuality()).includes("Balanced"),
   );
-  assert.equal(await page.getByTestId("detail").isChecked(), true);
+  assert.equal(await page.getByTestId("technique-detail").isChecked(), true);
   await lights();
   await changing(() => page.getByTestId("light-1-remove").click());
   await changing(() => page.getByTestId("light-1-remove").click());
@@ -481,22 +481,22 @@ test("metaballs draw the storm, and the page says what they leave out", async ()
 
 test("a cumulus as a surface, and the parts of its light", async () => {
   await unfoldSettings();
-  assert.equal(await page.getByTestId("cumulus-component").count(), 0);
+  assert.equal(await page.getByTestId("technique-component").count(), 0);
   await changing(() =>
     page.getByTestId("technique-choice").selectOption({ label: "Cumulus surface" }),
   );
-  for (const name of ["transport", "slices", "theta-f", "detail", "false-colors"]) {
+  for (const name of ["technique-transport", "technique-slices", "technique-theta-f-deg", "technique-detail", "technique-false-colors"]) {
     assert.equal(await page.getByTestId(name).count(), 0, `a cumulus has no ${name}`);
   }
   assert.match(await page.getByTestId("not-shown").innerText(), /snow/);
-  await changing(() => page.getByTestId("cumulus-source").selectOption({ label: "Cauliflower" }));
+  await changing(() => page.getByTestId("technique-source").selectOption({ label: "Cauliflower" }));
   const whole = await restingFrameAfter(() => setNumber(page, "exposure", 0)); // the same exposure for all parts
   await screenshot("10-cumulus");
   assert.ok(spread(whole).deviation > 8, "the picture is nearly uniform");
   assert.match(await page.getByTestId("not-shown").innerText(), /generated from a seed/);
   let last = whole;
   for (const label of ["Direct sunlight", "Inter-reflection", "Sky and ground", "Corona"]) {
-    const part = await restingFrameAfter(() => page.getByTestId("cumulus-component").selectOption({ label }));
+    const part = await restingFrameAfter(() => page.getByTestId("technique-component").selectOption({ label }));
     await screenshot(`10-cumulus-${label.toLowerCase().replaceAll(" ", "-")}`);
     const change = difference(last, part);
     assert.ok(change > 0.3, `${label} looks like the part before it: ${change}`);
@@ -506,7 +506,7 @@ test("a cumulus as a surface, and the parts of its light", async () => {
     );
     last = part;
   }
-  const all = await restingFrameAfter(() => page.getByTestId("cumulus-component").selectOption({ label: "All" }));
+  const all = await restingFrameAfter(() => page.getByTestId("technique-component").selectOption({ label: "All" }));
   assert.ok(difference(whole, all) < 1, "the whole is back");
   await changing(async () => {
     await exposeAutomatically(page);

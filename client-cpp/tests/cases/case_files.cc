@@ -16,7 +16,8 @@ namespace {
 using google::protobuf::Struct;
 using google::protobuf::util::JsonStringToMessage;
 
-// Numbers may differ by this share, because messages store 32-bit floats.
+// The tolerated difference of two numbers, as a fraction of the expected number. Below 1 it is
+// absolute. Messages store 32-bit floats, so results are not exact.
 constexpr double kTolerance = 1e-5;
 
 std::string TextOf(const google::protobuf::Message& message) {

@@ -49,7 +49,8 @@ TEST(CaseFilesTest, EveryRunnerHasAFile) {
   for (const auto& [name, runner] : Runners()) EXPECT_TRUE(files.contains(name)) << name;
 }
 
-// Runs one step, whose action "add" results in its argument "by", and returns the failure's text.
+// Runs a case with this one step and returns the text of the failure; empty if it passes. The
+// runner knows one action, "add". Its result "sum" is its argument "by".
 std::string FailureOf(const std::string& step, const std::string& given = "{}") {
   Case each;
   each.steps.emplace_back();

@@ -1,7 +1,7 @@
 // The bar above the time line. It shows the person in control, the button for control, and the
-// people who ask to steer. If the user has left the session's view, it also has the button that
-// returns to it. It is hidden while the user is alone in the session and steers. After the session
-// has ended, it has only the button that opens a new one.
+// people who ask to steer. If the user has left the session's view, the bar also has the button
+// that returns to that view. The bar is hidden while the user is alone in the session and steers.
+// After the session has ended, the bar has only the button that opens a new session.
 #include <imgui.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ void ControlButton(Ui& ui) {
 }
 
 // Draws at most three of the people who ask to steer, with buttons to answer them. If more ask,
-// draws a button that opens the list of people. Only people who are in control or present see this.
+// draws a button that opens the list of people. Only presenters and the person in control see this.
 // A part that does not fit into a line of width `room` begins a new line.
 void Asking(Ui& ui, float room) {
   if (!ui.state.Steers() && !ui.state.Presents()) return;

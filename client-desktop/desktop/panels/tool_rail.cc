@@ -37,8 +37,8 @@ void DrawToolRail(Ui& ui, const Layout& layout) {
   const float padding = 7.0F * ui.scale;
   const float whole =
       kTools.size() * button_height + (kTools.size() - 1) * style.ItemSpacing.y + 2.0F * padding;
-  // The rail stands next to the time line. If even that height is too small, the wheel scrolls the
-  // rail.
+  // The rail may reach down to the window's lower edge, because the time line is next to it, not
+  // below it. If even that height is too small, the wheel scrolls the rail.
   const float height = std::min(whole, layout.window.y - layout.margin - layout.top());
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {padding, padding});
   if (BeginPanel("tool rail", {layout.margin, layout.top()}, {layout.rail_width, height},

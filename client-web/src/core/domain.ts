@@ -12,7 +12,7 @@ export function domainOf(storm: Placed | undefined): string {
   const grid = storm?.grid;
   if (storm === undefined || grid === undefined) return "";
   const { nx, ny, dxM, dyM, low } = grid;
-  // Five decimals of a degree are about a metre.
+  // Degrees are compared to five decimals, which is about a metre.
   const place = [storm.latitudeDeg, storm.longitudeDeg].map((degrees) => degrees?.toFixed(5) ?? "");
   const lengths = [dxM, dyM, low?.xM ?? 0, low?.yM ?? 0].map((metres) => metres.toFixed(1));
   return [nx, ny, ...lengths, ...place].join(" ");

@@ -75,7 +75,7 @@ const MAX_CORNERS = 256;
 export const MAX_LETTERS = 40;
 
 interface Written {
-  // The strokes of each letter, as in LETTERS.
+  // The strokes of each letter of the text, written as in LETTERS.
   readonly letters: readonly string[];
   readonly unknown: readonly string[];
   // The end of the text that does not fit into the MAX_CORNERS corners of one mark.
@@ -94,7 +94,8 @@ function written(words: string): Written {
       unknown.push(letter);
       continue;
     }
-    // Each lift of the pen repeats a corner.
+    // Each stroke takes one corner more than it has points, because a lift of the pen repeats a
+    // corner.
     corners += strokes.split(" ").reduce((sum, stroke) => sum + stroke.length / 2 + 1, 0);
     if (corners > MAX_CORNERS) return { letters, unknown, tooLong: all.slice(at).join("") };
     letters.push(strokes);

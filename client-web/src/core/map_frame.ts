@@ -17,7 +17,8 @@ export interface MapPlace {
 
 // Width of the margin around the domain, as a fraction of the domain's size.
 const MARGIN = 0.06;
-// A camera whose distance exceeds this number times the domain's size is shown at the map's edge.
+// A camera whose distance from the domain's middle exceeds this number times the domain's size,
+// along the x or y axis, is shown at the map's edge.
 const FARTHEST = 1.2;
 
 // Returns the domain with a margin. The area includes the camera's position if that is not far from

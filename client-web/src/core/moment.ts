@@ -59,7 +59,7 @@ export function momentOf(validTime: string, elapsedText: string, zone: string | 
 // Returns a time like "15:00 CDT" in a time zone of the IANA database.
 export function localClock(instant: Date, zone: string | undefined): string | undefined {
   if (zone === undefined) return undefined;
-  // The locale en-US has the abbreviations of American zones.
+  // The locale is en-US because it has the abbreviations of American zones, such as CDT.
   return new Intl.DateTimeFormat("en-US", {
     hour: "2-digit",
     minute: "2-digit",

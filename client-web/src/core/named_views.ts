@@ -9,7 +9,8 @@ import { timeLike } from "./nearest_time";
 export interface NamedView {
   readonly name: string;
   readonly camera: Camera;
-  // Valid time at which the view was kept. The indices of a storm's times may change.
+  // Valid time at which the view was kept. It identifies the time, because the indices of a storm's
+  // times may change.
   readonly validTime: string;
   readonly timeIndex: number;
   // A small picture of the view as a data URL; may be empty.

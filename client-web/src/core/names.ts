@@ -3,6 +3,8 @@
 import type { DescEnum } from "@bufbuild/protobuf";
 import { Stage } from "../gen/thunderhead/v1/frame_pb";
 import {
+  Cumulus_Component as Component,
+  Cumulus_ComponentSchema as ComponentSchema,
   CumulusSchema,
   HalfAngleSchema,
   type Hydrometeor,
@@ -14,8 +16,12 @@ import {
   Preset,
   ReferenceSchema,
   RenderingSchema,
+  Cumulus_Source as Source,
+  Cumulus_SourceSchema as SourceSchema,
   TracedLight,
+  TracedLightSchema,
   Transport,
+  TransportSchema,
 } from "../gen/thunderhead/v1/scene_pb";
 
 // Returns a name like "ice columns" for "ICE_COLUMNS"; undefined if the value is unknown.
@@ -76,15 +82,26 @@ export function nameOfTransport(transport: Transport): string {
   return TRANSPORT_NAMES[transport] ?? `Transport ${transport}`;
 }
 
-const TRACED_LIGHT_NAMES: Readonly<Record<TracedLight, string>> = {
-  [TracedLight.UNSPECIFIED]: "Default",
-  [TracedLight.OFF]: "Off",
-  [TracedLight.AT_REST]: "At rest",
-  [TracedLight.AWAITED]: "At rest; files wait for it",
+// Names of a technique's choices that differ from those of their enumerators, by enumeration.
+const CHOICE_NAMES: Readonly<Record<string, Readonly<Record<number, string>>>> = {
+  [TransportSchema.typeName]: TRANSPORT_NAMES,
+  [TracedLightSchema.typeName]: { [TracedLight.AWAITED]: "At rest; files wait for it" },
+  [SourceSchema.typeName]: {
+    [Source.STORM]: "The storm's cloud and ice",
+    [Source.FAIR_WEATHER_CUMULUS]: "Fair-weather cumulus",
+    [Source.CUMULUS_FIELD]: "Field of cumulus",
+    [Source.ELLIPSOID]: "One ellipsoid",
+  },
+  [ComponentSchema.typeName]: {
+    [Component.DIRECT]: "Direct sunlight",
+    [Component.INTER_REFLECTION]: "Inter-reflection",
+    [Component.AMBIENT]: "Sky and ground",
+    [Component.BALLS]: "Bare ellipsoids",
+  },
 };
 
-export function nameOfTracedLight(tracedLight: TracedLight): string {
-  return TRACED_LIGHT_NAMES[tracedLight] ?? `Choice ${tracedLight}`;
+export function nameOfChoice(choice: DescEnum, value: number): string {
+  return CHOICE_NAMES[choice.typeName]?.[value] ?? nameOfEnumerator(choice, value);
 }
 
 const PRESET_NAMES: Readonly<Record<Preset, string>> = {

@@ -1,4 +1,4 @@
-// Finds the time of a storm with the nearest date.
+// Finds the time of a storm whose date is nearest to a given valid time.
 import { secondsBetween } from "./moment";
 
 interface Dated {
@@ -7,7 +7,7 @@ interface Dated {
 
 export interface NearestTime {
   readonly index: number;
-  // Positive if the found time is later.
+  // Seconds from the given time to the found time; positive if the found time is later.
   readonly awayS: number;
 }
 

@@ -52,6 +52,11 @@ export function parametersOf(scene: Scene): Parameter[] {
   return SceneSchema.fields.flatMap((field) => ofField(scene, field, [], "", field.name));
 }
 
+// Returns the parameters in the given fields of a message, with paths that begin at the message.
+export function parametersOfMessage(message: Message, fields: readonly DescField[]): Parameter[] {
+  return fields.flatMap((field) => ofField(message, field, [], "", ""));
+}
+
 function ofField(
   owner: Message,
   field: DescField,

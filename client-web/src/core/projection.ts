@@ -94,7 +94,7 @@ function depthOf({ eyeM, forward }: Projection, pointM: Vec3): number {
   return dot(minus(pointM, eyeM), forward);
 }
 
-// Right and up are perpendicular to each other and to forward.
+// Right and up are perpendicular to each other and to forward, so x and y are computed separately.
 function place(projection: Projection, pointM: Vec3, depthM: number): PicturePoint {
   const { eyeM, right, up, parallel } = projection;
   const fromEye = minus(pointM, eyeM);

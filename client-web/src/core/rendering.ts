@@ -22,7 +22,7 @@ import {
   Transport,
 } from "../gen/thunderhead/v1/scene_pb";
 import type { PresetDescription, TechniqueDescription } from "../gen/thunderhead/v1/thunderhead_pb";
-import { defaultChoiceOf, defaultOnOf, type Limits, limitsOf } from "./limits";
+import { defaultChoiceOf, defaultOnOf } from "./limits";
 
 // The settings message of a technique.
 export type Settings = Exclude<Rendering["technique"]["value"], Preset | undefined>;
@@ -53,6 +53,13 @@ function fieldOf(settings: Settings) {
   return TECHNIQUES.find((field) => field.message.typeName === settings.$typeName);
 }
 
+// Returns the descriptor of the settings' message.
+export function descriptorOf(settings: Settings): DescMessage {
+  const field = fieldOf(settings);
+  if (field === undefined) throw new Error(`${settings.$typeName} is no technique's message`);
+  return field.message;
+}
+
 // Returns the technique's settings; undefined for a preset.
 export function settingsOf(rendering: Rendering | undefined): Settings | undefined {
   const value = rendering?.technique.value;
@@ -76,12 +83,6 @@ export function techniqueNameOf(settings: Settings): string {
 
 export function hasSetting(settings: Settings, name: keyof SharedSettings): boolean {
   return fieldOf(settings)?.message.field[name] !== undefined;
-}
-
-// Returns a setting's limits; undefined if the technique does not have the setting.
-export function settingLimits(settings: Settings, name: keyof SharedSettings): Limits | undefined {
-  const field = fieldOf(settings)?.message.field[name];
-  return field === undefined ? undefined : limitsOf(field);
 }
 
 // Returns whether a switch of the technique is on; false if the technique does not have the
@@ -137,6 +138,12 @@ export function withTransport(rendering: Rendering, transport: Transport): Rende
   const traces = settings !== undefined && hasSetting(settings, "tracedLight");
   const rest = traces ? { tracedLight: TracedLight.UNSPECIFIED } : {};
   return withSettings(rendering, { transport, ...rest });
+}
+
+// Changes one setting of the technique.
+export function withSetting(rendering: Rendering, setting: string, value: unknown): Rendering {
+  if (setting === "transport") return withTransport(rendering, value as Transport);
+  return withSettings(rendering, { [setting]: value });
 }
 
 // Changes the technique. Keeps the settings listed in KEPT that both techniques have. The server

@@ -84,9 +84,9 @@ export class RevisionLedger {
     this.#close();
   }
 
-  // Removes the finished scenes from the waiting scenes. Each new revision calls this, whether a
-  // response or a frame reports it, because a frame may arrive before the response that names its
-  // revision.
+  // Removes the finished scenes from the waiting scenes. This is called for each new revision,
+  // whether a response or a frame reports it, because a frame may arrive before the response that
+  // names its revision.
   #close(): void {
     const stillOpen: Sent[] = [];
     for (const entry of this.#open) {

@@ -246,8 +246,8 @@ export class SceneSync {
       if (verdict.kind !== "taken" || verdict.revision !== expected + 1n) this.#drains = true;
       if (!follows) this.#judge(verdict, sent, scene);
     } catch {
-      // send() rejects if the connection is lost. allow() is called after the connection is
-      // restored.
+      // send() rejects if the connection is lost. Nothing is sent until allow() is called, after
+      // the connection is restored.
       this.#inFlight -= 1;
       this.#drains = true;
       this.#onLost = undefined;
@@ -269,8 +269,8 @@ export class SceneSync {
       case "taken":
         this.#drop(sent);
         if (verdict.revision > this.#revision) this.#revision = verdict.revision;
-        // A later refusal returns to this scene, because the server sends its own scene only a few
-        // times a second.
+        // The server sends its own scene only a few times a second. The accepted scene is therefore
+        // remembered as the server's newest scene, to which a later refusal returns.
         if (this.#told === undefined || this.#told.revision < verdict.revision)
           this.#told = { scene, revision: verdict.revision };
         this.#steps.taken();

@@ -45,7 +45,8 @@ export function Annotations(props: { state: PageState; comparing: boolean }) {
   // In a narrow window the drawer covers the picture, so there are no annotations.
   if (narrow && state.drawerOpen.value) return null;
   const bars = narrow ? narrowBars(state, comparing) : wideBars(state, comparing);
-  // Too little of the picture is visible, for example on a phone in landscape orientation.
+  // There are no annotations if too little of the picture is visible, for example on a phone in
+  // landscape orientation.
   const leftPx = window.innerHeight - bars.top - bars.bottom;
   if (narrow && leftPx < MIN_ROOM_LETTERS * LETTER_PX) return null;
   const shapes = annotationsOf(

@@ -69,7 +69,7 @@ export class Page {
   readonly #listening = new AbortController();
   readonly #disposals: (() => void)[] = [];
   #running = false;
-  // The storm that a person chose on this page.
+  // The storm that a person last chose on this page; empty before the first choice.
   #chosenStorm = "";
 
   constructor(

@@ -1,9 +1,9 @@
 // Passes frames from the network to the canvas. The frames show either the session's view, or the
 // own view of a person who looks around. The server waits for acknowledgements, each of which
 // covers all earlier frames of the same view. A frame is acknowledged when it is shown, cannot be
-// decoded or belongs to the other view. The frame that replaces a waiting frame is acknowledged for
-// both. Every video frame is decoded on arrival, because later frames depend on it. Of JPEG and
-// AVIF frames only the newest is decoded.
+// decoded or belongs to the other view. A waiting frame that is replaced by a newer frame is
+// covered by the newer frame's acknowledgement. Every video frame is decoded on arrival, because
+// later frames depend on it. Of JPEG and AVIF frames only the newest is decoded.
 
 import { FramePipeline } from "../core/frame_pipeline";
 import type { Frame } from "../gen/thunderhead/v1/frame_pb";
@@ -70,7 +70,8 @@ export class PictureFlow {
     if (frame.ownView !== this.#steps.wantsOwnView()) {
       this.#steps.acknowledge(frame.sequence, frame.ownView);
       if (!frame.ownView) this.#unwanted = frame;
-      // Later frames of this stream would depend on the skipped frame.
+      // Later frames of this stream would depend on the skipped frame, so the decoder waits for the
+      // next key frame.
       if (frame.vp9.byteLength > 0 && frame.ownView === this.#showsOwnView) this.#video.reset();
       return;
     }

@@ -38,7 +38,8 @@ export class SessionActions {
     this.#client.send({ case: "takeControl", value: {} });
   }
 
-  // Gives control to a person. Without a person, a viewer returns control to the presenter.
+  // Gives control to a person. Without a person, a viewer returns control to the presenter, and a
+  // presenter releases it.
   giveControl(viewerId = 0n): void {
     this.#client.send({ case: "giveControl", value: { viewerId } });
   }

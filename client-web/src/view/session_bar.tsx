@@ -32,7 +32,7 @@ function Control({ page }: { page: Page }) {
   const { session } = page.state;
   if (session.steersAlone.value) return null;
   const step = controlStep(page);
-  // One button serves all actions, so that it keeps the keyboard focus.
+  // All actions share one button, so that it keeps the keyboard focus when the action changes.
   return (
     <>
       <span class="who-steers" title={whyWaiting(session)} data-testid="who-steers">

@@ -60,7 +60,7 @@ export class StormMap {
     } catch (error) {
       if (this.#asked !== asked) return;
       this.#asked = undefined;
-      // The old map belongs to another time or storm.
+      // The old map is removed, because it belongs to another time or storm.
       this.#state.stormMap.value = undefined;
       const why = error instanceof ConnectError ? error.rawMessage : String(error);
       this.#state.mapProblem.value = `The server could not send the map: ${why}`;

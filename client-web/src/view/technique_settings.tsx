@@ -1,38 +1,19 @@
 // The technique that computes the picture, and its settings.
 import { isMessage } from "@bufbuild/protobuf";
-import { nameOfPreset, nameOfTechnique, nameOfTracedLight, nameOfTransport } from "../core/names";
+import { nameOfPreset, nameOfTechnique } from "../core/names";
 import {
-  hasSetting,
-  isSettingOn,
   QUALITY_PRESETS,
   type Settings,
-  type SharedSettings,
-  settingLimits,
-  sharedSettingsOf,
   techniqueNameOf,
-  tracesLight,
-  transportOf,
+  withSetting,
   withTechnique,
-  withTransport,
 } from "../core/rendering";
-import { DEFAULTS, withPreset } from "../core/scene";
+import { withPreset } from "../core/scene";
 import type { PageState } from "../core/state";
-import {
-  CumulusSchema,
-  MetaballsSchema,
-  type OtherTechnique,
-  OtherTechniqueSchema,
-  Preset,
-  TracedLight,
-} from "../gen/thunderhead/v1/scene_pb";
+import { type TechniqueParameter, techniqueParametersOf } from "../core/technique_parameters";
+import { type OtherTechnique, OtherTechniqueSchema, Preset } from "../gen/thunderhead/v1/scene_pb";
 import type { TechniqueDescription } from "../gen/thunderhead/v1/thunderhead_pb";
 import { Choice, NumberInput, Slider, Switch } from "./controls";
-import { CumulusControls } from "./cumulus_controls";
-import { MetaballControls } from "./metaball_controls";
-
-const TRACED_LIGHTS = [TracedLight.OFF, TracedLight.AT_REST, TracedLight.AWAITED].map(
-  (tracedLight) => [tracedLight, nameOfTracedLight(tracedLight)] as const,
-);
 
 export function TechniqueSettings({ state }: { state: PageState }) {
   const settings = state.settings.value;
@@ -50,12 +31,8 @@ export function TechniqueSettings({ state }: { state: PageState }) {
       />
       <PapersChoice state={state} />
       {technique !== undefined && (
-        <MediumControls state={state} settings={settings} technique={technique} />
+        <OwnSettings state={state} settings={settings} technique={technique} />
       )}
-      {isMessage(settings, MetaballsSchema) && (
-        <MetaballControls state={state} metaballs={settings} technique={technique} />
-      )}
-      {isMessage(settings, CumulusSchema) && <CumulusControls state={state} cumulus={settings} />}
       {isMessage(settings, OtherTechniqueSchema) && (
         <OtherControls state={state} technique={settings} />
       )}
@@ -84,80 +61,46 @@ function PapersChoice({ state }: { state: PageState }) {
   );
 }
 
-interface MediumProps {
+interface OwnProps {
   readonly state: PageState;
   readonly settings: Settings;
   readonly technique: TechniqueDescription;
 }
 
-// The settings that several techniques share. Settings that this technique does not have are left
-// out.
-function MediumControls({ state, settings, technique }: MediumProps) {
-  const shared = sharedSettingsOf(settings);
-  const transport = transportOf(settings, technique);
-  const flag = (name: "perFieldPhase" | "detail" | "falseColors", label: string, testId: string) =>
-    hasSetting(settings, name) && (
-      <Switch
-        label={label}
-        testId={testId}
-        checked={isSettingOn(settings, name)}
-        onChange={(checked) => state.editSettings({ [name]: checked })}
-      />
-    );
+// The settings of the technique that have an effect.
+function OwnSettings({ state, settings, technique }: OwnProps) {
   return (
     <>
-      {transport !== undefined && (
-        <Choice
-          label="Transport"
-          testId="transport"
-          value={transport}
-          options={technique.transports.map((each) => [each, nameOfTransport(each)] as const)}
-          onChange={(chosen) =>
-            state.editRendering((rendering) => withTransport(rendering, chosen))
-          }
-        />
-      )}
-      {tracesLight(settings, technique) && (
-        <Choice
-          label="Traced light"
-          testId="traced-light"
-          value={shared.tracedLight || DEFAULTS.tracedLight}
-          options={TRACED_LIGHTS}
-          onChange={(tracedLight) => state.editSettings({ tracedLight })}
-        />
-      )}
-      {technique.hasSlices && (
-        <SettingSlider state={state} settings={settings} name="slices" label="Slices" />
-      )}
-      <SettingSlider state={state} settings={settings} name="thetaFDeg" label="Forward angle θf" />
-      {technique.showsFieldOptics &&
-        flag("perFieldPhase", "Phase function per field", "per-field-phase")}
-      {technique.showsDetail && flag("detail", "Detail finer than the grid", "detail")}
-      {technique.showsFieldOptics && flag("falseColors", "False colours", "false-colors")}
+      {techniqueParametersOf(settings, technique).map((parameter) => (
+        <OwnSetting key={parameter.fullName} state={state} parameter={parameter} />
+      ))}
     </>
   );
 }
 
-interface SettingSliderProps {
-  readonly state: PageState;
-  readonly settings: Settings;
-  readonly name: keyof SharedSettings & ("slices" | "thetaFDeg");
-  readonly label: string;
-}
-
-// A slider for a setting; empty if the technique does not have the setting.
-function SettingSlider({ state, settings, name, label }: SettingSliderProps) {
-  const limits = settingLimits(settings, name);
-  if (limits === undefined) return null;
-  return (
-    <Slider
-      label={label}
-      limits={limits}
-      value={sharedSettingsOf(settings)[name] ?? limits.defaultValue}
-      testId={name === "slices" ? "slices" : "theta-f"}
-      onChange={(value) => state.editSettings({ [name]: value })}
-    />
-  );
+function OwnSetting({ state, parameter }: { state: PageState; parameter: TechniqueParameter }) {
+  const { kind, name, setting, value } = parameter;
+  const common = { label: name, testId: `technique-${parameter.path.replaceAll("_", "-")}` };
+  const set = (next: unknown) =>
+    state.editRendering((rendering) => withSetting(rendering, setting, next));
+  if (kind === "number") {
+    return (
+      <Slider
+        {...common}
+        limits={parameter.limits}
+        value={(value as number | undefined) ?? parameter.limits.defaultValue}
+        afterRest={parameter.slow}
+        onChange={set}
+      />
+    );
+  }
+  if (kind === "flag") {
+    const checked = (value as boolean | undefined) ?? parameter.defaultOn;
+    return <Switch {...common} checked={checked} onChange={set} />;
+  }
+  if (kind !== "choice") return null;
+  const options = parameter.options.map((option) => [option.value, option.name] as const);
+  return <Choice {...common} value={value as number} options={options} onChange={set} />;
 }
 
 interface OtherProps {

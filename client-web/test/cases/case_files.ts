@@ -5,7 +5,8 @@ import type { JsonObject, JsonValue } from "@bufbuild/protobuf";
 
 const FOLDER = fileURLToPath(new URL("../../../tests/clients/cases", import.meta.url));
 
-// Numbers may differ by this share, because messages store 32-bit floats.
+// The tolerated difference of two numbers, as a fraction of the expected number. Below 1 it is
+// absolute. Messages store 32-bit floats, so results are not exact.
 const TOLERANCE = 1e-5;
 
 export interface Case {
@@ -30,8 +31,9 @@ export function caseFiles(): ReadonlyMap<string, CaseFile> {
   );
 }
 
-// The arguments of a step, or what is given before the first step. It knows which of them were
-// read, so that an argument that a runner does not know makes the test fail.
+// The arguments of one step, or the values of `given`, the state before the first step. The class
+// records which arguments were read. expectAllRead() can therefore fail for an argument that the
+// runner does not know.
 export class Arguments {
   readonly #values: JsonObject;
   readonly #read = new Set<string>();

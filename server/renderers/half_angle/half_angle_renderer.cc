@@ -28,7 +28,7 @@ constexpr int kThicknessSlices = 128;         // number of slices in SumThicknes
 constexpr int kSlabSlices = 16;
 constexpr gl::PieceCost kSlabPixel{"slab", 15.0 * kSlabSlices};
 // Path length of the light between two exchanges of light with neighbouring texels, in lengths of
-// the longest side of a cell (consistent transport only).
+// the longest side of a cell (not with the transports of the paper).
 constexpr double kExchangeInReach = 3.0;
 
 // Runs the current compute program for each texel of a rectangle.
@@ -76,7 +76,7 @@ std::size_t HalfAngleRenderer::Bytes() const {
 }
 
 void HalfAngleRenderer::Resize(const LightFrame& frame, double cell_m) {
-  // Texels finer than cells would add no detail.
+  // Texels much finer than cells would add no detail, so kBufferTexelInCells limits them.
   const double longest_m = 2.0 * std::max(frame.half_extent_m.x, frame.half_extent_m.y);
   const double texel_m = std::max(longest_m / kMaxBufferTexels, kBufferTexelInCells * cell_m);
   const glm::ivec2 light_size =
@@ -234,7 +234,8 @@ void HalfAngleRenderer::CarryThrough(const Slab& slab, const gl::Program& progra
                                      std::size_t at_once, const std::vector<SliceReach>& reach,
                                      CarriedLight* light) {
   program.Use();
-  // Light is written to layers that the pass of the last slab has read.
+  // The layers are reused for each slab. The barrier ensures that the pass of the last slab has
+  // read them before they are written again.
   glMemoryBarrier(GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   for (std::size_t first = slab.begin; first < slab.end; first += at_once) {
     const std::size_t end = std::min(first + at_once, slab.end);

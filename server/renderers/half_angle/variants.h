@@ -1,5 +1,5 @@
 // The preprocessor variants of the shaders of half-angle slicing. The variants of thickness.comp
-// are those of the medium.
+// are those of the medium. A group is a set of fields with equal optics (scene/field_groups.h).
 #pragma once
 
 #include "gl/program.h"
@@ -11,7 +11,7 @@ namespace thunderhead::renderers {
 // Preprocessor variant of half_angle/carry.comp.
 struct SliceLightVariant {
   MediumVariant medium;
-  gl::DefineValue consistent;   // 1 if the transport is consistent
+  gl::DefineValue consistent;   // 1 unless the transport is the paper's (scene::IsPaper)
   gl::DefineValue translucent;  // 1 if neighbouring texels exchange light
 
   gl::Defines Defines() const {
@@ -25,7 +25,7 @@ struct SliceEyeVariant {
   gl::DefineValue colored;      // 1 if groups have colours
   gl::DefineValue even_albedo;  // 1 if all groups have the same albedo and no colours
   gl::DefineValue translucent;
-  gl::DefineValue consistent;  // 1 if the transport is consistent
+  gl::DefineValue consistent;  // 1 unless the transport is the paper's (scene::IsPaper)
   gl::DefineValue ground;      // 1 if ground may hide a part of the medium
   SliceOrder order;
 

@@ -33,7 +33,7 @@ constexpr std::array<glm::vec2, 6> kSkySeen = {kSideSees, kSideSees,       kSide
 // Largest horizontal step of light, as a share of the medium's height. In the diffusion equation,
 // light spreads without limit through thin medium. In haze on a thick cloud it would be carried far
 // sideways, although in reality it leaves upwards after a short distance. Half or twice this value
-// changes the errors of the sample storm by 0.01 to 0.03.
+// changes the relative errors of pictures of the sample storm by 0.01 to 0.03.
 constexpr double kFarthestHop = 0.05;
 constexpr float kMinResistance = 1e-3F;
 
@@ -54,8 +54,8 @@ DiffuseLight::DiffuseLight(DiffusionCells cells)
   FindExits();
   Link();
   SolveSky();
-  // While solving for a sun, extinction is read only by number (optics_), so the values by cell are
-  // freed.
+  // From here on, extinction is read only from optics_, which is indexed by cell number. The arrays
+  // with one value for each cell of the box are therefore freed.
   cells_.light_per_m = std::vector<float>();
   cells_.transport_per_m = std::vector<float>();
   cells_.absorption_per_m = std::vector<float>();

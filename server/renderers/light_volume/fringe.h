@@ -28,7 +28,7 @@ class Fringe {
   void Spread(std::vector<Value>* values) const;
 
  private:
-  static constexpr std::size_t kAround = 27;  // including the cell itself
+  static constexpr std::size_t kAround = 27;  // a cell and its 26 neighbours
   struct Cell {
     std::int32_t cell;
     std::uint32_t neighbours;  // bit k is set if the cell at cell + around_[k] has a value

@@ -83,7 +83,7 @@ LightVolumeRenderer::LightBox::LightBox(const ResidentMedium& medium,
   const glm::dvec2 across_m = 2.0 * frame.half_extent_m;
   const int max_texels =
       std::max(static_cast<int>(kMaxLightTexels * settings.quality.light_detail), 1);
-  // Texels finer than cells would add no detail.
+  // Texels much finer than cells would add no detail, so kLightTexelInCells limits them.
   const double texel_m =
       std::max(std::max(across_m.x, across_m.y) / max_texels,
                kLightTexelInCells / settings.quality.light_detail * std::min(cell_m.x, cell_m.y));

@@ -89,7 +89,7 @@ class LightVolumeRenderer {
 
   std::shared_ptr<gl::ProgramCache> programs_;
   gl::WholeTarget whole_target_;
-  std::array<CoveredTarget, 2> eyes_;  // the second target is for chosen rays
+  std::array<CoveredTarget, 2> eyes_;  // the second target is for ChosenRays
   std::size_t drawn_ = 0;              // index of the target that the last DrawView used
   LightMedium light_medium_;
   gl::Texture3D carried_;  // light along the sun's rays

@@ -40,7 +40,7 @@ class LinkedCells {
 
  private:
   void Factor();
-  // Both functions return the dot product of `from` and `to`.
+  // Precondition and Apply compute `to` from `from`, and return the dot product of the two.
   double Precondition(const std::vector<float>& from, std::vector<float>* to) const;
   double Apply(const std::vector<float>& from, std::vector<float>* to) const;
 

@@ -1,4 +1,5 @@
-// The preprocessor variants of the light volume's shaders.
+// The preprocessor variants of the light volume's shaders. A group is a set of fields with equal
+// optics (scene/field_groups.h).
 #pragma once
 
 #include "gl/program.h"
@@ -8,7 +9,7 @@ namespace thunderhead::renderers {
 
 // Preprocessor variant of carry.comp.
 struct CarryVariant {
-  gl::DefineValue consistent;   // 1 if the transport is consistent
+  gl::DefineValue consistent;   // 1 unless the transport is the paper's (scene::IsPaper)
   gl::DefineValue translucent;  // 1 if light scattered forward continues
   gl::DefineValue diffuse;      // 1 if multiple scattering is computed in closed form
 
@@ -36,7 +37,7 @@ struct ArriveVariant {
 struct MarchVariant {
   MediumVariant medium;
   gl::DefineValue colored;      // 1 if groups have colours
-  gl::DefineValue consistent;   // 1 if the transport is consistent
+  gl::DefineValue consistent;   // 1 unless the transport is the paper's (scene::IsPaper)
   gl::DefineValue ground;       // 1 if ground may hide a part of the medium
   gl::DefineValue even_albedo;  // 1 if all groups have the same albedo and no colours
   gl::DefineValue diffusion;    // 1 if multiple scattering comes from the diffusion equation

@@ -15,9 +15,9 @@ namespace {
 // Size of a wall relative to the medium's height. It equals the largest horizontal step of light
 // (diffuse_light.cc).
 constexpr double kWallSize = 0.05;
-// A cell belongs to a wall if its transport extinction times a wall's size is at least this. Half
-// or twice this value changes the errors of the sample storm by 0.01 to 0.03
-// (docs/decisions/0009-diffusion-transport.md).
+// A cell belongs to a wall (docs/decisions/0009-diffusion-transport.md) if its transport extinction
+// times a wall's size is at least this. Half or twice this value changes the relative errors of
+// pictures of the sample storm by 0.01 to 0.03.
 constexpr double kWallDepth = 1.345;
 // Two walls nearer to each other than this may belong to the same slope. A slope is a smooth cloud
 // surface that the grid represents as steps. The limit is the larger of two lengths. The first is

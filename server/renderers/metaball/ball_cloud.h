@@ -1,6 +1,7 @@
 // A storm as metaballs for drawing. They are the fitted balls (clouds/metaballs.h) with Wyvill's
-// field function, and the share of each group in a ball's extinction. The types are plain values
-// and do not use GL.
+// field function, and the share of each group of fields in a ball's extinction. Equations are those
+// of P. Man, "Generating and Real-Time Rendering of Clouds". The types are plain values and do not
+// use GL.
 #pragma once
 
 #include <array>
@@ -13,7 +14,7 @@ namespace thunderhead::renderers {
 
 struct Ball {
   glm::dvec3 middle_m{0.0};
-  double radius_m = 1.0;          // R of Man, eq. 16
+  double radius_m = 1.0;          // R of eq. 16
   double extinction_per_m = 0.0;  // extinction at the ball's centre; at least 0
   // Share of each of the medium's groups in the ball's extinction. The shares add up to 1, or are 0
   // if the storm has no extinction in the ball.
@@ -22,7 +23,8 @@ struct Ball {
 
 struct BallCloud {
   std::vector<Ball> balls;
-  double relative_error = 0.0;  // relative error of the fit: sqrt(H / sum of squares), Man's eq. 20
+  // The fit's root mean square error, relative to the root mean square of the field (eq. 20).
+  double relative_error = 0.0;
 };
 
 // The bounding box of all balls. Without balls it is empty (low_m above high_m).

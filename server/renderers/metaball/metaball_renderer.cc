@@ -65,8 +65,9 @@ absl::Status Check(const std::vector<Ball>& balls) {
   return absl::OkStatus();
 }
 
-// Returns the factor t of Man, eq. 18: densities rho = t v. The paper does not specify t. With the
-// factor used here, the mean ball has the density 1, which is also the upper limit.
+// Returns the factor t of eq. 18 (Man, "Generating and Real-Time Rendering of Clouds"): densities
+// rho = t v. The paper does not specify t. With the factor used here, the mean ball has the density
+// 1, which is also the upper limit.
 double PaperDensityFactor(const std::vector<Ball>& balls) {
   double sum = 0.0;
   for (const Ball& ball : balls) sum += ball.extinction_per_m;

@@ -1,4 +1,5 @@
-// The preprocessor variants of the metaballs' shaders.
+// The preprocessor variants of the metaballs' shaders. A group is a set of fields with equal optics
+// (scene/field_groups.h).
 #pragma once
 
 #include "gl/program.h"

@@ -42,7 +42,7 @@ std::optional<StormPlace> PlaceAfter(const storm_store::StormChange& change,
     return StormPlace{change.after->id, static_cast<std::uint32_t>(index)};
   };
   if (time_index + 1 >= before.size()) return place(after.size() - 1);
-  // ISO 8601 strings sort in the order of their times.
+  // ISO 8601 strings sort in the order of their times, so they are compared as texts.
   const auto at = std::ranges::upper_bound(after, before[time_index].valid_time, {},
                                            &storm_store::StormTime::valid_time);
   return place(at == after.begin() ? 0 : static_cast<std::size_t>(at - after.begin()) - 1);

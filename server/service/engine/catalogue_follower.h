@@ -36,7 +36,7 @@ std::optional<StormPlace> PlaceAfter(const storm_store::StormChange& change,
 class CatalogueFollower {
  public:
   // Subscribes to the store's changes for as long as this object exists. All arguments must outlive
-  // it.
+  // this object.
   CatalogueFollower(storm_store::StormStore& store, session::Sessions& sessions,
                     const drawing::RenderLoop& loop);
   // Waits for a change that is being processed.

@@ -509,8 +509,8 @@ class InteractCall : public InteractReactor,
   std::shared_ptr<session::Session> watched_;  // the session whose frames are sent
   std::uint64_t watcher_id_ = 0;               // the viewer's id in the hub of watched_
   std::uint64_t told_doubts_ = 0;
-  // Set while a CheckAlive message is being written: the number of the doubt that it asks about
-  // (session::Person::doubts).
+  // Set while a CheckAlive message, which asks whether the person is still there, is being written.
+  // The value is the number of the doubt that caused it (session::Person::doubts).
   std::optional<std::uint64_t> asking_for_;
 };
 

@@ -15,7 +15,7 @@ namespace thunderhead::service {
 namespace {
 
 constexpr std::size_t kMaxNameCharacters = 40;
-constexpr int kParticipantKeyWords = 4;  // each of 8 hexadecimal digits
+constexpr int kParticipantKeyWords = 4;  // a key has this many words of 8 hexadecimal digits
 
 }  // namespace
 

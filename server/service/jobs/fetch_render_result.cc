@@ -84,7 +84,7 @@ class ResultFile {
     THUNDERHEAD_RETURN_IF_ERROR(Fill(chunk));
     if (AtEnd()) THUNDERHEAD_RETURN_IF_ERROR(CheckDigest());
     if (is_before && !AtEnd()) return std::nullopt;
-    if (is_before) chunk.clear();  // the offset is the file's end
+    if (is_before) chunk.clear();  // the offset is the file's end, so no bytes are sent
     if (!std::exchange(is_described_, true)) THUNDERHEAD_RETURN_IF_ERROR(Describe(response));
     return response;
   }
@@ -218,7 +218,7 @@ class ResultStream final : public ResultReactor {
 
   jobs::Jobs& jobs_;
   const ResultReading reading_;
-  const CallerRef caller_;  // holds the place of the stream in its quota
+  const CallerRef caller_;  // the stream counts towards the caller's quota while this exists
   const jobs::PicturePlace picture_;
   const std::shared_ptr<ResultFile> file_;
   v1::FetchRenderResultResponse response_;  // gRPC reads it during the write

@@ -20,7 +20,7 @@ jobs::Asker AskerOf(const access::Caller& caller);
 
 // Returns a picture as a job stores it. A scene without a storm gets the server's first storm, and
 // a scene without a time gets the storm's last time. The valid time is added. If the storm or the
-// time does not exist, this function leaves it out, and the error is found when the picture is
+// time does not exist, the valid time stays empty, and the error is found when the picture is
 // drawn.
 jobs::PictureOrder OrderOf(const storm_store::StormStore& store,
                            const v1::RenderJobPicture& picture);

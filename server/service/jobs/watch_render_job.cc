@@ -112,7 +112,7 @@ class JobStream final : public JobReactor,
   }
 
   jobs::Jobs& jobs_;
-  const CallerRef caller_;  // holds the place of the stream in its quota
+  const CallerRef caller_;  // the stream counts towards the caller's quota while this exists
   const std::string id_;
   std::shared_ptr<JobStream> held_by_grpc_;
   v1::WatchRenderJobResponse response_;  // gRPC reads it while `writing_` is set

@@ -60,7 +60,7 @@ absl::StatusOr<clouds::CloudShape> ShapeOf(const Request& request) {
   if (request.has_water_kg_per_m3()) shape.water_kg_per_m3 = request.water_kg_per_m3();
   if (request.ellipsoids_size() > 0) {
     shape.ellipsoids.clear();
-    shape.base_m.reset();  // because the preset's base belongs to the preset's ellipsoids
+    shape.base_m.reset();  // the preset's base height fits only its own ellipsoids
   }
   for (const Request::Ellipsoid& ellipsoid : request.ellipsoids()) {
     shape.ellipsoids.push_back(EllipsoidOf(ellipsoid));

@@ -164,22 +164,6 @@ TEST_F(SessionViewTest, AGestureWithLongPausesRestsLater) {
   EXPECT_TRUE(NextIs<DrawFrame>(milliseconds(610)));
 }
 
-TEST(ChangeRhythmTest, ThePauseIsTheLongestOfLateUntilTheGestureEnds) {
-  session::ChangeRhythm rhythm;
-  session::Clock::time_point now = kStart;
-  const auto after = [&](int ms) {
-    now += milliseconds(ms);
-    return std::chrono::duration_cast<milliseconds>(rhythm.Changed(now)).count();
-  };
-  EXPECT_EQ(after(0), 0);
-  EXPECT_EQ(after(40), 40);
-  EXPECT_EQ(after(200), 200);
-  EXPECT_EQ(after(40), 160);
-  EXPECT_EQ(after(40), 130);
-  EXPECT_EQ(after(701), 0) << "another gesture";
-  EXPECT_EQ(after(50), 50);
-}
-
 TEST_F(SessionViewTest, WhatAsksForAnErrorIsCheckedOnceItHasSettled) {
   scene_.accuracy = scene::MaxError{0.25};
   Change();

@@ -41,7 +41,7 @@ export interface ComparingSteps {
 }
 
 export class Comparing {
-  // The scene of picture B; undefined while no comparison is shown.
+  // The choice of what picture B shows; undefined while no comparison is shown.
   readonly choice = signal<ComparisonChoice | undefined>(undefined);
   readonly frame = signal<Frame | undefined>(undefined);
   // A text about a part of the scene that B cannot show.

@@ -22,7 +22,8 @@ import { drawMarks } from "../mark_drawing";
 import type { Notes } from "../notes";
 import { couldNotBeLoaded } from "../part";
 
-// The texts for the pictures of a file and for its name, as they were when the file was begun.
+// What is drawn over the pictures of a file, and the file's name, as they were when the file was
+// begun.
 interface Caption {
   readonly labels: Labels;
   readonly choice: AnnotationChoice;
