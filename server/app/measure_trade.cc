@@ -133,7 +133,7 @@ absl::Status MeasureTrade(const TradeFlags& flags) {
                                gl::Context::Create(flags.device));
   THUNDERHEAD_ASSIGN_OR_RETURN(
       picture::LinearPicture traced,
-      ReferenceOf(flags, local, flags.output + ".truth.exr", interruption));
+      ReferenceOf(flags, local, flags.output + ".reference.exr", interruption));
   THUNDERHEAD_ASSIGN_OR_RETURN(
       const measure::ReferenceComparison comparison,
       measure::ReferenceComparison::Of(local.scene, *local.fields, std::move(traced),
@@ -172,7 +172,7 @@ Command AddMeasureTrade(CLI::App& measure) {
   trade->add_option("STORM", flags->storm, "Storm file or folder")->required();
   trade
       ->add_option("-o,--output", flags->output,
-                   "Prefix of the files to write: .csv, .json, .svg and .truth.exr")
+                   "Prefix of the files to write: .csv, .json, .svg and .reference.exr")
       ->capture_default_str();
   AddSceneOptions(*trade, flags->scene);
   trade->add_option("--spp", flags->samples_per_pixel, "Samples per pixel of the reference")

@@ -150,6 +150,8 @@ std::string Operation::MetricsText() {
       gauges.push_back({absl::StrCat("thunderhead_", name), help, value});
     };
     add("sessions", "Sessions that are open", load.sessions);
+    add("sessions_limit", "Sessions that may be open at once (--max-sessions)",
+        static_cast<double>(flags_.sessions.max_sessions));
     add("viewers", "Connections of viewers to sessions", load.viewers);
     add("storms", "Storms in the catalogue", load.storms);
     add("storm_cache_bytes", "Fields of storms in memory", load.cached_bytes);

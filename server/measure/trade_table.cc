@@ -123,9 +123,8 @@ std::string EstimateJson(const TradeRow& row) {
 
 std::string CsvHead(const TradeTitle& title) {
   return absl::StrFormat(
-      "# storm: %s\n# view: %s\n# renderer: %s\n# size: %dx%d\n# truth: %d samples a pixel, "
-      "relative "
-      "noise %.4f\n%s\n",
+      "# storm: %s\n# view: %s\n# renderer: %s\n# size: %dx%d\n# reference: %d samples a pixel, "
+      "relative noise %.4f\n%s\n",
       title.storm, title.view, title.renderer, title.size_px.x, title.size_px.y,
       title.reference_samples_per_pixel, title.reference_noise, kColumns);
 }
@@ -165,7 +164,7 @@ absl::StatusOr<std::vector<TradeRow>> ReadCsv(std::string_view text, std::string
 std::string TradeJson(const TradeTitle& title, const std::vector<TradeRow>& rows) {
   std::string text = absl::StrFormat(
       "{\n  \"machine\": {\"renderer\": %s},\n  \"storm\": %s,\n  \"view\": %s,\n  \"width_px\": "
-      "%d,\n  \"height_px\": %d,\n  \"truth\": {\"samples_per_pixel\": %d, \"relative_noise\": "
+      "%d,\n  \"height_px\": %d,\n  \"reference\": {\"samples_per_pixel\": %d, \"relative_noise\": "
       "%.6g},\n  \"rows\": [\n",
       Quoted(title.renderer), Quoted(title.storm), Quoted(title.view), title.size_px.x,
       title.size_px.y, title.reference_samples_per_pixel, title.reference_noise);

@@ -100,7 +100,7 @@ TEST(PortsTest, ANewCertificateIsForNewConnections) {
   ASSERT_TRUE(Answers(*old));
   WriteSelfSigned(port.Certificate(), port.Key(), 2);
   const std::string renewed = ReadFile(port.Certificate());
-  // gRPC checks the files once a second.
+  // The server checks the files once a second (rpc_port/grpc_certificate.h).
   EXPECT_TRUE(WaitFor([&] { return Answers(*port.Trust(renewed)); }));
   // The connection that was open before still works.
   EXPECT_TRUE(Answers(*old));
