@@ -151,7 +151,7 @@ std::string Operation::MetricsText() {
     };
     add("sessions", "Sessions that are open", load.sessions);
     add("sessions_limit", "Sessions that may be open at once (--max-sessions)",
-        static_cast<double>(flags_.sessions.max_sessions));
+        static_cast<double>(load.max_sessions));
     add("viewers", "Connections of viewers to sessions", load.viewers);
     add("storms", "Storms in the catalogue", load.storms);
     add("storm_cache_bytes", "Fields of storms in memory", load.cached_bytes);

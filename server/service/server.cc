@@ -176,7 +176,7 @@ class RunningServer final : public Server {
   }
 
   ServerLoad Load() const override {
-    ServerLoad load;
+    ServerLoad load{.max_sessions = sessions_.max_sessions()};
     for (const auto& session : sessions_.AllDrawn()) {
       load.viewers += static_cast<int>(session->hub().Viewers());
       if (!session->IsOwnView()) ++load.sessions;

@@ -52,6 +52,7 @@ struct ServerOptions {
 // The current load of a server.
 struct ServerLoad {
   int sessions = 0;
+  std::size_t max_sessions = 0;  // sessions that may be open at once
   int viewers = 0;  // viewers of sessions' views and of their own views
   int storms = 0;
   double cached_bytes = 0.0;  // size of the storms' fields in memory

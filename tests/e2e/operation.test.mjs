@@ -64,7 +64,7 @@ test("metrics, health and logs of a server that serves and then stops", async ()
   assert.deepEqual(await server.get("healthz"), { status: 200, text: "serving\n" });
   assert.deepEqual(await server.get("readyz"), { status: 200, text: "serving\n" });
   const { text } = await server.get("metrics");
-  for (const line of [/^thunderhead_sessions 0$/m, /^thunderhead_storms 1$/m, /^thunderhead_draining 0$/m]) {
+  for (const line of [/^thunderhead_sessions 0$/m, /^thunderhead_sessions_limit [1-9]/m, /^thunderhead_storms 1$/m, /^thunderhead_draining 0$/m]) {
     assert.match(text, line);
   }
   assert.match(text, /^thunderhead_memory_bytes [1-9]/m);
