@@ -201,7 +201,7 @@ describe("a technique's settings", () => {
     expect(isSettingOn(create(CumulusSchema), "falseColors")).toBe(false);
   });
 
-  it("of traced light follow the transport", () => {
+  it("of the path-traced correction follow the transport", () => {
     const consistent = withTransport(balanced, Transport.CONSISTENT);
     expect(settingsOf(consistent)).toMatchObject({
       transport: Transport.CONSISTENT,

@@ -41,7 +41,7 @@ class CorrectorPool {
         lights_(std::move(lights)) {}
 
   // Returns the corrector for the scene, or null if there is none or the scene does not request
-  // traced light.
+  // path-traced correction.
   const LightCorrector* Find(const scene::Scene& scene,
                              const std::shared_ptr<const volume::HydrometeorFields>& fields);
 

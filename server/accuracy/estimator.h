@@ -44,9 +44,9 @@ class Estimator {
                                        const Evidence& evidence) const;
 
   // Returns the number of paths that must be traced before an image of `scene` outside any session
-  // is drawn, if the image waits for traced light. It is the smallest number with which the
-  // requested error is kept, according to the tables and the measured `errors`. The settings of
-  // `scene` must be final (Offers::Decide).
+  // is drawn, if the image waits for the path-traced correction. It is the smallest number with
+  // which the requested error is kept, according to the tables and the measured `errors`. The
+  // settings of `scene` must be final (Offers::Decide).
   std::int64_t PathsFor(const scene::Scene& scene, const MeasuredErrors& errors = {}) const;
 
  private:

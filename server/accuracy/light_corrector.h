@@ -31,7 +31,7 @@
 
 namespace thunderhead::accuracy {
 
-// Returns true if the scene requests traced light, its technique supports traced light, and at
+// Returns true if the scene requests the path-traced correction, its technique supports it, and at
 // least one field is drawn.
 bool TracesLight(const scene::Scene& scene, const volume::HydrometeorFields& fields);
 

@@ -1,4 +1,4 @@
-// The progress of path tracing a scene's light, and a claim on the traced light.
+// The progress of path tracing a scene's light, and a claim on the path-traced correction.
 #pragma once
 
 #include <algorithm>

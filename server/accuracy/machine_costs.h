@@ -38,8 +38,8 @@ class MachineCosts {
   explicit MachineCosts(const OfferTables& tables) : tables_(tables) {}
 
   // Records a frame of the view named `view`. The first frame of each technique, mode and transport
-  // in each context is ignored, with and without traced light, because its time includes the
-  // compilation of shaders.
+  // in each context is ignored, with and without path-traced correction, because its time includes
+  // the compilation of shaders.
   void Observe(const std::string& view, const MeasuredFrame& frame);
 
   // Returns the predicted time of the next frame of `view` if `first_dirty` is the first stage to

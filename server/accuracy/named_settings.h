@@ -20,7 +20,7 @@ struct Named {
 };
 
 // A technique with its simplest settings: consistent transport if the technique has several
-// transports, no detail and no traced light. Measurements start from these settings.
+// transports, no detail and no path-traced correction. Measurements start from these settings.
 struct PlainTechnique {
   std::string_view name;
   scene::Technique (*settings)();

@@ -29,7 +29,7 @@ std::string_view ViewNameOf(const scene::Camera& camera);
 
 // Returns the row that is most similar to `setting` among the rows with the same technique and
 // light model, or null if there is none. Rows with more paths than `setting` are ignored. For a
-// setting with traced light, it prefers rows with traced light.
+// setting with the path-traced correction, it prefers rows that have it too.
 const PricedSetting* NearestRow(const PricedSettings& table, const Setting& setting);
 
 // Returns the row's time in ms, scaled to the size of the scene's picture. It is scaled by the

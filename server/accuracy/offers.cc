@@ -15,9 +15,9 @@ namespace {
 // worse than the best offer by at most the factor kWorthChanging.
 constexpr double kLimitSlack = 1.1;
 constexpr double kWorthChanging = 1.25;
-// The factor by which the time of settings with traced light is multiplied in comparisons. Tracing
-// adds nothing to a frame's time, but uses the machine while the scene is at rest. Traced light
-// should be chosen only if it is clearly better than other settings.
+// The factor by which the time of settings with path-traced correction is multiplied in
+// comparisons. Tracing adds nothing to a frame's time, but uses the machine while the scene is at
+// rest. The correction should be chosen only if it is clearly better than other settings.
 constexpr double kTracingIsDearer = 1.2;
 
 // The constrained quantity, its bound, and the objective to minimise within the bound.
@@ -137,8 +137,8 @@ absl::StatusOr<scene::Scene> Offers::Decide(const scene::Scene& scene,
   scene::Scene decided = scene;
   decided.rendering.technique = WithTasteOf(scene.rendering.technique, setting.technique);
   decided.rendering.image_scale = setting.image_scale;
-  // If the requested error is reached only with traced light, the picture waits for the traced
-  // light.
+  // If the requested error is reached only with the path-traced correction, the picture waits for
+  // it.
   scene::SetTracedLight(&decided.rendering.technique, setting.million_paths > 0.0
                                                           ? scene::TracedLight::kAwaited
                                                           : scene::TracedLight::kOff);

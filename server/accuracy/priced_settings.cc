@@ -36,7 +36,7 @@ struct Fixed {
 };
 constexpr std::array<Fixed, 2> kFixed = {{{"light_detail", "1"}, {"precision", "half"}}};
 
-// An optional column. Tables without it contain only rows without traced light.
+// An optional column. Tables without it contain only rows without path-traced correction.
 constexpr absl::string_view kMillionPaths = "million_paths";
 
 bool IsFixed(absl::string_view name) {

@@ -13,7 +13,7 @@ namespace thunderhead::accuracy {
 // visible result by less than one per cent.
 inline constexpr std::int64_t kTracedPaths = 4'000'000;
 // The number of paths that are traced before an image outside any session is drawn, if the image
-// requests traced light but no maximum error.
+// requests the path-traced correction but no maximum error.
 inline constexpr std::int64_t kImagePaths = 1'000'000;
 
 struct Setting {
@@ -22,7 +22,7 @@ struct Setting {
   int jpeg_quality = scene::Output{}.jpeg_quality;
   double light_detail = 1.0;  // resolution of the light, as in renderers::DrawQuality
   bool single_precision = false;
-  double million_paths = 0.0;  // millions of paths that correct the light; 0 without traced light
+  double million_paths = 0.0;  // millions of paths that correct the light; 0 without correction
 
   bool operator==(const Setting&) const = default;
 };
@@ -31,8 +31,8 @@ struct Setting {
 // with all paths traced.
 Setting SettingOf(const scene::Scene& scene);
 
-// Returns the setting without traced light. It is used to compare costs, because traced paths add
-// nothing to a frame's cost.
+// Returns the setting without path-traced correction. It is used to compare costs, because traced
+// paths add nothing to a frame's cost.
 Setting Untraced(Setting setting);
 
 // These functions compare settings. SameModel returns true for the same technique and light model.

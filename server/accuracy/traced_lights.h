@@ -30,7 +30,7 @@ class TracedLights {
   };
 
   // Returns the correction for the scene, or nothing if there is none or the scene does not request
-  // traced light.
+  // path-traced correction.
   std::optional<Found> Find(const scene::Scene& scene, const Fields& fields);
 
   // A scene whose light is being traced, and its correction. The tracing thread owns this object.

@@ -88,7 +88,7 @@ absl::StatusOr<v1::RenderImageResponse> CallHere(const RenderFlags& flags,
 }
 
 // Prints the setting and the error. It does so only if the scene asks for an accuracy, a speed or
-// traced light, or if the error was measured.
+// path-traced correction, or if the error was measured.
 void PrintAccuracy(const v1::RenderImageResponse& response) {
   const v1::Scene& scene = response.scene();
   const bool awaited = scene.rendering().light_volume().traced_light() == v1::TRACED_LIGHT_AWAITED;

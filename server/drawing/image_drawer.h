@@ -1,6 +1,6 @@
 // Gives the pictures of an ImageQueue to workers, which draw them alongside the render loop. A
-// picture that waits for traced light does not occupy a worker meanwhile. Used by the render loop's
-// thread only.
+// picture that waits for the path-traced correction does not occupy a worker meanwhile. Used by the
+// render loop's thread only.
 #pragma once
 
 #include <cstddef>

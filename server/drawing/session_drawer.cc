@@ -377,7 +377,7 @@ SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const TraceLight& work
         news->status(), absl::StrCat("tracing the light of storm ", work.shown.scene->storm_id)));
     turn.kept.view.LightFailed();
     turn.kept.not_shown = {scene::NotShown::Code::kTracedLight,
-                           absl::StrCat("traced light: ", news->status().message())};
+                           absl::StrCat("path-traced correction: ", news->status().message())};
   }
   const ShowLight show{work.shown};
   turn.kept.work = show;  // `work` is invalid from here on

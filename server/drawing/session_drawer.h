@@ -53,9 +53,9 @@ class SessionDrawer {
   void TakeDrawn(const std::vector<std::shared_ptr<session::Session>>& sessions);
 
   // Frees memory when it is scarce. Drops the frames of `sessions` without viewers. Sessions whose
-  // pictures are final, or lack only traced light, release their fields and trace no light for a
-  // while. If memory for another session's fields was refused, sessions whose pictures are still
-  // being refined do the same.
+  // pictures are final, or lack only the path-traced correction, release their fields and trace no
+  // light for a while. If memory for another session's fields was refused, sessions whose pictures
+  // are still being refined do the same.
   void YieldMemory(const std::vector<std::shared_ptr<session::Session>>& sessions);
 
   // Forgets which frame the worker's source drew last, because the device was replaced.

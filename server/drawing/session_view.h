@@ -112,9 +112,9 @@ class SessionView {
   // Returns true once when the failed revision may be retried. The retry is then the next work.
   bool TriesAgain(session::Clock::time_point now);
   // Called when memory is scarce. Returns true if the view now releases its fields and light for a
-  // while. It does so if its picture is final, or lacks only traced light. If memory for the fields
-  // of other sessions was refused (`others_lack_pictures`), any shown picture of the scene
-  // suffices.
+  // while. It does so if its picture is final, or lacks only the path-traced correction. If memory
+  // for the fields of other sessions was refused (`others_lack_pictures`), any shown picture of the
+  // scene suffices.
   bool Yield(session::Clock::time_point now, bool others_lack_pictures);
   // If the view stays yielded, returns the time at which to ask again, or WaitUntil without a time
   // if only a change of the scene ends this state. Returns none if `decided` must be drawn.

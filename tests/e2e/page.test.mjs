@@ -171,7 +171,7 @@ test("a fresh page is balanced: diffusion with detail", async () => {
   assert.equal(await page.getByTestId("field-cloud-color").count(), 0, "no colours that are not shown");
 });
 
-test("traced light corrects the picture while it rests, and stays when it turns", async () => {
+test("path tracing corrects the picture while it rests, and stays when it turns", async () => {
   const paths = await pathsBeyond(await pathsBeyond(0));
   const readout = () => page.getByTestId("traced-paths").textContent();
   await until("the readout's number of paths", async () => Number.parseFloat(await readout()) > 0);

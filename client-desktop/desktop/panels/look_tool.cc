@@ -27,9 +27,9 @@ std::string WordsOf(const v1::Scene& scene, v1::Preset preset) {
     case v1::PRESET_FAST:
       return "Fewer samples and no fine detail.";
     case v1::PRESET_BALANCED:
-      return "Fine detail; traced light while it rests.";
+      return "Fine detail; path-traced correction while it rests.";
     case v1::PRESET_ACCURATE:
-      return "Four times the samples of Balanced; files wait for traced light.";
+      return "Four times the samples of Balanced; files wait for the path-traced correction.";
     case v1::PRESET_UNSPECIFIED:
       return scene.accuracy().limit_case() == v1::Accuracy::LIMIT_NOT_SET
                  ? "Custom: as set under Every setting (X)."

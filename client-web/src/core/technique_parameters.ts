@@ -46,6 +46,7 @@ const EFFECTIVE: Readonly<Record<string, Condition>> = {
 };
 
 const LABELS: Readonly<Record<string, string>> = {
+  tracedLight: "Path-traced correction",
   thetaFDeg: "Forward angle θf",
   perFieldPhase: "Phase function per field",
   detail: "Detail finer than the grid",

@@ -134,7 +134,7 @@ export function DrawnBy({ state }: { state: PageState }) {
   if (report === undefined) return null;
   const { settings, name, technique, hasSlices } = drawnBy(state, report);
   const words = [nameOfTechnique(name), ...settingsInWords(settings, technique)];
-  if ((state.frame.value?.modelled?.tracedPaths ?? 0n) > 0n) words.push("traced light");
+  if ((state.frame.value?.modelled?.tracedPaths ?? 0n) > 0n) words.push("path-traced correction");
   if (hasSlices) words.push(`${report.slices} slices`);
   if (settings !== undefined && isMessage(settings, MetaballsSchema))
     words.push(`${report.slices} balls`);

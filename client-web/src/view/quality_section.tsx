@@ -9,11 +9,15 @@ import { TechniqueSettings } from "./technique_settings";
 
 const QUALITIES = [
   [Preset.FAST, nameOfPreset(Preset.FAST), "Fewer samples and no fine detail."],
-  [Preset.BALANCED, nameOfPreset(Preset.BALANCED), "Fine detail; traced light while it rests."],
+  [
+    Preset.BALANCED,
+    nameOfPreset(Preset.BALANCED),
+    "Fine detail; path-traced correction while it rests.",
+  ],
   [
     Preset.ACCURATE,
     nameOfPreset(Preset.ACCURATE),
-    "Four times the samples of Balanced; files wait for traced light.",
+    "Four times the samples of Balanced; files wait for the path-traced correction.",
   ],
 ] as const;
 
