@@ -99,7 +99,7 @@ TEST_F(SceneRendererTest, WaterPathsThatWereKeptQuicklyAreKeptInFullAtRest) {
   test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
   DrawQuality moving;
   moving.quick_water_paths = true;
-  // Without detail there are no water paths to keep.
+  // Without detail there are no water paths to keep, so the frame at rest needs no new extinction.
   StagesOf(moving);
   EXPECT_THAT(StagesOf(), ElementsAre("view", "air", "composite"));
   scene::MediumSettingsOf(&scene_.rendering.technique)->look.detail = true;
@@ -404,7 +404,8 @@ TEST_F(GroundTest, SlopesAreLitByTheSunsAngleToThem) {
   scene_.fields[0].visible = false;
   const float level = At(Pixels(renderer_.get()), 0.0, 0.0);
   // The terrain rises to the east by one in four, so the sun in the west is at 45 + 14 degrees from
-  // it. The terrain is a few hundred metres high: 4 % of a scale height of air.
+  // it. The terrain there is only 500 m high, so the air above it dims its light almost as much as
+  // that of level ground.
   SetTerrain([](double east_m, double) { return 500.0 + east_m / 4.0; });
   const double facing = std::sin(std::numbers::pi / 4 + std::atan(0.25));
   EXPECT_NEAR(At(Pixels(renderer_.get()), 0.0, 0.0) / level / (facing * std::sqrt(2.0)), 1.0, 0.01);

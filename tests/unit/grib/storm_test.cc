@@ -209,7 +209,8 @@ TEST_F(GribStormTest, ReadsAWholeFile) {
   EXPECT_NEAR(PathAt(*fields, 1, 0), mass * 8 / 16384, 0.002 * mass * 8 / 16384);
 }
 
-// Air has from 100 to 400 K. In other levels, the cells are missing.
+// Air temperatures must be from 100 to 400 K. If a level has other temperatures, its cells are
+// missing.
 TEST_F(GribStormTest, LeavesOutImpossibleTemperatures) {
   Layout layout;
   layout.edit = [](Message& message) {
@@ -424,7 +425,7 @@ TEST_F(GribStormTest, NamesTheMemberThatIsIncomplete) {
                         "missing"));
   EXPECT_THAT(ErrorOf(DescribeAlone(Write("c", FileOf({}) + FileOf({})))),
               HasSubstr("is there twice at hybrid level 1"));
-  // Temperature of another run is no temperature of this one.
+  // The temperature of another run must not be used for this run.
   const std::string other =
       FileOf({.hour = 18, .edit = [](Message& message) { return message.category == 0; }});
   EXPECT_THAT(ErrorOf(DescribeAlone(Write("a", FileOf({}) + other))),
@@ -496,7 +497,8 @@ TEST_F(GribStormTest, NamesALevelThatOnlyCoefficientsHave) {
   of_five.insert(of_five.begin(), 0.0F);
   of_five.push_back(0.0F);
   EXPECT_THAT(error(of_five), HasSubstr("every field of hybrid level 5 is missing"));
-  // Other models write other numbers there.
+  // Other models write other numbers in place of coefficients. These numbers do not say how many
+  // levels there are.
   of_five.back() = 273.15F;
   EXPECT_EQ(error(of_five), "");
 }

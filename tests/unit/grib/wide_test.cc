@@ -184,14 +184,14 @@ volume::MapProjection MapOf(const StormFile& file) {
   return *std::move(map);
 }
 
-// World coordinates of a column of the storm.
+// Returns the world coordinates of a column of the storm.
 glm::dvec2 WorldOf(const StormFile& file, const glm::dvec2& column) {
   return (column - 0.5 * glm::dvec2(file.cells.x - 1, file.cells.y - 1)) *
          glm::dvec2(file.dx_m, file.dy_m);
 }
 
-// The least and the largest length on the storm's map as a share of the true length, by one-column
-// steps of the model at places all over the domain.
+// Returns the least and the largest ratio of a length on the storm's map to the true length. The
+// lengths are steps of one column of the model, at places all over the domain.
 std::pair<double, double> ScalesOn(const StormFile& file, const Domain& domain) {
   const volume::MapProjection map = MapOf(file);
   std::pair<double, double> scales(1.0, 1.0);

@@ -114,7 +114,8 @@ class StormExportTest : public ::testing::Test {
   const std::string path_ = folder_.File("storm.vdb");
 };
 
-// Returns the value that the file should hold, from the optics of the paper's eq. 4 alone.
+// Returns the value that the file should hold, computed by eq. 4 of Riley et al. 2003
+// (physics/hydrometeors.h) alone.
 double ExtinctionOf(const HydrometeorField& field, std::size_t cell) {
   const physics::ParticleOptics& optics = physics::DefaultOptics(field.hydrometeor);
   return 1.5 /

@@ -97,7 +97,8 @@ SyntheticCf Cmip(std::size_t cloudy) {
   return file;
 }
 
-// The path is density times thickness in air of 280 K at rest.
+// Returns the water path of a layer, which is its density times its thickness in air of 280 K at
+// rest.
 double PathBetween(double low_Pa, double high_Pa, double middle_Pa) {
   const double thick_m = kGas_J_per_kg_K * kAir_K / kGravity_m_per_s2 * std::log(low_Pa / high_Pa);
   return 1e-4 * middle_Pa / (kGas_J_per_kg_K * kAir_K) * thick_m;

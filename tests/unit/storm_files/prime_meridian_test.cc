@@ -109,7 +109,7 @@ TEST_F(PrimeMeridian, MayBeAName) {
   ExpectError(file,
               "the grid mapping crs has prime_meridian_name 'Ys', which is not known; add "
               "longitude_of_prime_meridian");
-  // The number counts if there are both.
+  // If the mapping has both a name and a number of its prime meridian, the number is used.
   file.number_attributes["crs"] = {{"longitude_of_prime_meridian", 5.0}};
   EXPECT_NEAR(LongitudeOf(file), 15.0, 1e-6);
   file.number_attributes["crs"] = {{"longitude_of_prime_meridian", 400.0}};
@@ -180,8 +180,8 @@ TEST_F(PrimeMeridian, MovesEveryProjection) {
   }
 }
 
-// A mapping of longitudes and latitudes, and one that is named for them, is the datum of longitudes
-// of all columns.
+// If each column has its longitude, the prime meridian is taken from a grid mapping of longitudes
+// and latitudes, or from the mapping that the field names for these coordinates.
 TEST_F(PrimeMeridian, MovesLongitudesOfAllColumns) {
   SyntheticCf file = Cloud();
   file.coordinates[0].written = false;
