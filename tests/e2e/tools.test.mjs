@@ -59,7 +59,7 @@ before(async () => {
   page = await context.newPage();
   listenForErrors(page, complaints);
   await page.goto(server.url);
-  // Pictures of the default quality change while they rest.
+  // The tests use the quality Fast, because pictures of the default quality change while they rest.
   await openTool(page, "look");
   await chooseQuality(page, "Fast");
   await rested(page);
@@ -314,7 +314,7 @@ test("Ctrl+Z takes a change back, Ctrl+Y does it again", async () => {
   const exposure = () => page.getByTestId("exposure-number").inputValue();
   const automatic = page.getByTestId("automatic-exposure");
   assert.ok(await automatic.isChecked());
-  // Changes that closely follow each other are undone together.
+  // Changes that closely follow each other are undone together, so the page's clock advances before each change.
   await passTime(page, GESTURE_MS);
   await changing(() => setNumber(page, "exposure", 1.5), page);
   await passTime(page, GESTURE_MS);

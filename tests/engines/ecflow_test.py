@@ -76,7 +76,7 @@ class Ecflow(EngineTest):
         draw = "/thunderhead/shares/0/draw"
 
         def gave_up() -> bool:
-            # Reads one answer, because the task may be submitted again before the next.
+            # All values are from one answer, because the task may be submitted again before the next answer.
             task = self.node(draw)
             return "state:aborted" in task and "try:3" in task and "thunderhead ended with 75" in task
         self.wait_for("tasks that gave up", gave_up)

@@ -183,8 +183,9 @@ TEST_F(MetaballTest, ABallScattersByThePhaseFunctionsOfItsShares) {
 }
 
 TEST_F(MetaballTest, LightThatABallTakesIsLightThatItHas) {
-  // A ball lit and seen by parallel rays scatters (1 - exp(-d)) of its light in the mean over all
-  // pixels, however thick it is. What it shows is that mean, weighted by its own matter.
+  // Parallel light falls on the ball. Of the light of a pixel with optical depth d, the ball takes
+  // the share 1 - exp(-d), however thick it is. The light taken from all pixels is distributed over
+  // the ball in proportion to its matter.
   for (const double depth : {0.1, 2.0, 50.0}) {
     const std::vector<float> pixels = Draw({At({0.0, 0.0, 5000.0}, 1000.0, depth / 1000.0)});
     double taken = 0.0;
@@ -569,7 +570,8 @@ TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
   EXPECT_GT(frame.content.fit_error, 0.0);
   EXPECT_LT(frame.content.fit_error, 0.5);
   EXPECT_EQ(frame.slices, 0);
-  // The metaballs' noise stands for turbulent detail.
+  // The noise on the metaballs replaces turbulent detail, so only other fine structure is reported
+  // as missing.
   EXPECT_THAT(NotShown(frame),
               ElementsAre("structure finer than the metaballs, except noise on their surfaces"));
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
@@ -656,7 +658,7 @@ TEST(BallFits, KeepsWhatItsStormAndOpticsAskFor) {
   ASSERT_TRUE(first.ok()) << first.status();
   EXPECT_TRUE(fits.Has(scene, fields));
   EXPECT_EQ(*fits.Get(scene, fields), *first);
-  // This is another storm, although it is similar.
+  // A similar storm is still another storm, so its fit is not known.
   EXPECT_FALSE(fits.Has(scene, support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0)));
   scene::Scene thinner = scene;
   thinner.fields[0].scale = 0.5F;

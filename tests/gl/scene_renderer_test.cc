@@ -610,13 +610,14 @@ TEST_F(ToneMapTest, FilmHasContrastAToeAndAShoulder) {
     const double coded = Map(grey).rgb[1] / 255.0;
     return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
   };
-  // The curve itself has a slope of 1 here, so the rest is contrast.
+  // The tone curve itself has a slope of 1 at these values, so the slope of 1.25 comes from the
+  // film's contrast.
   EXPECT_NEAR(std::log2(shown(0.62F) / shown(0.4F)) / std::log2(0.62 / 0.4), 1.25, 0.03);
   EXPECT_NEAR(shown(frame::kJustBelowWhite), 0.9, 0.01);
   // On the shoulder, values above "just below white" are brighter but not clipped at once.
   EXPECT_GT(shown(1.5F), shown(1.0F));
   EXPECT_LT(shown(1.5F), 0.999);
-  EXPECT_LT(shown(0.04F), 0.5 * shown(0.08F) * std::exp2(-0.35));  // the toe is steeper still
+  EXPECT_LT(shown(0.04F), 0.5 * shown(0.08F) * std::exp2(-0.35));  // the toe is steeper than this
   EXPECT_GT(shown(0.02F), 0.0);
 }
 

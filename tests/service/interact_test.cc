@@ -700,7 +700,7 @@ TEST(InteractTest, WhoIsRefusedAViewOfTheirOwnGoesOnFollowing) {
   }));
 }
 
-// A class whose session changes to a time that is being read until the gate opens. Ana has
+// A class whose session changes to another time, which is read until the gate opens. Ana has
 // requested a view from a place that depends on the storm at that time.
 struct SlowlyLeaving : Class {
   SlowlyLeaving() {

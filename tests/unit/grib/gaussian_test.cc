@@ -1,5 +1,5 @@
-// Tests of Gaussian grids (template 3.40), regular and reduced. Their latitudes come from ecCodes,
-// of which the reader uses none.
+// Tests of Gaussian grids (template 3.40), regular and reduced. The expected latitudes come from
+// ecCodes, which the reader does not use for them.
 #include <eccodes.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -76,7 +76,7 @@ struct Gaussian {
     return places;
   }
 
-  // The distance in longitude of a point to the next.
+  // Returns the distance in longitude from a point to the next.
   double StepAt_deg(const volume::EarthPlace& place) const {
     if (around.empty()) return Step_deg();
     const std::vector<double>& latitudes = LatitudesOfEccodes(parallels);

@@ -339,7 +339,7 @@ TEST_P(GribWind, TurnsWithTheGrid) {
               0.01);
 }
 
-// Without the heights of half levels, ICON's levels have no place.
+// Without the heights of half levels, the heights of ICON's levels are not known.
 TEST(GribParts, NameWhatIsMissing) {
   const StormFormats formats = StormFormats::BuiltIn();
   Time time = TimeOf("icon-d2-like", 0);

@@ -291,7 +291,8 @@ TEST_F(StormExportTest, DetailIsThatOfTheDrawnMedium) {
 }
 
 // Sums the storm over fields that are drawn as one group. They share the factors of their columns,
-// so graupel alone has 4 % more. Single columns are kept as far as volume/water_paths.h can.
+// so graupel alone has 4 % more. Detail keeps the water of single columns only as far as
+// volume/water_paths.h says.
 TEST_F(StormExportTest, DetailKeepsTheWaterOfTheSample) {
   const auto store =
       *storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});

@@ -147,7 +147,7 @@ TEST_F(CfFormula, ASingleLayerNeedsBoundsOfItsTerms) {
   ExpectError(file, "has one layer, and its terms have no bounds");
 }
 
-// The names of CAM's history files. Q is per mass of moist air.
+// Returns a file with the names of CAM's history files, in which Q is per mass of moist air.
 SyntheticCf Cam(bool with_terms) {
   SyntheticCf file = Cmip(2);
   constexpr double kReference_Pa = 1e5;
@@ -237,7 +237,7 @@ TEST_F(CfFormula, TermsOnAnotherDimensionFollowTheNumbersOfLevels) {
   ExpectError(file, "lies on another dimension than lev");
 }
 
-// CM1's coordinates. The ground is at 400 m, and the nominal top at 2000 m.
+// Returns a file with CM1's coordinates. The ground is at 400 m, and the nominal top at 2000 m.
 SyntheticCf Cm1() {
   SyntheticCf file;
   file.coordinates = {{"xh", {-2.5, -1.5, -0.5, 0.5, 1.5, 2.5}, {{"units", "km"}}, {}},

@@ -62,7 +62,8 @@ TEST_F(CfLayouts, TerrainLiesInAnyOrderOfDimensions) {
 
 TEST_F(CfLayouts, HeightIsAboveTheSurfaceAndAltitudeAboveSeaLevel) {
   SyntheticCf file = Cloud();
-  // Cloud in all layers up to 2 km, of which the lowest three are below the ground as altitudes.
+  // There is cloud in all layers up to 2 km. If their heights are altitudes, the lowest three
+  // layers are below the ground.
   file.variables[0].value = [](const Index&) { return 1e-4; };
   file.variables.push_back(Terrain({"y", "x"}));
   file.variables.back().value = [](const Index&) { return 1500.0; };

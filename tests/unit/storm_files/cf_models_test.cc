@@ -283,7 +283,7 @@ TEST_F(CfModels, MesoNhLevelsFollowTheTerrain) {
   const auto fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_FLOAT_EQ((*fields)->terrain_height_m[0], 1000.0F);
-  // A layer of 500 m is thinner above high ground, by 1 - ZS / ZTOP.
+  // A layer of 500 m is thinner above high ground, by the factor 1 - ZS / ZTOP.
   const double path = 5e-4 * 100'000.0 / (kModelGas_J_per_kg_K * 300.0) * kModelThickness_m;
   const volume::FieldStatistics& statistics = (*fields)->fields[0].statistics;
   EXPECT_NEAR(statistics.maximum_water_path_kg_per_m2, path, 2e-3 * path);

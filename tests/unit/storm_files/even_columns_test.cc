@@ -249,7 +249,8 @@ TEST(EvenColumns, KeepsASmallLongitudeLatitudeGrid) {
   EXPECT_THAT(even->projection, HasSubstr("+proj=eqc"));
 }
 
-// A grid that is even but turned is not a grid of eastings and northings.
+// The columns of a turned grid are even, but its axes do not point east and north, so the columns
+// are resampled to axes that do.
 TEST(EvenColumns, TurnsListedColumnsNorthUp) {
   const EarthPlace middle{40.0, 5.0};
   Model turned;

@@ -143,7 +143,8 @@ TEST_F(PrimeMeridian, MovesRotatedGrids) {
   EXPECT_NEAR(*info_.latitude_deg, 50.98145, 1e-3);
 }
 
-// Each mapping with its central meridian at 8 degrees has its middle there.
+// The middle of the domain is on the central meridian of each mapping, which is 8 degrees from the
+// prime meridian.
 TEST_F(PrimeMeridian, MovesEveryProjection) {
   struct Mapping {
     const char* name;
