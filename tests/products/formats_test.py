@@ -47,7 +47,8 @@ VIEWS = {
 
 class Source:
     """The sample storm's columns: mixing ratios per kg of dry air, and the state of the air. In the arrays, x runs
-    fastest, and levels run upwards."""
+    fastest, and levels run upwards.
+    """
 
     def __init__(self) -> None:
         with netCDF4.Dataset(SAMPLE) as file:
@@ -167,7 +168,8 @@ def packed(values: numpy.ndarray) -> tuple[bytes, bytes]:
 
 def write_grib(source: Source, path: pathlib.Path, centre: int) -> None:
     """Writes the layout of ICON (centre 78: half levels, per kg of the whole air) or HRRR (7: levels, per kg of dry
-    air)."""
+    air).
+    """
     icon = centre == 78
     micro = 1_000_000
     grid = section(
@@ -218,7 +220,8 @@ def write_grib(source: Source, path: pathlib.Path, centre: int) -> None:
 
 def radiance(path: pathlib.Path) -> numpy.ndarray:
     """Returns R, G and B of an OpenEXR file (32-bit floats in scan lines, ZIP compression) as rows, columns,
-    colours."""
+    colours.
+    """
     data = path.read_bytes()
     at = 8
     header = {}
@@ -260,7 +263,8 @@ def radiance(path: pathlib.Path) -> numpy.ndarray:
 
 def relative_rmse(image: numpy.ndarray, reference: numpy.ndarray) -> float:
     """Returns the root mean square difference over pixels and colours, divided by the mean radiance, as in
-    docs/accuracy."""
+    docs/accuracy.
+    """
     return float(numpy.sqrt(numpy.mean((image - reference) ** 2)) / numpy.mean(reference))
 
 
