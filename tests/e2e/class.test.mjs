@@ -24,7 +24,8 @@ import { difference, grabCanvas } from "./pictures.mjs";
 import { textOfCode } from "./qr.mjs";
 import { countSceneUpdates } from "./socket_messages.mjs";
 
-// The tolerance is half a pixel on either side, plus the rounding of the overlay's numbers.
+// Two places count as the same within this distance: half a pixel of error for each of them, plus the rounding of the
+// overlay's numbers.
 const SAME_PLACE_PX = 2;
 
 const room = new ClassRoom();
@@ -389,7 +390,7 @@ test("following locked, a student's drag does nothing but hint", async () => {
   const before = await azimuthOf(student);
   await turn(student, 120);
   await student.getByText("has locked the view").waitFor();
-  // A later picture also shows the same view.
+  // The student's view stays unchanged in the next picture, too.
   await changing(() => setNumber(teacher, "exposure", -1.2), teacher);
   await room.inStep(student);
   assert.equal(await azimuthOf(student), before);
@@ -454,7 +455,7 @@ test("the teacher reloads by accident and loses nothing", async () => {
   await openTool(teacher, "look");
   const { data: after } = await grabRestingFrame(teacher);
   assert.equal(after.azimuth, before.azimuth);
-  // The page sends its size again, and receives one more frame.
+  // After the reload the page sends its size again, so one more frame may follow before the picture is as before.
   await until("the picture as before", async () => difference(picture, await grabCanvas(teacher)) < 0.5);
   assert.equal(await exposure(teacher).inputValue(), "-0.5");
   assert.equal(await marksOn(teacher), 1);

@@ -91,8 +91,8 @@ for (const [how, fail] of Object.entries({
 
 const people = async () => Number((await teacher.getByTestId("people").innerText()).match(/\d+/)[0]);
 
-// The student has control, has drawn a line and set the exposure. The student sets it again just after the connection
-// has been lost silently. Neither the server nor the page can detect the loss for a while.
+// The student has control, has drawn a line and set the exposure. Just after the connection has been lost silently, the
+// student sets the exposure again. Neither the server nor the page can detect the loss for a while.
 async function loseWhileSteering(far, link) {
   await teacher.getByTestId("people").click();
   await teacher.getByRole("button", { name: "Give control to Ada" }).click();
@@ -143,11 +143,11 @@ test("a student who steers is lost without a word, comes back before control is 
 test("a student who steers is lost for longer: the teacher is told and has control, and the student learns what became of the change", () =>
   withFarStudent(async (far, link) => {
     await loseWhileSteering(far, link);
-    // The server detects the loss by its pings of 15 s, on the real clock.
+    // The server detects the loss by its pings, which it sends every 15 s by the real clock.
     for (const page of [teacher, student])
       await until("a steerer who is gone", async () => (await said(page)) === "Waiting for Ada to come back");
     assert.equal(await people(), 2);
-    // Asking does not give control meanwhile.
+    // While the server waits for Ada, another student who asks for control does not get it.
     assert.equal(await controlLabel(student), "Ask to steer");
     assert.match(await student.getByTestId("edit-block").innerText(), /Control waits for Ada to come back/);
     await room.whileWaiting({ come_back: 0 }, () => teacher.getByTestId("let-go").waitFor());

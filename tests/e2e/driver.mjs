@@ -21,8 +21,8 @@ export const HANG_MS = 600_000;
 export const PICTURE_TIMEOUT_MS = HANG_MS;
 const POLL_MS = 50;
 
-// Few pixels, because the server and the browser draw in software. The layout is that of the viewport, whatever this
-// is. A test of the picture's size gives its own.
+// The ratio is small, because the server and the browser draw in software, which is slow. It does not change the page's
+// layout. A test of the picture's size sets its own ratio.
 const PIXELS_PER_CSS_PIXEL = 0.5;
 
 // Starts a browser. Every wait of its pages ends after HANG_MS.
@@ -50,7 +50,7 @@ export function listenForErrors(page, complaints) {
 export const screenshot = (name, page) => page.screenshot({ path: `${OUTPUT}${name}.png` });
 
 // Returns the data that the page reports about a picture on a canvas, and the canvas's size. `boxSize` is the size that
-// the page's layout gives it.
+// the page's layout gives the canvas.
 const dataOf = (canvas) => {
   const box = [canvas.clientWidth, canvas.clientHeight].map((length) => Math.max(1, Math.round(length * devicePixelRatio)));
   return { ...canvas.dataset, canvasSize: `${canvas.width}x${canvas.height}`, boxSize: box.join("x") };

@@ -20,7 +20,8 @@ let browser;
 let fast;
 
 before(async () => {
-  // Each visit opens a session, and each comparison opens a second session.
+  // The tests need more sessions than the server allows a client by default: each visit opens a session, and each
+  // comparison opens a second one.
   const more = ["--max-sessions-each", "64"];
   server = await startServer({ httpPort: await freePort(), grpcPort: await freePort(), more });
   browser = await launchBrowser();

@@ -99,7 +99,7 @@ test("metrics, health and logs of a server that serves and then stops", async ()
 test("SIGTERM ends a server that still reads its storms", async () => {
   const folder = mkdtempSync(join(ROOT, "build", "starting-"));
   try {
-    // Each file takes some 20 ms to read.
+    // Each file takes some 20 ms to read, so the server is still busy with these files when it gets the signal.
     for (let i = 0; i < 1500; i += 1) linkSync(join(ROOT, "samples", "supercell.nc"), join(folder, `storm${i}.nc`));
     const ports = ["--http", `127.0.0.1:${await freePort()}`, "--grpc", `127.0.0.1:${await freePort()}`];
     const child = spawn(BINARY, ["serve", "--data", folder, "--state", "none", ...ports]);

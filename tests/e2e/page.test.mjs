@@ -314,7 +314,7 @@ test("a field switched off goes, and with the last one the storm", async () => {
     await tool("map");
     await page.getByTestId("home").click();
     await tool("look");
-    // Automatic exposure would follow the remaining part of the storm.
+    // The exposure is fixed, because automatic exposure would adapt to the fields that are still shown.
     await setNumber(page, "exposure", 0);
   });
   await tool("fields");
@@ -371,7 +371,8 @@ test("the reference refines the picture while it rests, and begins again when it
   await unfoldSettings();
   await page.getByTestId("technique-choice").selectOption({ label: "Monte Carlo reference" });
   const refinement = () => page.getByTestId("refinement").evaluate((text) => ({ ...text.dataset }));
-  // The first, smallest pictures gather samples quickly. Larger pictures start again.
+  // The server starts with small pictures, which gather samples quickly. Each larger picture starts again without
+  // samples.
   const reached = (samples) =>
     page.waitForFunction((least) => {
       const text = document.querySelector("[data-testid=refinement]");

@@ -63,8 +63,8 @@ before(async () => {
   await chooseQuality(page, "Fast");
   await openTool(page, undefined);
   await rested(page);
-  // The test leaves the last time, which is the last in both runs. The previous valid time has a different index in
-  // each run.
+  // The test goes to the previous valid time, which has a different index in each run. The last time would be the last
+  // one in both runs.
   await changing(() => key(","), page);
 });
 

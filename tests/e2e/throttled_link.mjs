@@ -52,7 +52,7 @@ function carry(from, to, bytesPerMs, delayMs, link, pair) {
 // - close: closes the link.
 export async function throttledLink({ port, kbitPerS, roundTripMs }) {
   const sockets = new Set();
-  // Connections from end to end.
+  // Each connection from a client to the server consists of two sockets.
   const pairs = new Set();
   const link = { cut: false, silent: false };
   const breakAll = () => {

@@ -33,7 +33,7 @@ import { blockDifference, difference, grabCanvas, greyShare, shareOfChange, spre
 import { BINARY, freePort, startServer } from "./server_process.mjs";
 
 const SAMPLE = fileURLToPath(new URL("../../samples/supercell.nc", import.meta.url));
-// With a tool open, the picture has even sides, like a movie's.
+// With this window and an open tool, the picture has an even width and height, as movies must have.
 const VIEWPORT = { width: 1002, height: 620 };
 // Pictures have a quarter of the window's pixels: they cost less, and the page's layout is the same.
 const WINDOW = { viewport: VIEWPORT };
@@ -59,7 +59,7 @@ before(async () => {
   page = await context.newPage();
   listenForErrors(page, complaints);
   await page.goto(server.url);
-  // Pictures of the default quality change while they rest.
+  // The tests use the quality Fast, because pictures of the default quality change while they rest.
   await openTool(page, "look");
   await chooseQuality(page, "Fast");
   await rested(page);
@@ -228,7 +228,7 @@ test("a click on the map stands there, a drag from there looks, a double click t
   assert.ok(Math.hypot(aside, down) < 8, `the camera is ${aside}, ${down} pixels from where the click was`);
   const scale = await page.getByTestId("map-scale").boundingBox();
   assert.ok(scale.x > x + width / 2, "the scale bar makes way for the camera");
-  // The drag makes the camera look to where it ends: to the west.
+  // A drag turns the camera towards the point where the drag ends. Here this point is west of the camera.
   const stands = { x: x + 0.3 * width, y: y + 0.75 * height };
   await changing(() => dragBetween(page, stands, { x: stands.x - 0.2 * width, y: stands.y }), page);
   await until("the view to the west", async () => /Looks to W \(2(6[5-9]|7[0-5])°\)/.test(await text("camera")));
@@ -314,7 +314,7 @@ test("Ctrl+Z takes a change back, Ctrl+Y does it again", async () => {
   const exposure = () => page.getByTestId("exposure-number").inputValue();
   const automatic = page.getByTestId("automatic-exposure");
   assert.ok(await automatic.isChecked());
-  // Changes that closely follow each other are undone together.
+  // Changes that closely follow each other are undone together, so the page's clock advances before each change.
   await passTime(page, GESTURE_MS);
   await changing(() => setNumber(page, "exposure", 1.5), page);
   await passTime(page, GESTURE_MS);
@@ -362,7 +362,7 @@ const flipped = ({ data, width, height }) => {
 };
 
 // Checks that two pictures have the same colours. Letters and scales over one of the pictures do not matter, because
-// they add as much to the difference from the mirror image.
+// they increase the difference from the view and the difference from its mirror image equally.
 function assertSameColours(picture, view, what) {
   const [apart, mirrored] = [blockDifference(picture, view), blockDifference(flipped(picture), view)];
   console.log(`${what}: ${apart.toFixed(2)} from the view, its mirror image ${mirrored.toFixed(2)}`);
@@ -371,7 +371,7 @@ function assertSameColours(picture, view, what) {
 
 const ffmpeg = (...args) => execFileSync("ffmpeg", ["-v", "error", "-y", ...args]);
 
-// Returns the picture of a movie with that number.
+// Returns one picture of a movie. `number` counts the pictures from 0.
 function pictureOf(file, number) {
   const picture = join(folder, `picture-${number}.png`);
   ffmpeg("-i", file, "-vf", `select=eq(n\\,${number})`, "-frames:v", "1", picture);
@@ -570,7 +570,8 @@ async function makeMovie(pictures) {
 }
 
 test("a movie begins at the time shown, unless the newest is, and ends where it is told", async () => {
-  // The view shows the whole storm, which changes much between two times.
+  // The view shows the whole storm, which changes so much between two times that the pictures of both can be told
+  // apart.
   await openTool(page, "map");
   await changing(() => page.getByTestId("home").click(), page);
   const newest = await page.getByTestId("time").inputValue();

@@ -15,7 +15,8 @@ class Ecflow(EngineTest):
         super().setUp()
         self.port = free_port()
         self.environment = {**os.environ, "ECF_PORT": str(self.port), "ECF_HOST": "localhost"}
-        # The server's checkpoint and log go to its working directory. The interval is that of its clock and triggers.
+        # The server writes its checkpoint and log to its working directory. It checks its clock and triggers at the
+        # interval --ecfinterval, in seconds.
         self.start("ecflow_server", "ecflow_server", f"--port={self.port}", f"--ecfinterval=1", cwd=self.folder,
                    env={**self.environment, "ECF_HOME": str(self.folder), "ECF_LISTS": str(self.folder / "none")})
         self.wait_for("ecFlow's server", lambda: self.answers("--ping"))
@@ -32,8 +33,8 @@ class Ecflow(EngineTest):
         return run("ecflow_client", *arguments, env=self.environment)
 
     def begin(self, of_shares: dict[int, str] | None = None, **variables: str) -> None:
-        """Loads the suite with `variables` and the settings of the test, and starts it. `of_shares` adds a line to
-        single shares.
+        """Loads the suite with `variables` and the settings of the test, and starts it. `of_shares` has lines that are
+        added to the definitions of single shares, by the share's number.
         """
         text = (SUITE / "thunderhead.def").read_text()
         settings = {
@@ -75,7 +76,7 @@ class Ecflow(EngineTest):
         draw = "/thunderhead/shares/0/draw"
 
         def gave_up() -> bool:
-            # Reads one answer, because the task may be submitted again before the next.
+            # All values are from one answer, because the task may be submitted again before the next answer.
             task = self.node(draw)
             return "state:aborted" in task and "try:3" in task and "thunderhead ended with 75" in task
         self.wait_for("tasks that gave up", gave_up)

@@ -1,5 +1,5 @@
-"""Tests deploy/kubernetes: its objects against the published API schemas and a stricter one, its exit codes against the
-program's.
+"""Tests deploy/kubernetes: its objects against the published API schemas and the stricter kubernetes_schema.json, and
+its exit codes against those of the program.
 """
 
 import copy
@@ -117,8 +117,8 @@ class Kubernetes(unittest.TestCase):
         self.assertEqual(action, {64: "FailJob", 65: "FailIndex", 78: "FailJob"})
         arguments = objects("sequence.yaml")[0]["spec"]["template"]["spec"]["containers"][0]["args"]
         arguments = [part.replace("/views/", f"{ROOT}/deploy/views/") for part in arguments]
-        # Runs the command as the pod does, without such a storm. Exit code 75 counts as a try; an unknown flag would
-        # give 64.
+        # Runs the command as the pod does, but without its storm. The expected exit code is 75, after which Kubernetes
+        # tries again. An unknown flag would give 64.
         done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True, timeout=600,
                               env={"JOB_COMPLETION_INDEX": "1", "JOB_COMPLETIONS": "4"})
         self.assertEqual(done.returncode, 75, done.stderr)

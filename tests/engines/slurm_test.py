@@ -93,7 +93,7 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
         return set(self.slurm("squeue", "-h", "-t", "all", "-r", "-j", job, "-o", "%T").split())
 
     def program_of(self, job: str, task: int) -> int | None:
-        """Returns the process of thunderhead in a task of the array that has drawn a product."""
+        """Returns thunderhead's process id in a task of the array; None before the task has drawn a product."""
         if not any(self.products.glob(f"manifest.{task}-of-4.jsonl")):
             return None
         if not (self.products / f"manifest.{task}-of-4.jsonl").read_text():

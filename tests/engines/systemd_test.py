@@ -48,7 +48,7 @@ class Systemd(unittest.TestCase):
 
     def test_others_can_read_the_products(self) -> None:
         settings = dict(re.findall(r"^(\w+)=(.*)$", WATCH.read_text(), re.M))
-        # Only root may enter a dynamic user's folders.
+        # The unit must not use a dynamic user, because only root may enter such a user's folders.
         self.assertNotIn("DynamicUser", settings)
         self.assertEqual((settings["StateDirectoryMode"], settings["UMask"]), ("0755", "0022"))
         server = dict(re.findall(r"^(\w+)=(.*)$", (FOLDER / "thunderhead.service").read_text(), re.M))

@@ -64,7 +64,8 @@ def after(file: str, anchor: str, added: str) -> Edit:
 class Toy:
     section: str
     edits: list[Edit | Append]
-    # Files of the folder toys/ next to this script, by the end of the path of the folder into which they are copied.
+    # New files of the toy. Each value is the name of a file in the folder toys/ next to this script. Its key is the end
+    # of the path of the folder into which the file is copied.
     new_files: dict[str, str] = dataclasses.field(default_factory=dict)
     # Files that the page names and another test of the repository covers.
     elsewhere: tuple[str, ...] = ()
@@ -199,7 +200,7 @@ def path_of(toy: Toy, file: str) -> str:
 
 
 def new_path_of(toy: Toy, folder: str) -> str:
-    """Returns the path of the toy's new file in the folder whose path ends so."""
+    """Returns the path of the toy's new file in the folder whose path ends with `folder`."""
     return only(named_files(toy.section)[1], folder, toy) + toy.new_files[folder]
 
 

@@ -1,7 +1,7 @@
 // Coverage for libFuzzer from code that GCC compiled. With -fsanitize-coverage=trace-pc, GCC calls
-// this function once for each basic block. libFuzzer reads the counters of this section in addition
-// to its own. The release's compiler can thus be fuzzed, including coroutines, which Debian's Clang
-// 14 does not support.
+// __sanitizer_cov_trace_pc once for each basic block. libFuzzer reads the counters in the section
+// __libfuzzer_extra_counters in addition to its own. The release's compiler can thus be fuzzed,
+// including coroutines, which Debian's Clang 14 does not support.
 #include <cstddef>
 #include <cstdint>
 

@@ -193,7 +193,7 @@ hid_t OddLayout(Dice& dice, hid_t type, hid_t space, const std::string& path) {
   return creation;
 }
 
-// netCDF-4's attributes say which dimensions a variable has.
+// Copies the attributes of a dataset. netCDF-4 stores in them which dimensions a variable has.
 void CopyAttributes(hid_t from, hid_t to) {
   H5Aiterate2(
       from, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr,

@@ -194,7 +194,7 @@ class Mutation {
   void SetTemplate(Parts& message) {
     const auto [kind, number] = dice_.Of(kTemplates);
     const std::size_t octet = kind == 3 ? 13 : kind == 4 ? 8 : 10;
-    // Another template often has another length.
+    // Another template often has another length, so some bytes may be added.
     const std::size_t more_bytes = dice_.OneIn(2) ? dice_.Below(40) : 0;
     Set(message, {kind, octet, 2}, static_cast<std::uint64_t>(number), more_bytes);
   }
@@ -235,8 +235,9 @@ class Mutation {
     if (!dice_.OneIn(4)) SetNumber(packing->bytes, 5, 4, set);
   }
 
-  // Sets the number of points of one message, or of all, alike everywhere. Without bits, the bytes
-  // suffice for any number of points. So a few bytes announce far more values than memory can hold.
+  // Sets the number of points of one message, or of all messages, to the same number in every
+  // section. If the number of bits per value is set to 0, no data are needed for any number of
+  // points. A few bytes then announce far more values than memory can hold.
   void SetPoints(Parts& message) {
     const std::uint64_t columns = dice_.OneIn(8) ? 40'000 : dice_.Below(40);
     const std::uint64_t rows = dice_.OneIn(8) ? 40'000 : dice_.Below(40);
@@ -250,7 +251,8 @@ class Mutation {
       SetNumber(grid->bytes, 6, 4, columns * rows);
       SetNumber(grid->bytes, 30, 4, columns);
       SetNumber(grid->bytes, 34, 4, rows);
-      // The distances follow from the corners if the grid says that it does not give them.
+      // The flags say that the grid does not give the distances of its points, so that readers
+      // derive them from the corners.
       SetNumber(grid->bytes, 54, 1, 0);
       SetNumber(grid->bytes, 63, 8, ~std::uint64_t{0});
       SetNumber(packing->bytes, 5, 4, columns * rows);

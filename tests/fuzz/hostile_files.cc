@@ -229,7 +229,8 @@ absl::Status ReadStorm(const std::string& path) {
   const storm_files::StormFormats formats = storm_files::StormFormats::BuiltIn();
   THUNDERHEAD_ASSIGN_OR_RETURN(storm_files::StormFile file,
                                storm_store::DescribeFile(path, formats));
-  // A part of a time has no reader. It is described again, as the only file of its time.
+  // A file that has only a part of a time has no reader. It is described again as if it were the
+  // only file of its time.
   if (!file.part.of.empty()) {
     THUNDERHEAD_ASSIGN_OR_RETURN(file, formats.DescribeTogether({path}));
   }

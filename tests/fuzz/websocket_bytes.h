@@ -28,8 +28,8 @@ inline std::string Framed(const std::uint8_t* data, std::size_t size) {
   return frames;
 }
 
-// Returns frames of the rest if the first byte is even. Otherwise returns the rest unchanged, with
-// its own mask.
+// Returns frames built from all bytes after the first, if the first byte is even. Otherwise returns
+// these bytes unchanged, as frames that the fuzzer has made and masked itself.
 inline std::string WebSocketBytes(const std::uint8_t* data, std::size_t size) {
   if (data[0] % 2 == 0) return Framed(data + 1, size - 1);
   return {reinterpret_cast<const char*>(data + 1), size - 1};

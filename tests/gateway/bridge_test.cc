@@ -321,8 +321,8 @@ TEST_F(BridgeTest, ReaderThatTakesNothingIsGivenUp) {
   RawClient client(Site().Port(), /*receive_buffer_bytes=*/16 << 10);
   client.Send(CallRequest("Count", Frame(Counting(2000, 0, 100'000))));
   client.ReadHeaders();
-  // A slow reader keeps its connection. It reads more at a time than the buffers hold, so the
-  // gateway has written some of it since the time advanced.
+  // A slow reader keeps its connection. In each round it reads more bytes than the buffers hold, so
+  // the gateway must have written some of them since the time was advanced.
   for (size_t bytes = 20'000'000; bytes <= 60'000'000; bytes += 20'000'000) {
     time_.Advance(seconds(15));
     client.ReadBody(bytes);

@@ -151,7 +151,7 @@ TEST_F(KeptFileTest, ALinkOrAPipeIsRefused) {
   EXPECT_EQ(Ask("GET", "/results/key/0").result(), http::status::not_found);
 }
 
-// A large file is checked while it is sent. Its last bytes do not arrive.
+// A large file is checked while it is sent. If the check fails, its last bytes are not sent.
 TEST_F(KeptFileTest, TheConnectionBreaksBeforeTheEndOfALargeAlteredFile) {
   constexpr std::uint64_t kBytes = KeptFile::kCheckedFirst_bytes + 1;
   std::filesystem::resize_file(path_, kBytes);  // the additional bytes take no space

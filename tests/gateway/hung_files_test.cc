@@ -58,7 +58,7 @@ class HungFilesTest : public EchoTest {
     close(storage);
   }
 
-  // Lets so many clients request the hung file, and waits until the gateway has their requests.
+  // Lets `count` clients request the hung file, and waits until the gateway has their requests.
   std::vector<std::unique_ptr<RawClient>> AskHung(int count) {
     std::vector<std::unique_ptr<RawClient>> clients;
     for (int i = 0; i < count; ++i) {
@@ -146,7 +146,8 @@ TEST_F(HungFilesTest, WhoCannotBeSentItsBeginningIsToldToTryAgain) {
   EXPECT_EQ(answer.result(), http::status::service_unavailable);
   EXPECT_EQ(answer["Retry-After"], "10");
   EXPECT_FALSE(answer.count("Content-Range"));
-  // The connection stays open. A failure after the beginning of a response ends it.
+  // The connection stays open after the error response. A failure that occurs after a response has
+  // begun ends the connection.
   client.Send("GET /results/short/0 HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_EQ(client.ReadHeaders().result(), http::status::ok);
   EXPECT_TRUE(client.IsEnded());

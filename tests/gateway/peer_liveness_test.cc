@@ -8,8 +8,8 @@ namespace {
 using std::chrono::milliseconds;
 using Verdict = PeerLiveness::Verdict;
 
-// A fixture that pings after 100 ms, treats writes as stalled after 300 ms, and closes within 200
-// ms.
+// A fixture that pings a peer that has been silent for 100 ms, treats writes as stalled after 300
+// ms, and closes within 200 ms.
 class PeerLivenessTest : public ::testing::Test {
  protected:
   Verdict At(int ms) { return liveness_.Judge(seen_, begin_ + milliseconds(ms)); }

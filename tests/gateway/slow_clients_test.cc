@@ -80,7 +80,8 @@ class SlowClientsTest : public EchoTest {
   testing::TemporaryFolder folder_;
 };
 
-// A connection that is locked out waits for a timeout that no test reaches.
+// If half-open sockets locked out other clients, LoadPage() would wait for a timeout that no test
+// reaches.
 TEST_F(SlowClientsTest, HalfOpenSocketsLockNobodyOut) {
   // Each of the three sets of connections is as large as the limit of the server.
   const SilentSockets silent(Site().Port(), 768, "");
@@ -217,7 +218,7 @@ class LeastRateTest : public SlowClientsTest {
     client.ReadBody(15'000'000);
     time_.Advance(seconds(2));
     EXPECT_TRUE(time_.AwaitLooks());
-    // The kernel buffers fewer bytes than the rest.
+    // The kernel buffers fewer than the remaining bytes, so the client cannot read all of them.
     EXPECT_ANY_THROW(client.ReadBody(30'000'000));
   }
 

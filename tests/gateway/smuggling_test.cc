@@ -94,7 +94,7 @@ TEST_F(SmugglingTest, RepeatedHostAndOriginAreRefused) {
   ExpectRefused(kPost + kHost + kType + kType + "Content-Length: 5\r\n\r\n" + Frame(""));
 }
 
-// The gateway would not decode the body.
+// The gateway decodes no bodies, so it refuses this request.
 TEST_F(SmugglingTest, AnEncodedBodyIsRefused) {
   for (const std::string coding : {"gzip", "deflate", "gzip, identity"}) {
     ExpectRefused(kPost + kHost + kType + "Content-Encoding: " + coding +

@@ -74,7 +74,7 @@ class TlsClient {
     socket_->binary(true);
   }
 
-  // Sends one message of the size and returns the size of the answer.
+  // Sends one message of `bytes` bytes and returns the size of the answer.
   size_t Converse(size_t bytes) {
     // The message is a ConverseRequest with text.
     std::string message = std::string("\0\x0a", 2);

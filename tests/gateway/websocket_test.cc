@@ -557,8 +557,8 @@ TEST_F(WebSocketTest, ReaderThatTakesNothingIsCut) {
   options_.write_stall_timeout = seconds(20);
   WebSocketClient client(Site().Port(), {"Converse", {}, /*receive_buffer_bytes=*/16 << 10});
   client.Send(ReadingNoMore(/*repeats=*/2000, /*payload_bytes=*/100'000));
-  // A slow reader keeps its connection. It reads more at a time than the buffers hold, so the
-  // gateway has written some of it since the time advanced.
+  // A slow reader keeps its connection. In each round it reads more bytes than the buffers hold, so
+  // the gateway must have written some of them since the time was advanced.
   for (int round = 0; round < 3; ++round) {
     time_.Advance(seconds(15));
     for (int i = 0; i < 200; ++i) ASSERT_EQ(PayloadOf(client.Receive()).size(), 100'000u);
@@ -608,7 +608,7 @@ TEST_F(WebSocketTest, QuietPeerThatAnswersPingsStays) {
   request.set_hold_after(0);
   client.Send(kMessage + request.SerializeAsString());
   ASSERT_TRUE(WaitFor([&] { return Record().started == 1; }));
-  // The client reads, and so answers pings, for ten times as long.
+  // The client reads, and therefore answers pings, for ten times as long as the timeouts.
   std::thread reading([&] { EXPECT_EQ(TrailersAfter(1, client)["grpc-status"], "0"); });
   for (int ping = 1; ping <= 10; ++ping) {
     EXPECT_TRUE(time_.AwaitLooks());

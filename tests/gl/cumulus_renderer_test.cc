@@ -235,7 +235,7 @@ TEST_F(CumulusRendererTest, TheCoronaSendsNoMoreThanItTakes) {
       most = std::max(most, sent);
     }
   }
-  EXPECT_GT(most, 0.15);  // of at most 1/4
+  EXPECT_GT(most, 0.15);  // rho (1 - rho) is at most 1/4
 }
 
 TEST_F(CumulusRendererTest, ComponentsSumToTheWhole) {
@@ -299,8 +299,9 @@ TEST_F(CumulusRendererTest, NothingIsBrighterThanItsTrapsAllow) {
         ASSERT_GE(std::min({texel.r, texel.g, texel.b}), 0.0F);
         ASSERT_GE(texel.a, 0.0F);
         ASSERT_LE(texel.a, 1.0F);
-        // Lambert's law, the traps of all scales, the transmitted light and the surroundings make
-        // up the bound, plus the narrowest lobe in front.
+        // The bound of the core is the sum of Lambert's law (1), the traps of all scales (1 / 0.4),
+        // the transmitted light (0.2) and the surroundings (0.3). The bound of the corona in front
+        // of it is that of the narrowest lobe.
         const double core = std::numbers::inv_pi * (1.0 + 1.0 / 0.4 + 0.2) + 0.3;
         const double corona = 0.25 * 401.0 * 0.5 * std::numbers::inv_pi;
         ASSERT_LE(texel.r, core + corona);

@@ -126,7 +126,7 @@ class GroundCoverTest : public testing::Test {
   scene::Scene scene_ = test_support::PlainScene();
 };
 
-// The device filters a texture of 8 bits where the CPU uses floats.
+// The tolerance covers that the device filters a texture of 8 bits, whereas the CPU uses floats.
 TEST_F(GroundCoverTest, FieldsAreThePatternOfTheirPixels) {
   const std::vector<float> plain = Pixels(scene::GroundCover::kPlain);
   const std::vector<float> fields = Pixels(scene::GroundCover::kFields);

@@ -33,7 +33,8 @@ constexpr int kSide = 65;  // odd, so that a pixel lies in the middle
 constexpr double kPi = std::numbers::pi;
 
 // Returns the integral of Wyvill's field along a line at `u` radii from the middle, over the
-// radius. This is Man's eq. 12 as it is printed except for its signs, summed by midpoints.
+// radius. This is eq. 12 of P. Man, "Generating and Real-Time Rendering of Clouds", except for the
+// signs that are printed there. The integral is summed by midpoints.
 double Column(double u) {
   constexpr int kSteps = 20000;
   double sum = 0.0;
@@ -182,8 +183,9 @@ TEST_F(MetaballTest, ABallScattersByThePhaseFunctionsOfItsShares) {
 }
 
 TEST_F(MetaballTest, LightThatABallTakesIsLightThatItHas) {
-  // A ball lit and seen by parallel rays scatters (1 - exp(-d)) of its light in the mean over all
-  // pixels, however thick it is. What it shows is that mean, weighted by its own matter.
+  // Parallel light falls on the ball. Of the light of a pixel with optical depth d, the ball takes
+  // the share 1 - exp(-d), however thick it is. The light taken from all pixels is distributed over
+  // the ball in proportion to its matter.
   for (const double depth : {0.1, 2.0, 50.0}) {
     const std::vector<float> pixels = Draw({At({0.0, 0.0, 5000.0}, 1000.0, depth / 1000.0)});
     double taken = 0.0;
@@ -209,8 +211,8 @@ TEST_F(MetaballTest, ABallInAnothersShadowHasWhatPasses) {
   LookDown(8000.0);
   const Ball lit = At({2000.0, 0.0, 5000.0}, 1000.0, 1e-6);
   const Ball thick = At({2000.0, 0.0, 5000.0}, 1000.0, 2e-3);
-  // The ball is so small that all of it lies behind the middle of the other. It is in the middle of
-  // a pixel.
+  // The ball `behind` is so small that all of it lies behind the middle of the large ball. It is
+  // drawn in the middle of a pixel.
   constexpr int kColumn = kSide / 4;
   const double east_m = ((kColumn + 0.5) / kSide - 0.5) * 8000.0;
   const Ball behind = At({east_m, 0.0, 5000.0}, 50.0, 1e-3);
@@ -218,15 +220,16 @@ TEST_F(MetaballTest, ABallInAnothersShadowHasWhatPasses) {
   const float free = Draw({behind})[at];
   EXPECT_NEAR(Draw({behind, lit})[at] / free, 1.0, 5e-3);
   EXPECT_NEAR(Draw({behind, thick})[at] / free, std::exp(-2.0 * Column(0.0)), 5e-3);
-  // With the sun on the other side, the other ball lies in shadow. The light buffer has a new
-  // layout, so its texels meet the small ball elsewhere.
+  // With the sun on the other side, the large ball lies in the shadow of the small one. The light
+  // buffer has a new layout, so its texels meet the small ball at other places.
   settings_.illumination.towards_sun = {-1.0, 0.0, 0.0};
   EXPECT_NEAR(Draw({behind, thick})[at] / free, 1.0, 1e-4);
 }
 
 TEST_F(MetaballTest, TheNearestBallIsDrawnLast) {
-  // The light is grey. The ball in front hides the ball behind it, from either side and in any
-  // order of the list. The upper ball is lit, and the lower ball lies in its shadow.
+  // The light is grey, so one colour channel is compared. The ball in front hides the ball behind
+  // it, from either side and in any order of the list. The upper ball is lit, and the lower ball
+  // lies in its shadow.
   const Ball upper = At({0.0, 0.0, 8000.0}, 1000.0, 20e-3);
   const Ball lower = At({0.0, 0.0, 4000.0}, 1000.0, 20e-3);
   const float above = Draw({upper, lower})[kMiddle];
@@ -260,8 +263,9 @@ TEST_F(MetaballTest, PaperTransportIsAsPrinted) {
   EXPECT_NEAR(Draw({ball})[kMiddle] / one[kMiddle], 1.5, 1e-4);
   settings_.illumination.towards_sun = {1.0, 0.0, 0.0};
   EXPECT_NEAR(Draw({ball})[kMiddle] / one[kMiddle], 0.75, 1e-4);
-  // Two balls are in line with the light. The second receives the mean of eq. 27 over its disc, g +
-  // T I with g for straight on.
+  // Two balls are in line with the light. The second receives the mean of Man's eq. 27 over its
+  // disc. This is g + T I: the light g that the first ball scatters straight on, and the share T of
+  // the sunlight I that passes through it.
   Ball behind = ball;
   behind.middle_m.x -= 3000.0;
   double mean = 0.0;
@@ -566,7 +570,8 @@ TEST_F(MetaballSceneTest, TheFrameSaysWhatItIs) {
   EXPECT_GT(frame.content.fit_error, 0.0);
   EXPECT_LT(frame.content.fit_error, 0.5);
   EXPECT_EQ(frame.slices, 0);
-  // The metaballs' noise stands for turbulent detail.
+  // The noise on the metaballs replaces turbulent detail, so only other fine structure is reported
+  // as missing.
   EXPECT_THAT(NotShown(frame),
               ElementsAre("structure finer than the metaballs, except noise on their surfaces"));
   test_support::SetTransport(&scene_.rendering.technique, scene::Transport::kPaper);
@@ -653,7 +658,7 @@ TEST(BallFits, KeepsWhatItsStormAndOpticsAskFor) {
   ASSERT_TRUE(first.ok()) << first.status();
   EXPECT_TRUE(fits.Has(scene, fields));
   EXPECT_EQ(*fits.Get(scene, fields), *first);
-  // This is another storm, although it is similar.
+  // A similar storm is still another storm, so its fit is not known.
   EXPECT_FALSE(fits.Has(scene, support::MakeLayerInAir(4000.0, 2000.0, 8, 5.0)));
   scene::Scene thinner = scene;
   thinner.fields[0].scale = 0.5F;

@@ -221,8 +221,8 @@ TEST_F(PiecesTest, WhatIsCancelledWithinItsViewKeepsItsLight) {
 }
 
 TEST_F(PiecesTest, StagesDoNotCountTheTimeThatTheyWaited) {
-  // Other work has its turn before each piece. The wait is long compared with the time that no
-  // stage counts.
+  // Other work has its turn before each piece. A wait is much longer than the drawing time that
+  // belongs to no stage, so a stage that counted one wait would exceed the limit.
   class SlowTurn final : public base::DeviceTurn {
    public:
     absl::Status Take() override {

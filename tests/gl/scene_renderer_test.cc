@@ -99,7 +99,7 @@ TEST_F(SceneRendererTest, WaterPathsThatWereKeptQuicklyAreKeptInFullAtRest) {
   test_support::SetTechnique(&scene_.rendering.technique, test_support::kLightVolume);
   DrawQuality moving;
   moving.quick_water_paths = true;
-  // Without detail there are no water paths to keep.
+  // Without detail there are no water paths to keep, so the frame at rest needs no new extinction.
   StagesOf(moving);
   EXPECT_THAT(StagesOf(), ElementsAre("view", "air", "composite"));
   scene::MediumSettingsOf(&scene_.rendering.technique)->look.detail = true;
@@ -404,7 +404,8 @@ TEST_F(GroundTest, SlopesAreLitByTheSunsAngleToThem) {
   scene_.fields[0].visible = false;
   const float level = At(Pixels(renderer_.get()), 0.0, 0.0);
   // The terrain rises to the east by one in four, so the sun in the west is at 45 + 14 degrees from
-  // it. The terrain is a few hundred metres high: 4 % of a scale height of air.
+  // it. The terrain there is only 500 m high, so the air above it dims its light almost as much as
+  // that of level ground.
   SetTerrain([](double east_m, double) { return 500.0 + east_m / 4.0; });
   const double facing = std::sin(std::numbers::pi / 4 + std::atan(0.25));
   EXPECT_NEAR(At(Pixels(renderer_.get()), 0.0, 0.0) / level / (facing * std::sqrt(2.0)), 1.0, 0.01);
@@ -609,13 +610,14 @@ TEST_F(ToneMapTest, FilmHasContrastAToeAndAShoulder) {
     const double coded = Map(grey).rgb[1] / 255.0;
     return coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4);
   };
-  // The curve itself has a slope of 1 here, so the rest is contrast.
+  // The tone curve itself has a slope of 1 at these values, so the slope of 1.25 comes from the
+  // film's contrast.
   EXPECT_NEAR(std::log2(shown(0.62F) / shown(0.4F)) / std::log2(0.62 / 0.4), 1.25, 0.03);
   EXPECT_NEAR(shown(frame::kJustBelowWhite), 0.9, 0.01);
   // On the shoulder, values above "just below white" are brighter but not clipped at once.
   EXPECT_GT(shown(1.5F), shown(1.0F));
   EXPECT_LT(shown(1.5F), 0.999);
-  EXPECT_LT(shown(0.04F), 0.5 * shown(0.08F) * std::exp2(-0.35));  // the toe is steeper still
+  EXPECT_LT(shown(0.04F), 0.5 * shown(0.08F) * std::exp2(-0.35));  // the toe is steeper than this
   EXPECT_GT(shown(0.02F), 0.0);
 }
 

@@ -116,7 +116,7 @@ class ToyTechniqueTest : public testing::Test {
         std::make_unique<SceneRenderer>(std::make_shared<gl::ProgramCache>(), std::move(registry));
     scene_.output.width_px = 16;
     scene_.output.height_px = 8;
-    // There is no air in front of the toy.
+    // Only some two kilometres of clear air lie in front of the toy.
     scene_.camera = scene::OrbitCamera{.elevation_deg = 30.0, .distance_m = 2e3};
   }
 

@@ -46,7 +46,9 @@ VIEWS = {
 
 
 class Source:
-    """The storm's columns: mixing ratios per kg of dry air, and the air, x fastest, upwards."""
+    """The sample storm's columns: mixing ratios per kg of dry air, and the state of the air. In the arrays, x runs
+    fastest, and levels run upwards.
+    """
 
     def __init__(self) -> None:
         with netCDF4.Dataset(SAMPLE) as file:
@@ -102,7 +104,7 @@ def write_wrf(source: Source, path: pathlib.Path) -> None:
 
 
 def write_cf(source: Source, path: pathlib.Path, faces: bool) -> None:
-    """Mass fractions of the whole air, on layers with an array of the heights of their faces or of their middles."""
+    """Writes mass fractions of the whole air. An array has the heights of the layers' faces, or of their middles."""
     with netCDF4.Dataset(path, "w") as file:
         file.setncatts({"Conventions": "CF-1.8", "title": "sample storm"})
         for name, length in {"time": 1, "z": source.layers, "z_2": source.layers + 1, "y": ROWS, "x": COLUMNS}.items():
@@ -140,7 +142,7 @@ def write_cf(source: Source, path: pathlib.Path, faces: bool) -> None:
 
 
 def octets(number: int, count: int) -> bytes:
-    """A number of GRIB2: big-endian, with a sign bit."""
+    """Returns a number as GRIB2 stores it: big-endian, with a sign bit."""
     return (abs(number) | ((1 << (8 * count - 1)) if number < 0 else 0)).to_bytes(count, "big")
 
 
@@ -150,7 +152,7 @@ def section(number: int, *parts: bytes) -> bytes:
 
 
 def packed(values: numpy.ndarray) -> tuple[bytes, bytes]:
-    """Sections 5 and 7 by template 5.0 with 24 bits: exact to 6e-8 of the range of values."""
+    """Returns sections 5 and 7 by template 5.0 with 24 bits, which are exact to 6e-8 of the range of values."""
     bits = 24
     values = values.ravel()
     low = numpy.float32(values.min())
@@ -165,7 +167,9 @@ def packed(values: numpy.ndarray) -> tuple[bytes, bytes]:
 
 
 def write_grib(source: Source, path: pathlib.Path, centre: int) -> None:
-    """In the layout of ICON (centre 78: half levels, per kg of the whole air) or HRRR (7: levels, per kg of dry air)."""
+    """Writes the layout of ICON (centre 78: half levels, per kg of the whole air) or HRRR (7: levels, per kg of dry
+    air).
+    """
     icon = centre == 78
     micro = 1_000_000
     grid = section(
@@ -215,7 +219,9 @@ def write_grib(source: Source, path: pathlib.Path, centre: int) -> None:
 
 
 def radiance(path: pathlib.Path) -> numpy.ndarray:
-    """The channels R, G and B of an OpenEXR file of 32-bit floats in scan lines with ZIP compression: rows, columns, colours."""
+    """Returns R, G and B of an OpenEXR file (32-bit floats in scan lines, ZIP compression) as rows, columns,
+    colours.
+    """
     data = path.read_bytes()
     at = 8
     header = {}
@@ -256,7 +262,9 @@ def radiance(path: pathlib.Path) -> numpy.ndarray:
 
 
 def relative_rmse(image: numpy.ndarray, reference: numpy.ndarray) -> float:
-    """The root mean square of the difference over pixels and colours as a share of the mean radiance, as in docs/accuracy."""
+    """Returns the root mean square difference over pixels and colours, divided by the mean radiance, as in
+    docs/accuracy.
+    """
     return float(numpy.sqrt(numpy.mean((image - reference) ** 2)) / numpy.mean(reference))
 
 

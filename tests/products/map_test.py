@@ -121,8 +121,8 @@ class MapTest(ProductTest):
             values = depth[:].filled(numpy.nan)
             middles = blobs(values)
             self.expect_clouds([tuple(between(file[axis][:], *at) for axis in ("lon", "lat")) for at in middles], coordinates)
-            # The clouds' middles are at 4.5 km. Their tops are at 6 km and, softened, reach 7 km. Clear columns have no
-            # such height.
+            # The clouds' middles are at 4.5 km. Their tops are at 6 km and, softened, reach 7 km. In clear columns the
+            # optical depth never reaches one, so they have no height.
             heights = file["depth_one_height"][:]
             at = [(int(column), int(row)) for column, row in middles]
             for column, row in at:

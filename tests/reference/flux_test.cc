@@ -153,7 +153,7 @@ TEST(FluxGround, EmptySkyShowsTheGround) {
 }
 
 // A black box 1 km tall and 4 km wide under a sun at 60 degrees. The beam leaves through a side
-// where it enters less than tan 60 km from that side.
+// where it enters less than tan(60 degrees) km from that side.
 TEST(FluxOpenSides, AbsorbingBoxUnderLowSun) {
   MediumDescription box = EmptyDescription({4, 3, 2}, {1000.0, 1000.0, 500.0});
   constexpr double kExtinction_per_km = 0.7;
@@ -180,8 +180,9 @@ TEST(FluxOpenSides, DomainLargerThanTheMedium) {
   problem.domain_low_m -= glm::dvec3(3000.0, 1000.0, 0.0);
   problem.domain_high_m += glm::dvec3(3000.0, 1000.0, 500.0);
   const FluxResult result = Flux(problem, 400'000);
-  // The box (optical depth 100) stops the light that falls on its top and on its sunlit wall. Seen
-  // from the plane of the top, they are 2 km wide together, of an area of 7 x 3 km.
+  // The box (optical depth 100) stops the light that falls on its top and on its sunlit wall.
+  // Projected onto the plane of the domain's top, these two measure 2 x 1 km together. The top
+  // measures 7 x 3 km.
   ExpectAgrees(result.absorptance, 2.0 * 1.0 / 21.0, 1e-4, 1e-3);
   ExpectBalance(result);
 }

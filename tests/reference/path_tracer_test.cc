@@ -216,9 +216,8 @@ TEST(PathTracer, SingleScatteringByQuadrature) {
   ExpectAgrees(MeanOf(image, 0), expected, 0.03 * expected, 0.02 * expected);
 }
 
-// Tests the thin limit with albedo 1: twice scattered light is of relative order of the optical
-// depth, 0.004 along the slanted paths. With one scattering allowed, the result is the integral
-// over a slab, F0 = 1.
+// With one scattering allowed, the radiance that a slab reflects has a closed form, the integral of
+// single scattering over the slab. The sun's flux F0 is 1.
 TEST(PathTracer, LightScatteredOnceIsTheClosedForm) {
   constexpr double kDepth = 2.0;
   constexpr double kAsymmetry = 0.5;
@@ -240,6 +239,8 @@ TEST(PathTracer, LightScatteredOnceIsTheClosedForm) {
   }
 }
 
+// Tests the thin limit with albedo 1: twice scattered light is of relative order of the optical
+// depth, 0.004 along the slanted paths.
 TEST(PathTracer, ThinLimit) {
   const double depth = 1e-3;
   const auto slab = Slab(depth, 0.75, 1.0);

@@ -8,7 +8,8 @@
 namespace thunderhead::reference {
 namespace {
 
-// Compares with the known answers that the paper's authors publish with their library.
+// Compares with the known answers that Salmon et al. (reference/philox.h) publish with their
+// library.
 TEST(Philox, KnownAnswers) {
   EXPECT_EQ(Philox4x32({0, 0, 0, 0}, {0, 0}),
             (PhiloxBlock{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));

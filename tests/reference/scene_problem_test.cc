@@ -178,7 +178,7 @@ TEST(MediumOf, ModesChoosePhaseAndColor) {
   medium = *MediumOf(scene, fields, Sides::kOpen);
   const auto& cloud = scene.fields[physics::IndexOf(Hydrometeor::kCloud)].optics;
   const double expected = physics::PhaseColors(physics::PhaseOf(cloud), 0.2).r;
-  // Tables are sampled at 8193 angles.
+  // The tolerance covers that tables are sampled at 8193 angles.
   EXPECT_NEAR(medium->ScatteringAt(rain_m, 0.5).phase->Value(0.2).x, expected, 1e-3 * expected);
   EXPECT_EQ(medium->ScatteringAt(cloud_m, 0.5).weight, glm::dvec3(cloud.false_color));
 }
@@ -241,7 +241,7 @@ TEST(SurroundingsOf, ShadedGroundWithoutCloudsIsUniform) {
   scene::Scene scene = test_support::PlainScene();
   scene.sky.brightness = 1.7;
   scene.sun.irradiance = 2.0;
-  // The spotter camera below replaces this camera and is as high.
+  // The ground is seen from the height of this camera, so the parallel camera below is as high.
   scene.camera = scene::OrbitCamera{{0.0, 0.0, 0.0}, 200.0, 30.0, 4e4, 35.0};
   const auto medium = *MediumOf(scene, fields, Sides::kOpen);
   const Camera camera =

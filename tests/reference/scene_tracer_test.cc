@@ -96,7 +96,7 @@ TEST_F(SceneTracerTest, SizesOfAPictureShowTheSameView) {
   EXPECT_NEAR(mean({6, 4}) / mean({24, 16}), 1.0, 0.05);
 }
 
-// A clock that moves by a millisecond at each look.
+// A clock that moves by a millisecond each time it is read.
 class CountedLooks final : public base::TimeSource {
  public:
   Clock::time_point Now() const override {

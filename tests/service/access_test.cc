@@ -611,7 +611,7 @@ TEST(AccessTest, AFloodOfReflectionTakesFewThreadsAndOthersGoOn) {
     calls.back()->Finish(&ends[i], nullptr);
   }
   int refused = 0;
-  // Calls that occupy a server thread stay open.
+  // Calls that are not refused stay open, and each of them occupies a server thread.
   while (refused < kCalls - 16 && await(kPatience)) ++refused;
   EXPECT_GE(refused, kCalls - 16);
   EXPECT_LE(threads(), before + 32);

@@ -102,7 +102,7 @@ TEST_F(AccuracyTest, EveryFrameSaysItsSettingAndError) {
   const v1::AccuracyReport report = watcher.NewestFrame().accuracy();
   EXPECT_EQ(report.slices(), 50U);
   EXPECT_EQ(report.model_error(), 0.3F);
-  // The fake's frames differ by one divided by their number of slices.
+  // The discretisation error of the fake machine's frames is one divided by their number of slices.
   EXPECT_FLOAT_EQ(report.discretisation_error(), 0.02F);
   EXPECT_FLOAT_EQ(report.estimated_error(), std::hypot(0.3F, 0.02F));
   EXPECT_EQ(watcher.NewestFrame().modelled().slices(), 50U);

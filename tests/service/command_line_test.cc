@@ -241,7 +241,7 @@ TEST_F(CommandLineTest, ASceneIsStrictJson) {
   refuse("{\"fields\": " + many + std::string(many.size(), ']') + "}",
          "line 1, column 111: there are more than 100 levels of nesting");
   refuse("{}" + std::string(600'000, ' '), "the JSON has more than 512 KiB");
-  // The same holds for the scene in a picture.
+  // The errors of a scene that is stored in a picture name the line and the column, too.
   const std::string with_scene = folder_.File("other.png");
   std::ofstream(with_scene, std::ios::binary) << frame::WithTexts(
       *frame::EncodePng(1, 1, {{1, 2, 3}}), {{"thunderhead.scene", R"({"sky": {},})"}});
@@ -615,7 +615,7 @@ TEST_F(CommandLineTest, ServeIgnoresAClosedTerminalIfItsCallerDoes) {
             "grep SigBlk /proc/$server/status >&2; "
             "kill -TERM $server; wait $server");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  // SIGHUP is the mask's lowest bit.
+  // SIGHUP is the mask's lowest bit, so an even last digit means that it is not blocked.
   EXPECT_THAT(outcome.err, ContainsRegex("SigBlk:\\s*[0-9a-f]*[02468ace]\n"));
 }
 
@@ -777,7 +777,8 @@ TEST_F(CommandLineTest, AnExportedGridIsImportedAsAStorm) {
   ExpectError(import + grid + " --up w" + metres + extinction, 64, "--up is 'w'");
   ExpectError(import + grid + up + " --metres-per-unit 0" + extinction, 64,
               "--metres-per-unit is 0");
-  // The file has changed just now, and is refused for good nevertheless.
+  // A file that has just changed is usually refused only for now (exit code 75). An OpenVDB file is
+  // refused for good nevertheless.
   ExpectError("inspect " + vdb, 65, "thunderhead import-vdb");
   EXPECT_FALSE(std::filesystem::exists(cloud));
   const Outcome outcome = Run(import + grid + up + metres + extinction);

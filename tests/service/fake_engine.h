@@ -125,7 +125,7 @@ struct FakeMachine {
   std::atomic<std::int64_t> paths_per_step{100'000};
   std::atomic<std::int64_t> traced_paths{0};
   std::atomic<std::int64_t> traced_steps{0};
-  std::atomic<int> trace_refusals{0};  // refusals to trace: enough was traced, or it must wait
+  std::atomic<int> trace_refusals{0};  // refusals to trace: enough was traced, or tracing must wait
   std::atomic<int> trace_failures{0};
   std::atomic<double> cannot_trace_azimuth_deg{-1.0};
   std::atomic<bool> traces_enough{false};  // what the source reports: enough light has been traced

@@ -16,7 +16,7 @@ inline constexpr bool kHasHangingStorage = false;
 inline constexpr bool kHasHangingStorage = true;
 #endif
 
-// An object during whose life every program that is started loads the library.
+// While an object of this class lives, every program that is started loads the library.
 class HangingStorage {
  public:
   // Sets LD_PRELOAD for programs that are started. `clock` is the path of a file from which such a

@@ -62,8 +62,8 @@ class HostileNamesTest : public ::testing::Test {
  protected:
   HostileNamesTest() { fs::create_directories(data_ / "sub"); }
 
-  // Writes a storm, with the title if it is not empty.
-  // Both attributes that a client is told are the title.
+  // Writes a storm. A title that is not empty is written into both attributes that the server
+  // reports to clients.
   static void WriteStorm(const fs::path& path, const std::string& title = "") {
     SyntheticCf storm =
         ExtinctionFile(6, 6, 6, 500.0, 500.0, 500.0, [](auto, auto, auto) { return 1e-3; });

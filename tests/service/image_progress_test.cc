@@ -107,7 +107,7 @@ TEST_F(ImageProgressTest, ProgressRisesAndThePictureIsTheLastEvent) {
   const grpc::Status end = call.End();
   ASSERT_TRUE(end.ok()) << end.error_message();
   const Events& events = call.AllEvents();
-  // Later progress may be left out if the picture is finished before it is sent.
+  // Later progress may be left out if the picture is finished before that progress is sent.
   ASSERT_GE(events.size(), 2U);
   const auto image = frame::DecodePng(events.back().image().image());
   ASSERT_TRUE(image.ok()) << image.status();

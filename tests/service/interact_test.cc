@@ -545,8 +545,8 @@ TEST(InteractTest, AnUpdateIsNotShownAfterControlWasTaken) {
   ASSERT_TRUE(group.service.store->reading.AwaitWaiting(1));
   group.presenter->Send(Takes());
   ASSERT_TRUE(Class::SteersFor(*group.ben, group.presenter->viewer_id()));
-  // The update does not wait for the viewer who now has control, and its expected revision is that
-  // of the scene that was shown.
+  // Ana's pending update does not delay an update of the presenter, who now has control. This
+  // update expects revision 1, which is still shown.
   v1::InteractRequest next = SunTo(120.0F);
   next.mutable_update_scene()->set_expected_revision(1);
   const Response taken = group.presenter->Answer(group.presenter->Send(next));
@@ -700,7 +700,7 @@ TEST(InteractTest, WhoIsRefusedAViewOfTheirOwnGoesOnFollowing) {
   }));
 }
 
-// A class whose session changes to a time that is being read until the gate opens. Ana has
+// A class whose session changes to another time, which is read until the gate opens. Ana has
 // requested a view from a place that depends on the storm at that time.
 struct SlowlyLeaving : Class {
   SlowlyLeaving() {
@@ -984,7 +984,7 @@ TEST(InteractTest, WhoComesBackHasTheOwnMarksAgain) {
   ASSERT_TRUE(group.ben->AwaitMarks(
       [&](const v1::Marks& marks) { return drawn_by(marks, back.viewer_id()) == 1; }));
   group.ana->Cancel();
-  // A viewer without the key owns none of the marks.
+  // A viewer without Ana's participant key owns none of the marks.
   Interacting other(group.service.stub(), group.created.viewer_key(), {.name = "Ana"});
   other.Send(Erases());
   v1::InteractRequest rename;

@@ -163,7 +163,7 @@ TEST_F(KilledServerTest, AStateFileThatIsRemovedIsWrittenAnew) {
   v1::CreateSessionResponse after;
   ASSERT_TRUE(Call(*program->stub(), &Stub::CreateSession, request, &after).ok());
   EXPECT_TRUE(after.durable());
-  // Nothing has to change until the file is there again.
+  // The server writes the file again even if no session changes.
   std::filesystem::remove(state_ + "/sessions.db");
   EXPECT_TRUE(WaitFor([&] { return std::filesystem::exists(state_ + "/sessions.db"); }));
   program->End(SIGKILL);

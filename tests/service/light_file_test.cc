@@ -107,7 +107,8 @@ constexpr char kScene[] = R"({"camera": {"topDown": {}}, "rendering": {%s}, "fie
     {"hydrometeor": "HYDROMETEOR_GRAUPEL", "visible": false}]})";
 
 // Returns the share of light that counts as unscattered. It is the light scattered by less than 10
-// degrees (half of theta_f), above what a phase function that is flat there would scatter.
+// degrees (half of the setting theta_f), above what a phase function that is flat there would
+// scatter.
 double CutShare() {
   const double cosine = std::cos(std::numbers::pi / 18.0);
   const double g = kAsymmetry;

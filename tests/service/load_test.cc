@@ -247,7 +247,7 @@ TEST_P(LoadTest, CountsTheErrorsOfAServerThatStops) {
       stopping = std::jthread([&] { StopServer(); });
   });
   ASSERT_TRUE(report.ok()) << report.status();
-  // The load does not wait for the end, and reports the figures so far.
+  // The load generator does not wait until its duration is over, and reports the figures so far.
   EXPECT_THAT(report->seconds, Lt(kForEver_s));
   EXPECT_THAT(report->healthy.fps_min, Gt(0.0));
   // Three viewers and the presenter fail, and so does closing the session.

@@ -386,7 +386,7 @@ int TryOnce(const std::string& name) {
   return recv(socket.Get(), answer, sizeof(answer), 0) > 0 ? 0 : 1;
 }
 
-// Connects so many times in a process of that user. Returns how the last attempt ended.
+// Connects `times` times in a process of that user. Returns how the last attempt ended.
 int TryAs(uid_t user, const std::string& name, int times = 1) {
   const pid_t child = fork();
   if (child == 0) {

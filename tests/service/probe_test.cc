@@ -373,7 +373,8 @@ TEST(StormMapTest, PlacesAreSentAsATableIfAsked) {
   const auto nodes = static_cast<int>(table.nodes());
   ASSERT_EQ(table.x_m_size(), nodes * nodes);
   ASSERT_EQ(table.y_m_size(), nodes * nodes);
-  // The middle, and the middle of the northern side, where Mercator's y follows from the latitude.
+  // Checks the table's middle, and the middle of its northern side, whose y follows from the
+  // latitude by Mercator's formula.
   const int middle = nodes / 2 * nodes + nodes / 2;
   EXPECT_NEAR(table.x_m(middle), 0.0F, 0.1F);
   EXPECT_NEAR(table.y_m(middle), 0.0F, 0.1F);

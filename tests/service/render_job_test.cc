@@ -288,8 +288,8 @@ TEST_F(RenderJobTest, GoesOnAfterARestartAndDrawsNothingTwice) {
     std::vector<v1::RenderJobPicture> pictures;
     for (int i = 0; i < 12; ++i) pictures.push_back(Picture(static_cast<std::uint32_t>(i % 4)));
     id = jobs.Create(pictures).id();
-    // A picture that has been drawn ends only when the device is free, and the next picture may
-    // hold the device at the gate.
+    // A drawn picture ends only when the device is free. The next picture may hold the device while
+    // it waits at the gate, so more pictures than three are let through.
     constexpr std::size_t kInHand = 3;
     for (std::size_t i = 0; i < kInHand + 3; ++i) service.machine->drawing.LetOnePass();
     ASSERT_TRUE(WaitFor([&] { return jobs.Get(id).job().counts().drawn() >= 3; }));

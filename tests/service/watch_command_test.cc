@@ -127,7 +127,8 @@ class WatchCommand : public ::testing::Test {
   const std::string err_ = folder_.File("stderr");
 };
 
-// A stop takes effect between two files. Each of these files needs a reader.
+// A stop takes effect between two files. Each of these files needs a reader process, so checking
+// all of them takes long.
 TEST_F(WatchCommand, ASignalEndsTheCheckOfManyOddFiles) {
   constexpr std::size_t kFiles = 1000;
   for (std::size_t i = 0; i < kFiles; ++i) {

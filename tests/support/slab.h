@@ -31,9 +31,9 @@ inline std::shared_ptr<const volume::HydrometeorFields> MakeSlab(
 }
 
 // Makes a horizontal cloud layer in the middle of a domain that is `height_m` high. The layer is
-// `cells_thick` cells thick, and there is no cloud above or below it. At its edges the extinction
-// therefore rises linearly over one cell, as in a storm. `optical_depth` is the vertical optical
-// depth of the whole layer.
+// `cells_thick` cells thick, and there is no cloud above or below it. At its upper and lower edge
+// the extinction therefore rises linearly over one cell, as in a storm. `optical_depth` is the
+// vertical optical depth of the whole layer.
 inline std::shared_ptr<const volume::HydrometeorFields> MakeLayerInAir(double width_m,
                                                                        double height_m,
                                                                        int cells_thick,

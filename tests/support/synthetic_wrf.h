@@ -83,7 +83,7 @@ struct SyntheticWrf {
                                 // file does not have it
   // The file as programs that process WRF output leave it.
   std::set<std::string> without_time;                     // variables without the dimension Time
-  std::set<std::string> at_one_time;                      // variables on a time of their own
+  std::set<std::string> at_one_time;                      // variables on their own time dimension
   std::map<std::string, std::string> renamed_dimensions;  // new names by WRF's names
   std::map<std::string, std::string> renamed;             // new names of variables by WRF's names
   // Text attributes by variable and attribute. The global attributes have the variable "".

@@ -31,7 +31,7 @@ class Hang {
       gate.wait();
     };
   }
-  // Waits until so many of the tasks have begun.
+  // Waits until `count` of the tasks have begun.
   bool AwaitBegun(int count) const {
     return WaitFor([&] { return *begun_ >= count; });
   }

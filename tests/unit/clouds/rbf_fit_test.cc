@@ -44,7 +44,7 @@ std::vector<double> WeightsOf(const std::vector<Metaball>& balls) {
   return weights;
 }
 
-// Returns the sum of all balls at a point, eq. 19.
+// Returns the sum of all balls at a point (eq. 19 of P. Man, cited in clouds/metaballs.h).
 double ValueAt(const MetaballCloud& cloud, const glm::dvec3& point_m) {
   double sum = 0.0;
   for (const Metaball& ball : cloud.balls) {

@@ -109,7 +109,8 @@ TEST(LinkEstimateTest, WindowsGetTheSmallestPictureThatFillsThem) {
   EXPECT_EQ(TierForWindow({1280, 1280}, 641), 0);
   EXPECT_EQ(TierForWindow({1280, 1280}, 640), 1);
   EXPECT_EQ(TierForWindow({1280, 1280}, 100), 2);
-  // The tiers of moving pictures are 0.84 and 0.5 times as wide, and much smaller.
+  // Moving pictures may be narrower than at rest: here they are 0.84, 0.5 and 0.2 times as wide.
+  // The last one is so narrow that it is reduced less than the picture at rest.
   EXPECT_EQ(TierForWindow({1076, 1280}, 640), 1);
   EXPECT_EQ(TierForWindow({640, 1280}, 640), 1);
   EXPECT_EQ(TierForWindow({640, 1280}, 1280), 0);

@@ -85,7 +85,8 @@ class VideoHubTest : public ::testing::Test {
   int taken_tier_ = 0;
   std::uint64_t scene_revision_ = 1;
   bool by_reference_ = false;
-  // True: after a change of size the encoders make a key picture in any case.
+  // If true, Publish makes a key picture even if none is requested, as the encoders do after a
+  // change of size.
   bool resized_ = false;
 };
 

@@ -147,7 +147,7 @@ TEST_F(FramePlannerTest, AFrameOfASecondIsDrawnWhole) {
 }
 
 TEST_F(FramePlannerTest, CoarseFramesComeToCostAboutTheTarget) {
-  // With the first value, a coarse frame at its finest quality takes 18 ms.
+  // With the first value, even a coarse frame at its finest quality takes only 18 ms.
   for (const double ms_per_mega_sample : {0.6, 1.0, 3.0, 10.0}) {
     Drag({4.0, ms_per_mega_sample}, 20);
     EXPECT_LE(last_ms_, 33.0) << ms_per_mega_sample;
@@ -223,7 +223,8 @@ TEST_F(FramePlannerTest, LargePicturesAreSmallerWhileTheyMove) {
   }
 }
 
-// A sparse picture costs the processors time for each of its pixels.
+// A sparse picture costs processor time for each of its pixels, so a large picture is drawn whole
+// if that is quick.
 TEST_F(FramePlannerTest, LargePicturesAreWholeWhereThatIsQuick) {
   scene_.output.width_px = 3200;
   scene_.output.height_px = 1800;
@@ -276,7 +277,8 @@ TEST_F(FramePlannerTest, AChangeOfToneKeepsTheQualityThatIsThere) {
   EXPECT_EQ(*decision.plan, (FramePlan{FrameQuality{}, true}));
 }
 
-// A change of tone makes the server draw the picture's rays again.
+// After a change of tone, the server must draw the rays of a sparse picture again. This must not
+// take longer than the frame after any other change.
 TEST_F(FramePlannerTest, AChangeOfToneAfterTheFirstFrameAtRestIsAsQuickAsAnyOther) {
   const Machine machine{5.0, 10.0};
   Drag(machine, 10);

@@ -65,7 +65,8 @@ TEST(BrickMap, ACellFillsEveryBrickThatInterpolationReaches) {
 }
 
 TEST(BrickMap, BricksAreFilledWhereInterpolationIsNotZeroAndNowhereElse) {
-  // One cell is inside, one in a corner, and one is the last of an even number.
+  // One cell is inside, one is in the first corner, and one is in the last corner. The number of
+  // cells is odd along x, and even along y and z.
   const ExtinctionVolume volume =
       VolumeWith({9, 8, 12}, {{{4, 5, 6}, 0.1F}, {{0, 0, 0}, 0.1F}, {{8, 7, 11}, 0.1F}});
   const BrickMap map = BrickMapOf(volume);

@@ -8,7 +8,7 @@
 namespace thunderhead::volume {
 namespace {
 
-// The noise moves with the wind: at a place it is now what it was upwind of the place before.
+// The noise moves with the wind: each place now has the noise that was upwind of this place before.
 TEST(DrawnMedium, DetailMovesWithTheWind) {
   HydrometeorFields fields;
   fields.grid.cells = glm::ivec3(24, 24, 8);

@@ -1,5 +1,5 @@
-// Tests of Gaussian grids (template 3.40), regular and reduced. Their latitudes come from ecCodes,
-// of which the reader uses none.
+// Tests of Gaussian grids (template 3.40), regular and reduced. The expected latitudes come from
+// ecCodes, which the reader does not use for them.
 #include <eccodes.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ struct Gaussian {
     return around.empty() ? west_deg + (columns - 1) * Step_deg() : east_deg;
   }
 
-  // The places of the points in the file's order.
+  // Returns the places of the points, in the file's order.
   std::vector<volume::EarthPlace> Places() const {
     const std::vector<double>& latitudes = LatitudesOfEccodes(parallels);
     std::vector<volume::EarthPlace> places;
@@ -76,7 +76,7 @@ struct Gaussian {
     return places;
   }
 
-  // The distance in longitude of a point to the next.
+  // Returns the distance in longitude from a point to the next.
   double StepAt_deg(const volume::EarthPlace& place) const {
     if (around.empty()) return Step_deg();
     const std::vector<double>& latitudes = LatitudesOfEccodes(parallels);
@@ -104,7 +104,8 @@ struct Gaussian {
   std::string Section3() const { return Section3(static_cast<std::int64_t>(Places().size())); }
 };
 
-// The numbers of points of the octahedral grid with so many parallels, from the row `first` on.
+// Returns the number of points in each of `rows` rows of the octahedral grid with `parallels`
+// parallels between a pole and the equator, from the row `first` on.
 std::vector<int> Octahedral(int parallels, int first, int rows) {
   std::vector<int> around;
   for (int i = first; i < first + rows; ++i) {
@@ -171,7 +172,8 @@ TEST(GaussianGrid, RowsAreAtTheirLatitudes) {
   }
 }
 
-// Near a pole the latitudes are least even. The largest error is stated.
+// Latitudes that are treated as evenly spaced are least accurate near a pole. The reader must state
+// the largest error.
 TEST(GaussianGrid, TheLargestErrorOfRowsIsStated) {
   Gaussian layout;
   layout.parallels = 32;
@@ -248,13 +250,14 @@ TEST(ReducedGaussianGrid, EdgesMayCrossGreenwichAndBeRounded) {
   const auto grid = Read(text);
   ASSERT_TRUE(grid.ok()) << grid.status();
   EXPECT_EQ(grid->Points(), layout.Places().size());
-  // The first point of a global grid with millidegrees, as in files that were GRIB1.
+  // The longitude of the last column may be in millidegrees, as in files that were converted from
+  // GRIB1.
   Gaussian whole = GlobalOctahedral();
   EXPECT_TRUE(Read(whole.Section3()).ok());
   whole.around.assign(64, 131);
   whole.east_deg = 360.0 - 360.0 / 131.0;
   text = whole.Section3();
-  text.replace(60 - 6, 4, Number(357'252'000, 4));  // and not 357 251 908
+  text.replace(60 - 6, 4, Number(357'252'000, 4));  // rounded from 357 251 908
   EXPECT_TRUE(Read(text).ok()) << Read(text).status();
   text.replace(60 - 6, 4, Number(357'251'000, 4));
   EXPECT_TRUE(Read(text).ok()) << Read(text).status();

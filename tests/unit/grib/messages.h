@@ -12,7 +12,7 @@
 
 namespace thunderhead::grib::testing {
 
-// A number of `octets` octets, big-endian. Negative numbers have a sign bit.
+// Returns a number in `octets` octets, big-endian. Negative numbers have a sign bit.
 inline std::string Number(std::int64_t number, int octets) {
   std::uint64_t bits = static_cast<std::uint64_t>(number < 0 ? -number : number);
   if (number < 0) bits |= std::uint64_t{1} << (8 * octets - 1);
@@ -29,7 +29,7 @@ inline std::string Float(float value) {
   return Number(static_cast<std::int64_t>(bits), 4);
 }
 
-// A section with its length and number.
+// Returns a section with its length and number.
 inline std::string Section(int number, const std::string& contents) {
   return Number(static_cast<std::int64_t>(contents.size()) + 5, 4) + Number(number, 1) + contents;
 }
@@ -89,7 +89,7 @@ inline std::string GridOf(const LatLon& grid) {
          Number(grid.step, 4) + Number(grid.step, 4) + Number(grid.scanning, 1);
 }
 
-// Section 3 of ICON's triangles.
+// Returns section 3 of ICON's triangles.
 inline std::string TrianglesOf(std::int64_t points) {
   return Number(0, 1) + Number(points, 4) + Number(0, 2) + Number(101, 2) + Number(6, 1) +
          Number(44, 3) + Number(1, 1) +

@@ -460,7 +460,7 @@ TEST(GribGroups, FirstValuesMustBeThere) {
   EXPECT_THAT(message(3, 0, ""), HasSubstr("differences of order 3"));
 }
 
-// The distance of rows means nothing to some writers if there is one row.
+// Some programs write a meaningless distance of rows if the grid has only one row.
 TEST(GribGrid, OneRowWithoutAWidthIsAsWideAsItsColumns) {
   LatLon one;
   one.rows = 1;
@@ -623,7 +623,8 @@ TEST(GribGrid, NamesIconsTriangles) {
             absl::StatusCode::kDataLoss);
 }
 
-// A rotated grid whose rotated equator passes through its middle has the same distances there.
+// The rotated equator passes through the middle of this rotated grid. A degree of rotated longitude
+// is therefore as long there as a degree on the true equator.
 TEST(GribGrid, TurnsRotatedGrids) {
   LatLon layout;
   layout.columns = 3;

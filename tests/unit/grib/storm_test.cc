@@ -209,7 +209,8 @@ TEST_F(GribStormTest, ReadsAWholeFile) {
   EXPECT_NEAR(PathAt(*fields, 1, 0), mass * 8 / 16384, 0.002 * mass * 8 / 16384);
 }
 
-// Air has from 100 to 400 K. In other levels, the cells are missing.
+// Air temperatures must be from 100 to 400 K. If a level has other temperatures, its cells are
+// missing.
 TEST_F(GribStormTest, LeavesOutImpossibleTemperatures) {
   Layout layout;
   layout.edit = [](Message& message) {
@@ -238,11 +239,11 @@ TEST_F(GribStormTest, RefusesLatitudesBeyondThePoles) {
   EXPECT_THAT(ErrorOf(file), HasSubstr("its grid reaches beyond a pole"));
 }
 
-// The same file with rows from north to south has its rows in the other order.
+// If a file has its rows from north to south, they are read from south to north.
 TEST_F(GribStormTest, RowsRunNorthwards) {
   Layout layout;
   layout.edit = [](Message& message) {
-    // The southern row of the file's order has twice the northern one's.
+    // The southern row, which is the last in the file, has twice the amount of the northern row.
     if (message.number == 22) {
       message.values = {8 * message.step, 8 * message.step, 16 * message.step, 16 * message.step};
     }
@@ -278,7 +279,7 @@ TEST_F(GribStormTest, ReadsSeveralTimes) {
   EXPECT_TRUE(file->reader->Read(2, std::nullopt, {}).ok());
 }
 
-// Cloud water is `amount` times 2^-14 kg per kg at all points.
+// Returns a layout with cloud water of `amount` times 2^-14 kg per kg at all points.
 Layout WithCloud(float amount, Layout layout = {}) {
   layout.edit = [amount](Message& message) {
     if (message.category == 1 && message.number == 22) message.values = {amount * message.step};
@@ -424,7 +425,7 @@ TEST_F(GribStormTest, NamesTheMemberThatIsIncomplete) {
                         "missing"));
   EXPECT_THAT(ErrorOf(DescribeAlone(Write("c", FileOf({}) + FileOf({})))),
               HasSubstr("is there twice at hybrid level 1"));
-  // Temperature of another run is no temperature of this one.
+  // The temperature of another run must not be used for this run.
   const std::string other =
       FileOf({.hour = 18, .edit = [](Message& message) { return message.category == 0; }});
   EXPECT_THAT(ErrorOf(DescribeAlone(Write("a", FileOf({}) + other))),
@@ -496,7 +497,8 @@ TEST_F(GribStormTest, NamesALevelThatOnlyCoefficientsHave) {
   of_five.insert(of_five.begin(), 0.0F);
   of_five.push_back(0.0F);
   EXPECT_THAT(error(of_five), HasSubstr("every field of hybrid level 5 is missing"));
-  // Other models write other numbers there.
+  // Other models write other numbers in place of coefficients. These numbers do not say how many
+  // levels there are.
   of_five.back() = 273.15F;
   EXPECT_EQ(error(of_five), "");
 }
@@ -604,7 +606,8 @@ TEST_F(GribStormTest, ReadsOtherModelLevels) {
   }
 }
 
-// Levels of pressure 1000, 900, 800 and 700 hPa, of which the first is below the ground (990 hPa).
+// Returns a layout with the pressure levels 1000, 900, 800 and 700 hPa. The first is below the
+// ground, which is at 990 hPa.
 Layout Isobaric() {
   Layout layout;
   layout.level_type = 100;
@@ -643,7 +646,8 @@ TEST_F(GribStormTest, ComputesAMissingHeight) {
   EXPECT_TRUE(file->reader->Read(0, std::nullopt, {}).ok());
 }
 
-// ICON: generalized levels, 1 at the top, between half levels whose heights are known.
+// Returns a file in ICON's layout: generalized levels, numbered from 1 at the top, between half
+// levels whose heights are known.
 std::string Generalized(const std::vector<float>& grid_of_fields,
                         const std::vector<float>& grid_of_heights, bool are_layers = true) {
   Layout layout;
@@ -721,7 +725,7 @@ TEST_F(GribStormTest, LevelsWithOneNumberLieBetweenHalfLevels) {
                         "missing"));
 }
 
-// A storm on ICON's triangles. The places of its cells are fields, as are the others.
+// A storm on ICON's triangles. The places of its cells are stored as fields, too.
 TEST_F(GribStormTest, ReadsIconsTriangles) {
   const auto mesh = thunderhead::testing::Triangles({60e3, 40e3}, 2500.0);
   const volume::EarthPlace middle{48.0, 11.0};

@@ -46,7 +46,7 @@ Time TimeOf(const std::string& set, std::size_t index) {
     time.paths.push_back((Folder() / set / time.truth["file"]).string());
     return time;
   }
-  // Files of this hour, and those of all hours.
+  // Adds the files of this hour, and the files that hold for all hours.
   std::string begin = time.truth["files"];
   begin.pop_back();
   for (const auto& entry : std::filesystem::directory_iterator(Folder() / set)) {
@@ -181,7 +181,7 @@ TEST_P(GribTruth, MaximaAndTheirPlaces) {
     const std::size_t column =
         truth["j"].get<std::size_t>() * domain.cells.x + truth["i"].get<std::size_t>();
     const double maximum = truth["max"];
-    // Values were packed after the maximum was found.
+    // The known maximum is that of the values before they were packed, which rounds them.
     constexpr double kPacking = 0.01;
     float highest = 0.0F;
     for (const float value : values) highest = std::max(highest, std::isnan(value) ? 0.0F : value);
@@ -339,7 +339,7 @@ TEST_P(GribWind, TurnsWithTheGrid) {
               0.01);
 }
 
-// Without the heights of half levels, ICON's levels have no place.
+// Without the heights of half levels, the heights of ICON's levels are not known.
 TEST(GribParts, NameWhatIsMissing) {
   const StormFormats formats = StormFormats::BuiltIn();
   Time time = TimeOf("icon-d2-like", 0);

@@ -56,14 +56,14 @@ struct Domain {
 std::string Micro(double degrees) { return Number(std::llround(degrees * 1e6), 4); }
 std::string Milli(double metres) { return Number(std::llround(metres * 1e3), 4); }
 
-// The begin of section 3, up to the number of rows.
+// Returns the beginning of section 3, up to the number of rows.
 std::string Begin(const glm::ivec2& columns, int number) {
   return Number(0, 1) + Number(std::int64_t{columns.x} * columns.y, 4) + Number(0, 2) +
          Number(number, 2) + Number(6, 1) + Number(0, 15) + Number(columns.x, 4) +
          Number(columns.y, 4);
 }
 
-// A grid on HRRR's map: Lambert, tangent at 38.5 N.
+// Returns a grid on HRRR's map: Lambert, tangent at 38.5 N.
 Domain Hrrr(const glm::ivec2& columns, const glm::dvec2& step_m, const EarthPlace& first) {
   Domain domain;
   domain.columns = columns;
@@ -113,7 +113,7 @@ Domain Mercator(const glm::ivec2& columns, double step_m, const EarthPlace& firs
   return domain;
 }
 
-// NCEP's polar stereographic map, true at 60 N.
+// Returns a grid on NCEP's polar stereographic map, whose scale is true at 60 N.
 Domain Polar(const glm::ivec2& columns, double step_m, const EarthPlace& first) {
   Domain domain;
   domain.columns = columns;
@@ -131,8 +131,8 @@ Domain Polar(const glm::ivec2& columns, double step_m, const EarthPlace& first) 
   return domain;
 }
 
-// A file in HRRR's layout with two levels. Cloud water is in `cloudy` columns only. Without them it
-// is everywhere.
+// Returns a file in HRRR's layout with two levels. Cloud water is in the columns `cloudy` only, or
+// everywhere if `cloudy` is empty.
 std::string FileOf(const Domain& domain, const std::vector<glm::ivec2>& cloudy) {
   std::string bytes;
   const auto add = [&](int category, int number, int level, std::vector<float> values, float step) {
@@ -184,14 +184,14 @@ volume::MapProjection MapOf(const StormFile& file) {
   return *std::move(map);
 }
 
-// World coordinates of a column of the storm.
+// Returns the world coordinates of a column of the storm.
 glm::dvec2 WorldOf(const StormFile& file, const glm::dvec2& column) {
   return (column - 0.5 * glm::dvec2(file.cells.x - 1, file.cells.y - 1)) *
          glm::dvec2(file.dx_m, file.dy_m);
 }
 
-// The least and the largest length on the storm's map as a share of the true length, by one-column
-// steps of the model at places all over the domain.
+// Returns the least and the largest ratio of a length on the storm's map to the true length. The
+// lengths are steps of one column of the model, at places all over the domain.
 std::pair<double, double> ScalesOn(const StormFile& file, const Domain& domain) {
   const volume::MapProjection map = MapOf(file);
   std::pair<double, double> scales(1.0, 1.0);
@@ -296,7 +296,7 @@ void ExpectCloudsAtTheirPlaces(const StormFile& file, const Domain& domain,
   for (const glm::ivec2& column : cloudy) {
     const auto expected_m = map.WorldOf(domain.place_of(column));
     ASSERT_TRUE(expected_m.has_value());
-    // The cloud's centre of mass, within two columns of the model.
+    // Computes the cloud's centre of mass from the cells within two columns of the model.
     const double reach_m =
         2.0 * std::max({file.dx_m, file.dy_m,
                         domain.TrueLength_m(column, glm::dvec2(column) + glm::dvec2(1, 0)),

@@ -114,7 +114,8 @@ class StormExportTest : public ::testing::Test {
   const std::string path_ = folder_.File("storm.vdb");
 };
 
-// Returns the value that the file should hold, from the optics of the paper's eq. 4 alone.
+// Returns the value that the file should hold, computed by eq. 4 of Riley et al. 2003
+// (physics/hydrometeors.h) alone.
 double ExtinctionOf(const HydrometeorField& field, std::size_t cell) {
   const physics::ParticleOptics& optics = physics::DefaultOptics(field.hydrometeor);
   return 1.5 /
@@ -290,7 +291,8 @@ TEST_F(StormExportTest, DetailIsThatOfTheDrawnMedium) {
 }
 
 // Sums the storm over fields that are drawn as one group. They share the factors of their columns,
-// so graupel alone has 4 % more. Single columns are kept as far as volume/water_paths.h can.
+// so graupel alone has 4 % more. Detail keeps the water of single columns only as far as
+// volume/water_paths.h says.
 TEST_F(StormExportTest, DetailKeepsTheWaterOfTheSample) {
   const auto store =
       *storm_store::StormStore::Open({THUNDERHEAD_SOURCE_DIR "/samples/supercell.nc"}, {});

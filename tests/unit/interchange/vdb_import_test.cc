@@ -475,8 +475,8 @@ TEST_F(DamagedVdbTest, ASmallFileMayNotClaimMuchMemory) {
   file.write({grid}, openvdb::MetaMap(*OneVoxel("of the file")));
   file.close();
   const std::string whole = Contents(path_);
-  // The name, type and value of metadata of the file and of the grid, the name and type of the
-  // grid, and the type of its transform.
+  // The texts are the name, type and value of the metadata of the file and of the grid. They also
+  // include the name and type of the grid, and the type of its transform.
   for (const std::string text : {"class", "string", "of the file", "density", "Tree_float_5_4_3",
                                  "comment", "0123456789", "vec3i", "UniformScaleMap"}) {
     SCOPED_TRACE(text);

@@ -108,8 +108,8 @@ TEST(DetailFactor, FibresKeepTheirMean) {
 }
 
 TEST(DetailFactor, WhatIsFadedHasTheMeanOfWhatIsNot) {
-  // An averaged noise has the value 1/2 everywhere. Its surface is as wide as the distance it
-  // moved.
+  // Noise that is faded to its mean has the value 1/2 everywhere. It no longer moves the surface,
+  // which becomes as wide as the distance that the noise would move it.
   for (const float profile : {0.1F, 0.3F, 0.5F, 0.6F, 0.9F}) {
     double mean = 0.0;
     for (int i = 0; i < 256; ++i) {

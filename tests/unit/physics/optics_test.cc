@@ -126,8 +126,8 @@ TEST(PhaseFunctions, MeanCosines) {
 }
 
 TEST(PhaseFunctions, ShareScatteredWithinTenDegrees) {
-  // Cornette-Shanks scatters 90 % within ten degrees at g = 0.979, as the paper says of clouds, but
-  // only 38 % at g = 0.85.
+  // Cornette-Shanks scatters 90 % within ten degrees at g = 0.979, as Riley et al. 2003 (Vis) say
+  // of clouds, but only 38 % at g = 0.85.
   EXPECT_NEAR(CumulativePhase({kCs, 0.979F}, glm::radians(10.0)), 0.90, 0.005);
   EXPECT_NEAR(CumulativePhase({kCs, 0.85F}, glm::radians(10.0)), 0.38, 0.005);
 }

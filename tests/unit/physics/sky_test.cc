@@ -29,8 +29,8 @@ TEST(ClearSky, SunlightAndSkylightShareWhatCameIn) {
       const glm::vec3 direct = sine * sky.SunTransmittance();
       for (int channel = 0; channel < 3; ++channel) {
         EXPECT_GT(sky.Light().irradiance[channel], 0.0F);
-        // A low sun also lights the air of a round Earth from the side, so the irradiance on level
-        // ground does not bound it.
+        // A low sun also lights the air of a round Earth from the side, so sunlight and skylight
+        // together may exceed the sun's irradiance on level ground.
         if (elevation_deg >= 20.0F) {
           EXPECT_LE(direct[channel] + sky.Light().irradiance[channel], sine) << elevation_deg;
         }

@@ -65,7 +65,9 @@ TEST(Slicing, NarrowViewsMeetAllSlicesInOneOrderAndWideOnesInBoth) {
     const glm::dvec3 sun = scene::Direction(sun_azimuth_deg, 0.0);
     return OrderOf(SliceBox(kBox, sun, -view.forward, 10), view);
   };
-  // Azimuth 90 is along the view. Slices face 45 degrees from its axis when the sun is across it.
+  // The view is to azimuth 90. If the sun is at a right angle to the view, the slices' normal is 45
+  // degrees from the view's axis. Only a view that is wider than this to either side meets slices
+  // in both orders.
   EXPECT_EQ(order(270.0, 0.5), SliceOrder::kAlong);
   EXPECT_EQ(order(91.0, 0.5), SliceOrder::kAgainst);
   EXPECT_EQ(order(181.0, 0.9), SliceOrder::kAlong);

@@ -117,8 +117,9 @@ float MostHidden(const DiffusionCells& cells) {
   return *std::max_element(walls.Hidden().begin(), walls.Hidden().end());
 }
 
-// Light passes through cells of half a transport mean free path, so their steps are the cloud's own
-// shape.
+// If the cells are only half a transport mean free path thick, light passes through them, and
+// ridges of one cell count as the cloud's own shape. In denser cells they count as artefacts of the
+// grid.
 TEST(WallLight, RidgesOfOneCellSeeEachOtherWhereCellsAreThin) {
   const float thin = MostHidden(Ridges(0.005F, 1, 20));
   const float thick = MostHidden(Ridges(0.05F, 1, 20));

@@ -343,8 +343,8 @@ TEST_F(ConfinedFilesTest, AReaderHasATime) {
   EXPECT_EQ(Failures("time"), before + 2);
 }
 
-// A search gives a file little time at first, so that a slow file does not delay others. Nothing is
-// wrong with it yet.
+// A search gives a file little time at first, so that a slow file does not delay others. A file
+// that needs longer does not count as bad yet.
 TEST_F(ConfinedFilesTest, AFileThatNeedsLongerThanItsTrialIsTriedAgain) {
   const std::uint64_t before = Failures("time");
   const auto files = Files();

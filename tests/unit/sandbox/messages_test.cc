@@ -116,7 +116,7 @@ TEST(MessagesTest, EveryMemberOfTheFieldsArrives) {
   for (std::size_t i = 0; i < fields.size(); ++i) ExpectEqual(fields[i], expected.fields[i]);
   EXPECT_EQ(terrain_m, expected.terrain_height_m);
   ExpectEqual(land, expected.land);
-  // The storm store sets these.
+  // These two members are not sent, because the storm store sets them later.
   EXPECT_EQ(borders, nullptr);
   EXPECT_EQ(true_north_deg, 0.0);
   ExpectEqual(motion, expected.motion);
@@ -181,7 +181,7 @@ TEST(MessagesTest, EveryMemberOfADescriptionArrives) {
   ASSERT_EQ(others.size(), 2U);
   EXPECT_EQ(others[0].member, "mem06");
   EXPECT_EQ(others[1].times, expected.others[1].times);
-  // The server sets the other members itself.
+  // The other members are not sent, because the server sets them itself.
   EXPECT_EQ(path, "");
   EXPECT_TRUE(parts.empty());
   EXPECT_EQ(reader, nullptr);

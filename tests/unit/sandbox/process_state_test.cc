@@ -32,7 +32,7 @@ TEST(ProcessStateTest, TheStorageDoesNotExplainTheSilenceOfAStoppedProcess) {
   int status = 0;
   ASSERT_EQ(waitpid(child, &status, WUNTRACED), child);
   StorageWatch watch(child);
-  watch.ExplainsSilence();  // page faults from before count the first time
+  watch.ExplainsSilence();  // the first call counts earlier page faults
   EXPECT_FALSE(watch.ExplainsSilence());
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);

@@ -79,8 +79,8 @@ TEST(Scene, EachTechniqueRerunsFromItsOwnStage) {
   const HalfAngle detailed{
       .medium = {.transport = Transport::kConsistent, .look = {.detail = true}}};
   EXPECT_EQ(first(detailed, LightVolume{}), Stage::kLight);
-  EXPECT_EQ(first(HalfAngle{}, LightVolume{}), Stage::kExtinction);  // which has detail
-  EXPECT_EQ(first(HalfAngle{}, Metaballs{}), Stage::kExtinction);    // whose surfaces have detail
+  EXPECT_EQ(first(HalfAngle{}, LightVolume{}), Stage::kExtinction);  // the light volume has detail
+  EXPECT_EQ(first(HalfAngle{}, Metaballs{}), Stage::kExtinction);    // as metaballs' surfaces have
 }
 
 TEST(Scene, LightsCountWhereTheyAreShown) {

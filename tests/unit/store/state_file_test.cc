@@ -71,7 +71,7 @@ class StateFileTest : public ::testing::Test {
     jobs_ = *store::SqliteJobStore::In(*file);
   }
 
-  // Ends the stores, and expects that the next run finds so many sessions and jobs.
+  // Ends the stores, and expects that the next run finds these numbers of sessions and jobs.
   void ExpectKept(std::size_t sessions, std::size_t jobs) {
     sessions_.reset();
     jobs_.reset();

@@ -97,7 +97,8 @@ SyntheticCf Cmip(std::size_t cloudy) {
   return file;
 }
 
-// The path is density times thickness in air of 280 K at rest.
+// Returns the water path of a layer, which is its density times its thickness in air of 280 K at
+// rest.
 double PathBetween(double low_Pa, double high_Pa, double middle_Pa) {
   const double thick_m = kGas_J_per_kg_K * kAir_K / kGravity_m_per_s2 * std::log(low_Pa / high_Pa);
   return 1e-4 * middle_Pa / (kGas_J_per_kg_K * kAir_K) * thick_m;
@@ -146,7 +147,7 @@ TEST_F(CfFormula, ASingleLayerNeedsBoundsOfItsTerms) {
   ExpectError(file, "has one layer, and its terms have no bounds");
 }
 
-// The names of CAM's history files. Q is per mass of moist air.
+// Returns a file with the names of CAM's history files, in which Q is per mass of moist air.
 SyntheticCf Cam(bool with_terms) {
   SyntheticCf file = Cmip(2);
   constexpr double kReference_Pa = 1e5;
@@ -236,7 +237,7 @@ TEST_F(CfFormula, TermsOnAnotherDimensionFollowTheNumbersOfLevels) {
   ExpectError(file, "lies on another dimension than lev");
 }
 
-// CM1's coordinates. The ground is at 400 m, and the nominal top at 2000 m.
+// Returns a file with CM1's coordinates. The ground is at 400 m, and the nominal top at 2000 m.
 SyntheticCf Cm1() {
   SyntheticCf file;
   file.coordinates = {{"xh", {-2.5, -1.5, -0.5, 0.5, 1.5, 2.5}, {{"units", "km"}}, {}},

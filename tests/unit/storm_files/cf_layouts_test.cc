@@ -62,7 +62,8 @@ TEST_F(CfLayouts, TerrainLiesInAnyOrderOfDimensions) {
 
 TEST_F(CfLayouts, HeightIsAboveTheSurfaceAndAltitudeAboveSeaLevel) {
   SyntheticCf file = Cloud();
-  // Cloud in all layers up to 2 km, of which the lowest three are below the ground as altitudes.
+  // There is cloud in all layers up to 2 km. If their heights are altitudes, the lowest three
+  // layers are below the ground.
   file.variables[0].value = [](const Index&) { return 1e-4; };
   file.variables.push_back(Terrain({"y", "x"}));
   file.variables.back().value = [](const Index&) { return 1500.0; };
@@ -123,7 +124,8 @@ TEST_F(CfLayouts, HeightsAreThoseOfAnArrayOfFaces) {
   EXPECT_THAT(info_.assumptions, Contains(HasSubstr("HHL")));
 }
 
-// A fill value that no attribute names only takes its own layer away.
+// A height that is a fill value, although no attribute declares this value, removes only its own
+// layer.
 TEST_F(CfLayouts, ImpossibleHeightsAreMissing) {
   for (const double impossible_m : {1e9, -1e9}) {
     SyntheticCf file = FromTheTop();
@@ -151,7 +153,8 @@ TEST_F(CfLayouts, HeightsAreThoseOfAnArrayOfMiddles) {
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_NEAR((*fields)->grid.low_corner_m.z, 0.0, 1e-3);
   EXPECT_NEAR((*fields)->fields[0].statistics.maximum_water_path_kg_per_m2, 0.02, 1e-5);
-  // Without a standard name, heights that are below the terrain otherwise are above the ground.
+  // Heights without a standard name are taken as heights above the ground if they would lie below
+  // the terrain as altitudes.
   file.variables.back() = Values("zhval", {"z", "y", "x"}, "m", [](const Index& at) {
     return 100.0 + 200.0 * static_cast<double>(3 - at.at("z"));
   });
@@ -283,7 +286,7 @@ TEST_F(CfLayouts, BoundsTakePrecedenceOverCoordinates) {
   EXPECT_GE((*fields)->grid.HighCorner_m().z, 2000.0);
 }
 
-// The advice of the messages is followed, and then the file is read.
+// After the test has followed the advice in the error message, the file must be readable.
 TEST_F(CfLayouts, AnotherDimensionIsRefusedWithARemedyThatWorks) {
   SyntheticCf file = Cloud();
   SyntheticCf members = file;
@@ -293,7 +296,7 @@ TEST_F(CfLayouts, AnotherDimensionIsRefusedWithARemedyThatWorks) {
   ExpectError(members, "for example with ncks -d member,0 in.nc out.nc");
   members.coordinates.back().values.resize(1);
   EXPECT_TRUE(Read(members).ok()) << Read(members).status();
-  // The dimension may also be a direction without a name that is known.
+  // The additional dimension may also be one of x, y and z under an unknown name.
   file.coordinates[2].name = "storey";
   file.coordinates[2].attributes.erase("axis");
   file.coordinates[2].attributes.erase("positive");
@@ -338,7 +341,8 @@ TEST_F(CfLayouts, RotatedGridsHaveTheirPlace) {
   EXPECT_NEAR(info_.longitude_deg.value(), 23.94830, 1e-3);
   EXPECT_NEAR((*fields)->grid.spacing_m.y, 1111.95, 0.5);
   EXPECT_NEAR((*fields)->grid.spacing_m.x, 1111.95 * std::cos(5.0 * M_PI / 180.0), 0.5);
-  // The mapping alone says that the axes are rotated, and so do their names alone.
+  // Either the mapping alone or the names of the axes alone suffice to show that the axes are
+  // rotated.
   for (testing::CfCoordinate* axis : {&file.coordinates[0], &file.coordinates[1]}) {
     axis->attributes.erase("standard_name");
   }

@@ -98,7 +98,7 @@ TEST_F(CfLevels, EveryPartOfTheLayersHasItsOwnHeights) {
     } else {
       EXPECT_THAT(info_.assumptions, Not(says_ground));
     }
-    // Both may run upwards.
+    // In the file, the layers and the half levels may both run from the bottom up.
     ExpectCloud(Part(From(last, first), From(9, 1), cloudy), cloudy);
   }
 }
@@ -136,11 +136,12 @@ TEST_F(CfLevels, MiddlesAreMatchedByNumber) {
 }
 
 TEST_F(CfLevels, HalfLevelsThatAreMissingAreNamed) {
-  // Both were cut to the same numbers, so the half level below the last layer is missing.
+  // Layers and half levels were cut to the same numbers, so the half level below the last layer is
+  // missing.
   ExpectError(Part(From(4, 6), From(4, 6), 5.0),
               "HHL, because it has the half levels 4 to 6 (lev_2) where the layers 4 to 6 (lev) "
               "need 4 to 7; give the missing levels");
-  // As many as are needed, but other ones.
+  // These files have four half levels, as many as the layers need, but not the right ones.
   ExpectError(Part(From(4, 6), From(1, 4), 5.0), "where the layers 4 to 6 (lev) need 4 to 7");
   ExpectError(Part(From(4, 6), From(3, 6), 5.0), "where the layers 4 to 6 (lev) need 4 to 7");
   ExpectError(Part(From(4, 6), From(6, 9), 5.0), "where the layers 4 to 6 (lev) need 4 to 7");
@@ -173,7 +174,8 @@ TEST_F(CfLevels, WithoutNumbersAllLevelsMustBeThere) {
   whole.coordinates[3].written = false;
   ExpectCloud(whole, 5.0);
   EXPECT_THAT(info_.assumptions, Not(Contains(HasSubstr("have no numbers"))));
-  // As many half levels as a part of the layers needs are taken as theirs.
+  // If a file has a part of the layers and exactly as many half levels as they need, the half
+  // levels are taken as those of the layers.
   SyntheticCf cut = Part(From(6, 8), From(6, 9), 7.0);
   cut.coordinates[3].written = false;
   ExpectCloud(cut, 7.0);
@@ -187,7 +189,8 @@ TEST_F(CfLevels, FacesMayBeNumberedFromZero) {
   SyntheticCf file = Part(From(1, 8), From(1, 9), 5.0, "altitude");
   file.coordinates[3].values = From(0, 8);
   ExpectCloud(file, 5.0);
-  // A part of such levels cannot be told from one of other levels.
+  // If the file has only a part of the layers, the numbers do not show whether the faces are
+  // numbered from 0 or from 1.
   SyntheticCf part = Part(From(4, 6), From(1, 9), 5.0, "altitude");
   ExpectError(part, "its name does not say whether these are half levels");
 }
@@ -265,7 +268,7 @@ TEST_F(CfHeightsFile, IsNamedIfItIsMissingOrAmbiguous) {
   EXPECT_EQ(ErrorOf(run_), "");
   WriteHeights(merged, "other_c.nc");
   EXPECT_THAT(ErrorOf(run_), HasSubstr("both have the heights of one time"));
-  // Heights on other columns are of another run.
+  // Heights on other columns belong to another run, so they are not used.
   SyntheticCf other = merged;
   for (double& x_m : other.coordinates[0].values) x_m += 500.0;
   std::filesystem::remove(run_ + "/other_c.nc");

@@ -184,8 +184,8 @@ SyntheticCf SamOutput(double temperature_K) {
 }
 
 TEST_F(CfModels, SamsCondensateIsDividedByTemperature) {
-  // At 270.66 K, 17.5 of 20 K of the mixed range of cloud are below, and 2.5 of 15 K of that of
-  // rain.
+  // Cloud is mixed over a range of 20 K, and 270.66 K is 17.5 K above the range's lower limit. Rain
+  // is mixed over a range of 15 K, and this temperature is 2.5 K above its lower limit.
   const double per_g = 1e-3 * 60'000.0 / (kModelGas_J_per_kg_K * 270.66) * kModelThickness_m;
   const double graupel_in_ice = (270.66 - 223.16) / 60.0;
   ExpectPaths(SamOutput(270.66),
@@ -195,7 +195,7 @@ TEST_F(CfModels, SamsCondensateIsDividedByTemperature) {
                {Hydrometeor::kSnow, 0.4 * 5.0 / 6.0 * (1.0 - graupel_in_ice) * per_g},
                {Hydrometeor::kGraupel, 0.4 * 5.0 / 6.0 * graupel_in_ice * per_g}});
   EXPECT_THAT(info_.assumptions, Contains(HasSubstr("QN is divided into cloud water and ice")));
-  // With cloud water and ice of their own, QN says nothing more.
+  // If the file has separate variables for the phases, QN adds nothing and is left out.
   SyntheticCf file = SamOutput(270.66);
   const std::vector<std::string> on = {"time", "z", "y", "x"};
   file.variables.push_back(InLowest("QC", on, WithName("Cloud Water", "g/kg"), "z", 0.5));
@@ -283,7 +283,7 @@ TEST_F(CfModels, MesoNhLevelsFollowTheTerrain) {
   const auto fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_FLOAT_EQ((*fields)->terrain_height_m[0], 1000.0F);
-  // A layer of 500 m is thinner above high ground, by 1 - ZS / ZTOP.
+  // A layer of 500 m is thinner above high ground, by the factor 1 - ZS / ZTOP.
   const double path = 5e-4 * 100'000.0 / (kModelGas_J_per_kg_K * 300.0) * kModelThickness_m;
   const volume::FieldStatistics& statistics = (*fields)->fields[0].statistics;
   EXPECT_NEAR(statistics.maximum_water_path_kg_per_m2, path, 2e-3 * path);
@@ -339,7 +339,8 @@ TEST(ReferenceAtmosphereTest, IsAtRest) {
   for (const ReferenceAtmosphere& each : {lapse, exponential}) {
     EXPECT_DOUBLE_EQ(each.Pressure_Pa(0.0), 1e5);
     for (double height_m = 500.0; height_m < 12'000.0; height_m += 500.0) {
-      // The temperature that the formulas say, against that of the hydrostatic equation.
+      // Compares the temperature of the formulas with the temperature that follows from the
+      // pressure by the hydrostatic equation.
       const double fall =
           std::log(each.Pressure_Pa(height_m - 1.0) / each.Pressure_Pa(height_m + 1.0));
       const double at_rest_K = 9.80665 / 287.05 * 2.0 / fall;
@@ -377,7 +378,8 @@ TEST_F(CfModels, CosmoAddsItsReferenceAtmosphere) {
   file.variables.push_back(OfOneValue("vcoord", {"level1"}, {{"units", "Pa"}}, 0.0));
   file.number_attributes["vcoord"] = {{"irefatm", 2},  {"p0sl", 1e5},     {"t0sl", 288.15},
                                       {"dt0lp", 42.0}, {"delta_t", 75.0}, {"h_scal", 10'000.0}};
-  // At the middle of the highest layer, 3500 m, by the formula and COSMO's constants.
+  // This is the pressure at the middle of the highest layer, 3500 m, by the formula and COSMO's
+  // constants.
   const double top_K = 288.15 - 75.0;
   const double pressure_Pa =
       200.0 + 1e5 * std::exp(-9.80665 / 287.05 * 10'000.0 / top_K *
@@ -387,7 +389,7 @@ TEST_F(CfModels, CosmoAddsItsReferenceAtmosphere) {
   ExpectPaths(
       file, {{Hydrometeor::kCloud, 5e-4 * pressure_Pa / (kModelGas_J_per_kg_K * 270.0) * 1000.0}});
   EXPECT_THAT(info_.assumptions, Contains(HasSubstr("COSMO's reference atmosphere")));
-  // The whole pressure is better, if the file has it.
+  // If the file has the whole pressure, it is used instead.
   file.variables.push_back(
       OfOneValue("P", on, {{"standard_name", "air_pressure"}, {"units", "Pa"}}, 80'000.0));
   ExpectPaths(file,

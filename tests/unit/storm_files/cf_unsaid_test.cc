@@ -112,7 +112,7 @@ TEST_F(CfUnsaid, NumbersOfColumnsAreNoPlaces) {
   }
 }
 
-// Rows that run south although their numbers rise are turned.
+// If rows run from north to south although their numbers rise, the reader reverses their order.
 TEST_F(CfUnsaid, NumbersOfRowsDoNotSayWhereNorthIs) {
   SyntheticCf file = Water();
   for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -228,7 +228,7 @@ TEST_F(CfUnsaid, PalmsOriginPlacesItsDomain) {
   EXPECT_THAT(info_.assumptions, Contains(HasSubstr("origin_lat, origin_lon")));
   EXPECT_THAT(info_.assumptions, Contains("The heights zu_3d count from the origin, which is 340 m "
                                           "above sea level (origin_z)."));
-  // A grid that is turned has no place, because its axes point elsewhere.
+  // A turned grid gets no place on Earth, because its axes do not point east and north.
   file.number_attributes[""]["rotation_angle"] = 30.0;
   fields = MustRead(file);
   ASSERT_NE(fields, nullptr);

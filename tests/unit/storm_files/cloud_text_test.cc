@@ -31,7 +31,7 @@ using ::testing::SizeIs;
 using testing::TemporaryFolder;
 using volume::HydrometeorFields;
 
-// Levels 100 m apart, of which the first and the last are clear. As AT3D writes it.
+// A file as AT3D writes it, with levels 100 m apart. The first and the last level are clear.
 constexpr char kParticlesText[] =
     "2 parameter LWC file\n"
     " 2 3 4\n"

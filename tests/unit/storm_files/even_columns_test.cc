@@ -134,7 +134,8 @@ void ExpectEven(const Model& model, const EvenColumns& even) {
       const auto south_west = static_cast<int>(from.south_west);
       const glm::ivec2 column(south_west % width, south_west / width);
       const glm::dvec2 position(column.x + from.east, column.y + from.north);
-      // Columns in the outer half of an outermost one get the values of its centre.
+      // Even columns in the outer half of one of the model's outermost columns get the values of
+      // its centre, so their places are not compared.
       const glm::dvec2 edge = glm::dvec2(model.places.columns - 1) - 1e-3;
       if (position.x < 1e-3 || position.y < 1e-3 || position.x > edge.x || position.y > edge.y) {
         continue;
@@ -248,7 +249,8 @@ TEST(EvenColumns, KeepsASmallLongitudeLatitudeGrid) {
   EXPECT_THAT(even->projection, HasSubstr("+proj=eqc"));
 }
 
-// A grid that is even but turned is not a grid of eastings and northings.
+// The columns of a turned grid are even, but its axes do not point east and north, so the columns
+// are resampled to axes that do.
 TEST(EvenColumns, TurnsListedColumnsNorthUp) {
   const EarthPlace middle{40.0, 5.0};
   Model turned;
@@ -294,7 +296,8 @@ std::pair<double, double> ScalesOn(const std::string& projection, const Model& m
 void ExpectStatedErrors(const EvenColumns& even, const Model& model) {
   const auto [least, largest] = ScalesOn(even.projection, model);
   EXPECT_TRUE(even.IsTooWide());
-  // It is measured up to the edges of the outermost columns.
+  // The stated scales hold up to the edges of the outermost columns, beyond the centres that
+  // ScalesOn uses.
   EXPECT_LT(even.least_scale, least + 1e-4);
   EXPECT_GT(even.largest_scale, largest - 1e-3);
   EXPECT_NEAR(even.least_scale, least, 0.005);
@@ -334,7 +337,8 @@ TEST(EvenColumns, KeepsAWideDomainOnItsConformalMap) {
   }
 }
 
-// Without a map, or on one that distorts, they are resampled to a map with smaller errors.
+// The columns of a continent without a map, or on a map that distorts much, are resampled to a map
+// with smaller errors.
 TEST(EvenColumns, ResamplesAWideDomainToAConformalMap) {
   Model degrees = LongitudeLatitudeGrid(-30.0, 25.0);
   degrees.places.step = {0.6, 0.6};

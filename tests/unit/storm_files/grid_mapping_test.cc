@@ -210,7 +210,7 @@ TEST(GridMappingTest, AGeostationaryGridHasScanningAngles) {
                          radius_m * std::sin(geocentric));
   const glm::dvec2 angles(std::atan(-way_m.y / way_m.x), std::asin(way_m.z / glm::length(way_m)));
   ExpectSame(PlaceOf(mapping, angles), {47.0, 8.0});
-  // The angles times the height, in kilometres.
+  // The coordinates may also be the angles times the satellite's height, here in kilometres.
   const GridMapping in_km = Read(attributes, {.unit_m = 1000.0});
   EXPECT_EQ(in_km.axes, GridAxes::kMetres);
   ExpectSame(PlaceOf(in_km, angles * 35785.831), {47.0, 8.0});

@@ -1,4 +1,4 @@
-// Tests of values that no quantity has, in CF and WRF files: factors of units and packing, air
+// Tests of physically impossible values in CF and WRF files: factors of units and packing, air
 // temperatures, and places on Earth. Each is refused by name, or its cells are missing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

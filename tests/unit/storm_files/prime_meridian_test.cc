@@ -109,7 +109,7 @@ TEST_F(PrimeMeridian, MayBeAName) {
   ExpectError(file,
               "the grid mapping crs has prime_meridian_name 'Ys', which is not known; add "
               "longitude_of_prime_meridian");
-  // The number counts if there are both.
+  // If the mapping has both a name and a number of its prime meridian, the number is used.
   file.number_attributes["crs"] = {{"longitude_of_prime_meridian", 5.0}};
   EXPECT_NEAR(LongitudeOf(file), 15.0, 1e-6);
   file.number_attributes["crs"] = {{"longitude_of_prime_meridian", 400.0}};
@@ -143,7 +143,8 @@ TEST_F(PrimeMeridian, MovesRotatedGrids) {
   EXPECT_NEAR(*info_.latitude_deg, 50.98145, 1e-3);
 }
 
-// Each mapping with its central meridian at 8 degrees has its middle there.
+// The middle of the domain is on the central meridian of each mapping, which is 8 degrees from the
+// prime meridian.
 TEST_F(PrimeMeridian, MovesEveryProjection) {
   struct Mapping {
     const char* name;
@@ -180,8 +181,8 @@ TEST_F(PrimeMeridian, MovesEveryProjection) {
   }
 }
 
-// A mapping of longitudes and latitudes, and one that is named for them, is the datum of longitudes
-// of all columns.
+// If each column has its longitude, the prime meridian is taken from a grid mapping of longitudes
+// and latitudes, or from the mapping that the field names for these coordinates.
 TEST_F(PrimeMeridian, MovesLongitudesOfAllColumns) {
   SyntheticCf file = Cloud();
   file.coordinates[0].written = false;

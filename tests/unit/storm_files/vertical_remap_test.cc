@@ -243,7 +243,8 @@ TEST(ChooseVerticalGrid, EndsAboveAllClouds) {
   EXPECT_NEAR(Path(grid, cells) / Path(interfaces_m, cloud), 1.0, 1e-5);
   EXPECT_GT(cells.back(), 0.0F);
   EXPECT_EQ(Extended(grid, interfaces_m).cells, grid.cells);
-  // Extinction may be anything, and layers that begin higher are no storm's.
+  // The grid covers all layers if the fields hold extinction, which may lie at any height. It also
+  // covers them if they begin so high that they cannot be those of a storm.
   constexpr double kAnyHeight = std::numeric_limits<double>::infinity();
   EXPECT_GE(ChooseVerticalGrid(interfaces_m, 137, 1, kAnyHeight).High_m(), 81'935.0);
   EXPECT_GE(ChooseVerticalGrid({20'000.0F, 30'000.0F, 50'000.0F}, 2, 1).High_m(), 50'000.0);

@@ -104,7 +104,8 @@ TEST_F(WrfPlaceTest, IsThatOfTheAttributesWithoutCoordinates) {
   EXPECT_DOUBLE_EQ(described->latitude_deg.value_or(0), 40.5);
   EXPECT_DOUBLE_EQ(described->longitude_deg.value_or(0), -100.25);
   EXPECT_THAT(Assumptions(*described), HasSubstr("CEN_LAT"));
-  // The attributes are not the place of a part of the domain, or of a nest, which may move.
+  // The attributes do not give the place of a part of the domain. Nor do they give that of a nest,
+  // because it may move.
   SyntheticWrf part = file;
   part.numbers["WEST-EAST_GRID_DIMENSION"] = 99.0;
   SyntheticWrf nest = file;

@@ -58,7 +58,7 @@ TEST_F(WrfTimesTest, ARunWithoutADateBeginsInYearOne) {
   file.times = {"0000-00-00_00:10:00", "0000-00-00_00:20:00"};
   EXPECT_THAT(Times(file), ElementsAre("0001-01-01 00:10:00", "0001-01-01 00:20:00"));
   EXPECT_THAT(assumptions_, HasSubstr("0000-00-00"));
-  // Times that stay at zero say less than XTIME.
+  // If Times stays at zero in a run without a date, XTIME gives the times.
   file.times = {"0000-00-00_00:00:00", "0000-00-00_00:00:00"};
   file.minutes = {30.0, 40.0};
   file.units["XTIME"] = "minutes since 0000-00-00 00:00:00";

@@ -361,7 +361,8 @@ TEST(FairFolders, EachLevelSharesItsTime) {
     ++served[folder];
     turns.Used(folder, 1.0);
   }
-  // Half for /other. In /d, a quarter each for its own files, /d/a, /d/a-b and /d/z.
+  // Half of the turns are for /other, and half for /d. Those of /d are shared equally by its own
+  // files, /d/a, /d/a-b and /d/z.
   EXPECT_EQ(served["/other"], 40);
   EXPECT_EQ(served["/d"], 10);
   EXPECT_EQ(served["/d/a/1"], 5);
@@ -374,7 +375,7 @@ TEST(FairFolders, OfEqualFoldersTheOneThatCameFirstIsServed) {
   FairFolders turns;
   EXPECT_EQ(turns.Next({"m", "z"}), "m");
   turns.Used("m", 1.0);
-  // Folders with earlier names come again and again.
+  // A folder with an earlier name appears later, but z has waited longer and gets its turn first.
   EXPECT_EQ(turns.Next({"a", "m", "z"}), "z");
   turns.KeepOnly({"z"});
   EXPECT_EQ(turns.Next({"m", "z"}), "z") << "what was used is forgotten, and so is when it came";

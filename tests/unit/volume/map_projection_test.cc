@@ -90,7 +90,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {30.0, -110.0},
                 {-965932.1, -1056814.9}}));
 
-// A rotated grid by Cartesian vectors: the grid's own longitude and latitude of a place.
+// Returns the longitude and latitude of a place on a rotated grid, computed with Cartesian vectors.
 glm::dvec2 Rotated_deg(const EarthPlace& place, const EarthPlace& pole) {
   const auto vector = [](const EarthPlace& at) {
     const double latitude = glm::radians(at.latitude_deg);
