@@ -73,11 +73,11 @@ test("rules, control and the pointer reach a viewer's page", async () => {
     const ask = page.getByTestId("ask-control");
 
     await desktop.key("h");
-    // This is the check mark of the first rule, below two people.
+    // The panel lists the two people, and the rules below them. This place has the check mark of the first rule.
     const mark = () => pixelsLike(region(display.pixels(), { x: 884, y: 272, width: 24, height: 24 }), [255, 209, 107]);
     await eventually("the rules are not shown", () => mark() > 20);
     display.screenshot("rules");
-    // This is the rule that locks control, below two people.
+    // This click is on the rule that locks control.
     await desktop.click(895, 318);
     await until("control is locked on the page", () => ask.isDisabled(), HANG_LIMIT_MS);
     await desktop.click(895, 318);

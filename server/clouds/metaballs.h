@@ -26,8 +26,8 @@ std::string_view NameOf(Basis basis);
 
 struct Metaball {
   glm::dvec3 centre_m{0.0};
-  double sigma_m = 1.0;  // root mean square distance of the cluster's points from the centre, eq.
-                         // 23
+  double sigma_m = 1.0;  // size of the ball: the root mean square distance from its centre to the
+                         // points that it represents (clouds/clustering.h)
   double weight = 0.0;   // v of eq. 17: the ball's value at its centre
 
   bool operator==(const Metaball&) const = default;

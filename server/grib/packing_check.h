@@ -23,7 +23,8 @@ enum class Packing {
   kSecondOrder = 50002,
 };
 
-// Whole sections, with their lengths and numbers.
+// The data of one packed field. Each span is a whole section of the message, including its length
+// and its section number.
 struct PackedField {
   std::uint64_t points = 0;            // number of the grid's points, by section 3
   std::span<const std::byte> packing;  // section 5

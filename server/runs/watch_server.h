@@ -23,8 +23,8 @@ struct ServerWatch {
 };
 
 // Watches until the watch is over. Then returns OK, or DATA_LOSS if some pictures can never be
-// made. Returns CANCELLED if `stop` is requested, and UNAVAILABLE or DEADLINE_EXCEEDED if the
-// server cannot be reached or does not answer, again a minute after the first failure. Any other
+// made. Returns CANCELLED if `stop` is requested. If the server cannot be reached or does not
+// answer, tries again for a minute, and then returns UNAVAILABLE or DEADLINE_EXCEEDED. Any other
 // error of a call ends the watch at once.
 absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRun& run,
                          RunProgress& progress, const std::stop_token& stop);

@@ -96,8 +96,8 @@ struct HydrometeorFields {
   // The storm store sets it.
   double true_north_deg = 0.0;
   AirMotion motion;    // motion of the air
-  AirDensity air;      // density of the air for mixing ratios; empty if the file has no mixing
-                       // ratios
+  AirDensity air;      // density of the air, which converts concentrations back to mixing ratios;
+                       // empty if the file has no mixing ratios
   CellBox condensate;  // the smallest box that contains every cell with condensate
 
   // Returns the size of all arrays in bytes, including arrays that are shared with other times.

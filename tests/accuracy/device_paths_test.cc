@@ -47,7 +47,8 @@ Mean MeanOf(const std::vector<double>& values) {
   return {sum / count, std::sqrt(squares / count / (count - 1.0))};
 }
 
-// A device turn that ends each piece of work as soon as possible, and counts the pieces.
+// A device turn that is always free. It counts how often it is taken, which happens at the start of
+// each piece of work.
 class CountedTurn final : public base::DeviceTurn {
  public:
   absl::Status Take() override {

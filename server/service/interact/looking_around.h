@@ -24,9 +24,9 @@ class LookingAround {
   // Returns true if the person has an own view or has requested one.
   bool Looks() const;
 
-  // Moves the view to the camera of the newest request that has arrived here, which may be newer
-  // than `camera`. If there is no view, `open` opens one. If there is no view and `open` is null,
-  // the camera is kept for the pending view.
+  // Moves the view to `camera`, the camera of request number `look`. If a newer request has already
+  // taken effect, its camera is used instead. If there is no view, `open` opens one. If there is no
+  // view and `open` is null, the camera is kept for the pending view.
   void LookFrom(std::uint64_t look, const scene::Camera& camera, const Open& open);
   // Returns the session that draws the view, or null if there is no view. First closes the view if
   // `follows` returns true: the person sees the session's view again.

@@ -25,8 +25,9 @@ PHYSICS_FUNCTION vec2 densities_of_air(float height_m) {
   return exp(-height_m / vec2(kAirScaleHeight_m, kHazeScaleHeight_m));
 }
 
-// Returns exp(x^2) erfc(x) for x >= 0 with an error below 6e-4. The formula has the form of the bounds of this function
-// (Abramowitz and Stegun, 7.1.13), interpolated between them with the right slope at 0.
+// Returns exp(x^2) erfc(x) for x >= 0 with an error below 6e-4. Abramowitz and Stegun (7.1.13) give a lower and an
+// upper bound of this function, which differ only in a constant: 2 or 4 / pi. This function replaces the constant by
+// `bound`, which grows from 4 / pi at x = 0 to 2 for large x. The value and the slope at 0 are exact.
 PHYSICS_FUNCTION float scaled_erfc(float x) {
   float bound = 2.0f - 0.72676046f / (1.0f + x * (0.848f + x * 0.45f));
   return 1.12837917f / (x + sqrt(x * x + bound));

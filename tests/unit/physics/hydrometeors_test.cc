@@ -38,7 +38,9 @@ TEST(Hydrometeors, MassExtinctionIsNearPublishedTables) {
 }
 
 TEST(Hydrometeors, EffectiveRadiusFromTheMassOfAMeanParticle) {
-  // 1e-11 kg of water is a sphere of 13.365 um: a kilogram of air with 1 g in 1e8 droplets.
+  // A droplet has a mass of 1e-11 kg if, for example, 1 g of cloud water is spread over 1e8
+  // droplets. A sphere of that mass has a radius of 13.365 um. The effective radius of droplets
+  // with this mean mass is 1.1157 times as large, because their sizes vary.
   EXPECT_NEAR(EffectiveRadius_m(Hydrometeor::kCloud, 1e-11F), 1.1157 * 13.365e-6, 1e-9);
   // A sphere of water of this mass has a radius of 1 mm. An exponential distribution with this mean
   // mass has a mean diameter of 1.1006 mm, and its effective radius is 3/2 of its mean diameter.

@@ -192,8 +192,9 @@ TEST(SpotterView, LooksWhereItsAzimuthAndElevationSay) {
 }
 
 TEST(SpotterView, DistantStormsSinkBelowTheHorizon) {
-  // The triangle is that of the Earth's centre, the eye and a point above the storm's middle. It is
-  // accurate to third order in the angle at the centre: 8e-6 radians at 150 km.
+  // The expected elevation comes from the triangle of the Earth's centre, the eye and a point above
+  // the storm's middle. The view approximates it to third order in the angle at the centre. The
+  // error is about 8e-6 radians at 150 km.
   for (const double distance_m : {20e3, 80e3, 150e3}) {
     SpotterCamera camera;
     camera.place_m = {5e3, -distance_m};
