@@ -182,8 +182,7 @@ absl::Status Serve(ServeFlags flags) {
   // The certificates are checked before any port is opened, because the errors of this check name
   // the files.
   if (!flags.tls.certificate.empty()) {
-    THUNDERHEAD_RETURN_IF_ERROR(
-        gateway::TlsContexts::Open(flags.tls.certificate, flags.tls.key).status());
+    THUNDERHEAD_RETURN_IF_ERROR(gateway::TlsContexts::Open(flags.tls).status());
   }
   RaiseFileLimit();
   storm_store::StormStoreOptions store_options;

@@ -186,9 +186,8 @@ absl::StatusOr<std::unique_ptr<Gateway>> Gateway::Start(const GatewayOptions& op
   THUNDERHEAD_ASSIGN_OR_RETURN(const net::ip::address address, ParseAddress(options.address));
   THUNDERHEAD_ASSIGN_OR_RETURN(StaticFiles files, StaticFiles::Open(options.page_directory));
   std::unique_ptr<TlsContexts> tls;
-  if (!options.tls_certificate.empty()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        tls, TlsContexts::Open(options.tls_certificate, options.tls_key, *options.time));
+  if (!options.tls.certificate.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(tls, TlsContexts::Open(options.tls, *options.time));
   }
   auto listener = std::make_unique<Listener>(
       options, std::move(files),

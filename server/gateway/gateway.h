@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "base/certificate_files.h"
 #include "base/file_descriptor.h"
 #include "base/own_file.h"
 #include "base/time_source.h"
@@ -59,9 +60,7 @@ struct GatewayOptions {
   std::string address = "127.0.0.1";
   // The port; 0 chooses a free one, see Gateway::Port().
   uint16_t port = 0;
-  // PEM files, which are loaded again when they change. If both are empty, TLS is off.
-  std::string tls_certificate;
-  std::string tls_key;
+  base::TlsFiles tls;
   // Names of this server in addition to its addresses. Requests for other hosts are refused.
   // Otherwise, a foreign web site could reach the server by letting its own name resolve to the
   // server's address. HttpPolicy has the rules.

@@ -103,8 +103,7 @@ class TlsTest : public EchoTest {
     std::ofstream(folder_.File("page/index.html")) << "<html>storm</html>";
     std::ofstream(folder_.File("page/big.js")) << std::string(9'000'000, 'x');
     options_.page_directory = folder_.File("page");
-    options_.tls_certificate = Certificate();
-    options_.tls_key = Key();
+    options_.tls = {Certificate(), Key()};
     DriveTime();
     Site();
   }
@@ -225,7 +224,7 @@ TEST_F(TlsTest, OneAddressHasSoManyHandshakesASecond) {
 
 TEST_F(TlsTest, FilesThatDoNotFitAreNamed) {
   testing::WriteSelfSigned(folder_.File("other.pem"), folder_.File("other_key.pem"), 3);
-  options_.tls_key = folder_.File("other_key.pem");
+  options_.tls.key = folder_.File("other_key.pem");
   const absl::Status wrong = Gateway::Start(options_, nullptr).status();
   EXPECT_EQ(wrong.code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(wrong.message()), HasSubstr("other_key.pem"));

@@ -350,8 +350,7 @@ TEST(SecureLoad, ComesByTlsToWhomItTrustsOnly) {
   testing::FakeService service;
   gateway::GatewayOptions site;
   site.address = "0.0.0.0";  // an address that the certificate does not name
-  site.tls_certificate = certificate;
-  site.tls_key = folder.File("key.pem");
+  site.tls = {certificate, folder.File("key.pem")};
   const auto gateway = gateway::Gateway::Start(site, service.server().LocalChannel());
   ASSERT_TRUE(gateway.ok()) << gateway.status();
   const int port = (*gateway)->Port();
