@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "base/certificate_files.h"
 #include "base/file_descriptor.h"
 #include "base/own_file.h"
 #include "base/time_source.h"
@@ -24,6 +23,8 @@
 #include "grpcpp/channel.h"
 
 namespace thunderhead::gateway {
+
+class TlsContexts;
 
 // The contents that a file must have.
 struct FileContents {
@@ -60,7 +61,8 @@ struct GatewayOptions {
   std::string address = "127.0.0.1";
   // The port; 0 chooses a free one, see Gateway::Port().
   uint16_t port = 0;
-  base::TlsFiles tls;
+  // The certificate of the port. If null, TLS is off.
+  std::shared_ptr<TlsContexts> tls;
   // Names of this server in addition to its addresses. Requests for other hosts are refused.
   // Otherwise, a foreign web site could reach the server by letting its own name resolve to the
   // server's address. HttpPolicy has the rules.
