@@ -179,11 +179,10 @@ absl::Status Serve(ServeFlags flags) {
   std::jthread starting = EndIfToldWhileStarting(signals);
   THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::Door> door, MakeDoor(flags));
-  // The certificates are checked before any port is opened, because the errors of this check name
-  // the files.
+  // The certificate is loaded before any port is opened, and before the storms are searched, so
+  // that a wrong file is reported at once.
   if (!flags.tls.certificate.empty()) {
-    THUNDERHEAD_RETURN_IF_ERROR(
-        gateway::TlsContexts::Open(flags.tls.certificate, flags.tls.key).status());
+    THUNDERHEAD_ASSIGN_OR_RETURN(flags.gateway.tls, gateway::TlsContexts::Open(flags.tls));
   }
   RaiseFileLimit();
   storm_store::StormStoreOptions store_options;

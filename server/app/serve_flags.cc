@@ -324,8 +324,6 @@ absl::Status CompleteFlags(ServeFlags& flags) {
   flags.limits.max_handshakes_per_address = flags.gateway.max_handshakes_per_address;
   flags.gateway.max_unsent_bytes = static_cast<std::size_t>(flags.max_unsent_mib) << 20;
   flags.gateway.max_message_bytes = flags.limits.max_request_bytes;
-  flags.gateway.tls_certificate = flags.tls.certificate;
-  flags.gateway.tls_key = flags.tls.key;
   flags.gateway.allowed_hosts = flags.allowed_hosts;
   flags.gateway.allowed_origins = flags.allowed_origins;
   THUNDERHEAD_ASSIGN_OR_RETURN(flags.gateway.trusted_proxies, ProxiesOf(flags));

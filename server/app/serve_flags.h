@@ -15,6 +15,7 @@
 #include "app/jobs_flags.h"
 #include "app/operation.h"
 #include "app/reader_flags.h"
+#include "base/certificate_files.h"
 #include "base/executor.h"
 #include "base/memory_budget.h"
 #include "drawing/render_loop.h"
@@ -46,7 +47,7 @@ struct ServeFlags {
   std::vector<std::string> auth = {"none"};
   std::string jwt_issuer;
   std::string jwt_audience;
-  rpc_port::TlsFiles tls;
+  base::TlsFiles tls;
   bool insecure = false;
   std::vector<std::string> allowed_hosts;
   std::vector<std::string> allowed_origins;

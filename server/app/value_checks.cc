@@ -1,15 +1,14 @@
 #include "app/value_checks.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "base/digits.h"
 
 namespace thunderhead::app {
 namespace {
@@ -28,7 +27,7 @@ template <typename Number>
 std::string CheckInteger(const std::string& text) {
   const std::string_view digits = std::string_view(text).substr(text.starts_with('-') ? 1 : 0);
   const bool is_padded = digits.size() > 1 && digits.front() == '0';
-  if (digits.empty() || is_padded || !std::ranges::all_of(digits, absl::ascii_isdigit)) {
+  if (is_padded || !base::IsDigits(digits)) {
     return absl::StrCat("'", text, "' is not an integer in decimal digits without leading zeros");
   }
   // A short text can fail here only because it is negative and Number is unsigned. Other checks

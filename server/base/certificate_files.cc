@@ -38,12 +38,12 @@ absl::Status CannotUseForTls(const std::string& what, const std::string& path,
 struct CertificateFiles::State {
   using Stamps = std::pair<std::optional<FileStamp>, std::optional<FileStamp>>;
 
-  Stamps StampsNow() const { return {StampOf(certificate), StampOf(key)}; }
+  Stamps StampsNow() const { return {StampOf(files.certificate), StampOf(files.key)}; }
 
   absl::Status Load() const {
     CertificatePem pem;
-    THUNDERHEAD_ASSIGN_OR_RETURN(pem.certificate, Read("certificate", certificate));
-    THUNDERHEAD_ASSIGN_OR_RETURN(pem.key, Read("key", key));
+    THUNDERHEAD_ASSIGN_OR_RETURN(pem.certificate, Read("certificate", files.certificate));
+    THUNDERHEAD_ASSIGN_OR_RETURN(pem.key, Read("key", files.key));
     return take(pem);
   }
 
@@ -55,23 +55,21 @@ struct CertificateFiles::State {
     stamps = now;
     const absl::Status loaded = Load();
     if (loaded.ok()) {
-      spdlog::info("{} has changed and was loaded", certificate);
+      spdlog::info("{} has changed and was loaded", files.certificate);
     } else {
       spdlog::warn("TLS continues with the former certificate: {}", std::string(loaded.message()));
     }
   }
 
-  const std::string certificate;
-  const std::string key;
+  const TlsFiles files;
   const Take take;
   Stamps stamps;
 };
 
-absl::StatusOr<std::unique_ptr<CertificateFiles>> CertificateFiles::Open(std::string certificate,
-                                                                         std::string key, Take take,
+absl::StatusOr<std::unique_ptr<CertificateFiles>> CertificateFiles::Open(const TlsFiles& files,
+                                                                         Take take,
                                                                          const TimeSource& time) {
-  const std::shared_ptr<State> state(
-      new State{std::move(certificate), std::move(key), std::move(take), {}});
+  const std::shared_ptr<State> state(new State{files, std::move(take), {}});
   state->stamps = state->StampsNow();
   THUNDERHEAD_RETURN_IF_ERROR(state->Load());
   return std::unique_ptr<CertificateFiles>(new CertificateFiles(state, time));
@@ -79,6 +77,6 @@ absl::StatusOr<std::unique_ptr<CertificateFiles>> CertificateFiles::Open(std::st
 
 CertificateFiles::CertificateFiles(const std::shared_ptr<State>& state, const TimeSource& time)
     : looks_(Looks::Every(
-          kPause, state->certificate, [state] { state->Look(); }, time)) {}
+          kPause, state->files.certificate, [state] { state->Look(); }, time)) {}
 
 }  // namespace thunderhead::base

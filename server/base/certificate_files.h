@@ -12,6 +12,12 @@
 
 namespace thunderhead::base {
 
+// The paths of the two files. If both are empty, TLS is off.
+struct TlsFiles {
+  std::string certificate;
+  std::string key;
+};
+
 // The contents of the two files.
 struct CertificatePem {
   std::string certificate;  // certificate chain, with the server's own certificate first
@@ -29,7 +35,7 @@ class CertificateFiles {
   // Returns INVALID_ARGUMENT if a file cannot be read, and the error of the first `take`. Later
   // errors are logged. `time` must outlive this object.
   static absl::StatusOr<std::unique_ptr<CertificateFiles>> Open(
-      std::string certificate, std::string key, Take take, const TimeSource& time = SteadyTime());
+      const TlsFiles& files, Take take, const TimeSource& time = SteadyTime());
 
  private:
   struct State;

@@ -69,9 +69,13 @@ absl::StatusOr<std::string> ReadRegularFile(const std::string& path, std::size_t
   return ReadWhole(path, max_bytes, /*may_be_pipe=*/false);
 }
 
-absl::Status CheckRegularFile(const std::string& path) {
+bool IsOtherThanRegularFile(const std::string& path) {
   struct stat found {};
-  if (stat(path.c_str(), &found) != 0 || S_ISREG(found.st_mode)) return absl::OkStatus();
+  return stat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode);
+}
+
+absl::Status CheckRegularFile(const std::string& path) {
+  if (!IsOtherThanRegularFile(path)) return absl::OkStatus();
   return absl::FailedPreconditionError(absl::StrCat(path, " is not a file"));
 }
 

@@ -26,9 +26,13 @@ absl::StatusOr<std::string> ReadFileStart(const std::string& path, std::size_t m
 // Returns INVALID_ARGUMENT, which says that `what` has more than `max_bytes`.
 absl::Status TooLarge(const std::string& what, std::size_t max_bytes);
 
-// Returns FAILED_PRECONDITION if there is something other than a regular file at the path, such as
-// a pipe, whose opening could hang. A link to a regular file is accepted. Also returns OK if there
-// is nothing at the path, because the later attempt to read it returns an error that says so.
+// Returns whether something other than a regular file is at the path, such as a folder, a pipe or a
+// device. Links are followed. Returns false if nothing can be found there.
+bool IsOtherThanRegularFile(const std::string& path);
+
+// Returns FAILED_PRECONDITION if something other than a regular file is at the path, such as a
+// pipe, whose opening could hang. A link to a regular file is accepted. Returns OK if nothing can
+// be found there, because reading it says why.
 absl::Status CheckRegularFile(const std::string& path);
 
 }  // namespace thunderhead::base

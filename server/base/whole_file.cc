@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "base/named_file.h"
 #include "base/status.h"
 
 namespace thunderhead::base {
@@ -66,8 +67,7 @@ absl::Status Drop(const std::string& path) {
 // Checks that nothing, a regular file, or a link to one or to nothing is at `path`. The rename
 // would replace a device or a FIFO. A program that runs as root could replace /dev/null.
 absl::Status CheckReplaceable(const std::string& path) {
-  struct stat found {};
-  if (stat(path.c_str(), &found) != 0 || S_ISREG(found.st_mode)) return absl::OkStatus();
+  if (!IsOtherThanRegularFile(path)) return absl::OkStatus();
   return absl::FailedPreconditionError(
       absl::StrCat(path, " is not a regular file and is not replaced by one; choose another name"));
 }

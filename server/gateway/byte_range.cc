@@ -2,21 +2,13 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 
 #include "absl/strings/ascii.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/strip.h"
+#include "base/digits.h"
 
 namespace thunderhead::gateway {
-namespace {
-
-// Reads a number of digits without a sign (RFC 9110, 14.1.2).
-bool ReadDigits(absl::string_view text, std::uint64_t& number) {
-  return std::all_of(text.begin(), text.end(), absl::ascii_isdigit) &&
-         absl::SimpleAtoi(text, &number);
-}
-
-}  // namespace
 
 ByteRange RangeOf(std::string_view header, std::uint64_t file_bytes) {
   const ByteRange all{ByteRange::Asked::kAll, 0, file_bytes};
@@ -25,22 +17,23 @@ ByteRange RangeOf(std::string_view header, std::uint64_t file_bytes) {
   if (!absl::ConsumePrefix(&text, "bytes=")) return all;
   const std::size_t dash = text.find('-');
   if (dash == absl::string_view::npos) return all;
-  const absl::string_view first = text.substr(0, dash);
-  const absl::string_view last = text.substr(dash + 1);
-  std::uint64_t from = 0;
-  std::uint64_t to = 0;
+  const std::string_view first(text.data(), dash);
+  const std::string_view last(text.data() + dash + 1, text.size() - dash - 1);
+  // The numbers have no sign (RFC 9110, 14.1.2).
+  const std::optional<std::uint64_t> from = base::ParseDigits(first);
+  const std::optional<std::uint64_t> to = base::ParseDigits(last);
   if (first.empty()) {
     // A range without a first byte, such as "-500", asks for the last `to` bytes.
-    if (!ReadDigits(last, to)) return all;
-    if (to == 0 || file_bytes == 0) return {ByteRange::Asked::kNothingThere, 0, 0};
-    to = std::min(to, file_bytes);
-    return {ByteRange::Asked::kPart, file_bytes - to, to};
+    if (!to.has_value()) return all;
+    if (*to == 0 || file_bytes == 0) return {ByteRange::Asked::kNothingThere, 0, 0};
+    const std::uint64_t bytes = std::min(*to, file_bytes);
+    return {ByteRange::Asked::kPart, file_bytes - bytes, bytes};
   }
-  if (!ReadDigits(first, from)) return all;
-  if (!last.empty() && (!ReadDigits(last, to) || to < from)) return all;
-  if (from >= file_bytes) return {ByteRange::Asked::kNothingThere, 0, 0};
-  to = last.empty() ? file_bytes - 1 : std::min(to, file_bytes - 1);
-  return {ByteRange::Asked::kPart, from, to - from + 1};
+  if (!from.has_value()) return all;
+  if (!last.empty() && (!to.has_value() || *to < *from)) return all;
+  if (*from >= file_bytes) return {ByteRange::Asked::kNothingThere, 0, 0};
+  const std::uint64_t end = to.has_value() ? std::min(*to, file_bytes - 1) : file_bytes - 1;
+  return {ByteRange::Asked::kPart, *from, end - *from + 1};
 }
 
 }  // namespace thunderhead::gateway

@@ -76,11 +76,10 @@ absl::Status CannotListen(const tcp::endpoint& endpoint, const error_code& error
 class Gateway::Listener {
  public:
   Listener(const GatewayOptions& options, StaticFiles files, HttpPolicy policy,
-           std::shared_ptr<grpc::Channel> channel, std::unique_ptr<TlsContexts> tls)
+           std::shared_ptr<grpc::Channel> channel)
       : site_{options, std::make_shared<const StaticFiles>(std::move(files)), std::move(policy),
               grpc::GenericStub(std::move(channel))},
         acceptor_(io_),
-        tls_(std::move(tls)),
         handshakes_(site_.options.max_handshakes_per_address),
         links_(site_.options.max_connections, site_.options.max_connections_per_address,
                site_.options.trusted_proxies, *site_.options.time) {}
@@ -105,7 +104,7 @@ class Gateway::Listener {
   }
 
   const tcp::endpoint& Endpoint() const { return endpoint_; }
-  bool IsEncrypted() const { return tls_ != nullptr; }
+  bool IsEncrypted() const { return site_.options.tls != nullptr; }
 
  private:
   net::awaitable<void> Accept() {
@@ -139,12 +138,12 @@ class Gateway::Listener {
   }
 
   bool MayShakeHands(const ClientLink& link) {
-    return tls_ == nullptr || site_.options.trusted_proxies.Holds(link.Peer()) ||
+    return !IsEncrypted() || site_.options.trusted_proxies.Holds(link.Peer()) ||
            !handshakes_.Take(link.Network(), site_.Now()).has_value();
   }
 
   void Admit(tcp::socket socket) {
-    auto tls = tls_ != nullptr ? tls_->Current() : nullptr;
+    auto tls = IsEncrypted() ? site_.options.tls->Current() : nullptr;
     auto link = std::make_shared<ClientLink>(
         std::move(socket), std::move(tls), site_.options.write_stall_timeout, *site_.options.time);
     absl::Status refused;
@@ -172,8 +171,7 @@ class Gateway::Listener {
   net::io_context io_{1};
   tcp::acceptor acceptor_;
   tcp::endpoint endpoint_;
-  const std::unique_ptr<TlsContexts> tls_;  // null if the connections use plain TCP
-  base::Allowances handshakes_;             // per network
+  base::Allowances handshakes_;  // per network
   OpenLinks links_;
   // Limits the log lines: without free file descriptors there are ten errors a second.
   base::LineLimit accept_errors_{1};
@@ -185,15 +183,10 @@ absl::StatusOr<std::unique_ptr<Gateway>> Gateway::Start(const GatewayOptions& op
                                                         std::shared_ptr<grpc::Channel> channel) {
   THUNDERHEAD_ASSIGN_OR_RETURN(const net::ip::address address, ParseAddress(options.address));
   THUNDERHEAD_ASSIGN_OR_RETURN(StaticFiles files, StaticFiles::Open(options.page_directory));
-  std::unique_ptr<TlsContexts> tls;
-  if (!options.tls_certificate.empty()) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(
-        tls, TlsContexts::Open(options.tls_certificate, options.tls_key, *options.time));
-  }
   auto listener = std::make_unique<Listener>(
       options, std::move(files),
       HttpPolicy(address.is_loopback(), options.allowed_hosts, options.allowed_origins),
-      std::move(channel), std::move(tls));
+      std::move(channel));
   THUNDERHEAD_RETURN_IF_ERROR(listener->Listen(tcp::endpoint(address, options.port)));
   return std::unique_ptr<Gateway>(new Gateway(std::move(listener)));
 }

@@ -24,6 +24,8 @@
 
 namespace thunderhead::gateway {
 
+class TlsContexts;
+
 // The contents that a file must have.
 struct FileContents {
   std::uint64_t bytes = 0;
@@ -59,9 +61,8 @@ struct GatewayOptions {
   std::string address = "127.0.0.1";
   // The port; 0 chooses a free one, see Gateway::Port().
   uint16_t port = 0;
-  // PEM files, which are loaded again when they change. If both are empty, TLS is off.
-  std::string tls_certificate;
-  std::string tls_key;
+  // The certificate of the port. If null, TLS is off.
+  std::shared_ptr<TlsContexts> tls;
   // Names of this server in addition to its addresses. Requests for other hosts are refused.
   // Otherwise, a foreign web site could reach the server by letting its own name resolve to the
   // server's address. HttpPolicy has the rules.

@@ -4,15 +4,17 @@
 #include <grpc/slice.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "base/digits.h"
 #include "base/status.h"
 
 namespace thunderhead::gateway {
@@ -185,11 +187,9 @@ absl::StatusOr<absl::Duration> ParseTimeout(std::string_view text) {
   };
   if (text.size() < 2 || text.size() > 9) return malformed();
   const std::string_view digits = text.substr(0, text.size() - 1);
-  int64_t count = 0;
-  if (!std::all_of(digits.begin(), digits.end(), absl::ascii_isdigit) ||
-      !absl::SimpleAtoi(Absl(digits), &count)) {
-    return malformed();
-  }
+  const std::optional<std::uint64_t> parsed = base::ParseDigits(digits);
+  if (!parsed.has_value()) return malformed();
+  const auto count = static_cast<int64_t>(*parsed);
   switch (text.back()) {
     case 'H':
       return absl::Hours(count);

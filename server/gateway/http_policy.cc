@@ -9,6 +9,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "base/digits.h"
 #include "gateway/text_view.h"
 
 namespace thunderhead::gateway {
@@ -30,10 +31,7 @@ std::optional<std::string> NameOfHost(std::string_view host) {
   if (colon != std::string_view::npos) {
     constexpr size_t kMostDigits = 5;
     const std::string_view port = host.substr(colon + 1);
-    if (port.empty() || port.size() > kMostDigits ||
-        !std::ranges::all_of(port, absl::ascii_isdigit)) {
-      return std::nullopt;
-    }
+    if (port.size() > kMostDigits || !base::IsDigits(port)) return std::nullopt;
   }
   return absl::AsciiStrToLower(std::string(host.substr(0, colon)));
 }

@@ -4,7 +4,6 @@
 
 #include <boost/asio/ssl/context.hpp>
 #include <memory>
-#include <string>
 #include <utility>
 
 #include "absl/status/statusor.h"
@@ -15,12 +14,10 @@ namespace thunderhead::gateway {
 
 class TlsContexts {
  public:
-  // Loads PEM files: the certificate chain, with the server's own certificate first, and the key.
-  // Returns INVALID_ARGUMENT if the files cannot be read or do not match. `time` must outlive this
-  // object.
+  // Loads the files. Returns INVALID_ARGUMENT if they cannot be read or do not match. `time` must
+  // outlive this object.
   static absl::StatusOr<std::unique_ptr<TlsContexts>> Open(
-      const std::string& certificate, const std::string& key,
-      const base::TimeSource& time = base::SteadyTime());
+      const base::TlsFiles& files, const base::TimeSource& time = base::SteadyTime());
 
   // Returns the TLS context with the newest files that could be loaded.
   std::shared_ptr<boost::asio::ssl::context> Current();

@@ -186,8 +186,7 @@ absl::Status Jobs::Watch(const std::string& id, const Asker& asker,
                          std::weak_ptr<JobWatcher> watcher) {
   const std::lock_guard lock(mutex_);
   THUNDERHEAD_RETURN_IF_ERROR(board_.Check(id, asker));
-  DropGoneWatchers(id);
-  watchers_.emplace(id, std::move(watcher));
+  watchers_.Add(id, std::move(watcher));
   return absl::OkStatus();
 }
 
@@ -250,7 +249,7 @@ JobsLoad Jobs::Load() const {
           .drawing = counts[static_cast<std::size_t>(PictureState::kDrawing)],
           .result_bytes = board_.ResultBytes(),
           .stalled_s = std::max(busy.count(), results_.HangingSeconds()),
-          .watchers = watchers_.size()};
+          .watchers = watchers_.Size()};
 }
 
 void Jobs::Drain() {
@@ -313,9 +312,7 @@ void Jobs::Run() {
     }
   }
   stopped_ = true;
-  std::vector<std::string> watched;
-  for (const auto& [id, watcher] : watchers_) watched.push_back(id);
-  Tell(watched, lock);
+  Tell(watchers_.Watched(), lock);
 }
 
 void Jobs::Expire(Lock& lock) {
@@ -504,30 +501,16 @@ absl::Status Jobs::Save(Lock& lock) {
   std::vector<std::string> ids = forgotten;
   for (const JobChange& change : changes) ids.push_back(change.id);
   Tell(ids, lock);
-  for (const std::string& id : forgotten) watchers_.erase(id);
+  for (const std::string& id : forgotten) watchers_.Forget(id);
   return saved;
 }
 
 void Jobs::Tell(const std::vector<std::string>& ids, Lock& lock) {
-  std::vector<std::shared_ptr<JobWatcher>> told;
-  for (const std::string& id : ids) {
-    DropGoneWatchers(id);
-    const auto [begin, end] = watchers_.equal_range(id);
-    for (auto watcher = begin; watcher != end; ++watcher) {
-      if (auto here = watcher->second.lock(); here != nullptr) told.push_back(std::move(here));
-    }
-  }
+  std::vector<std::shared_ptr<JobWatcher>> told = watchers_.Of(ids);
   lock.unlock();
   for (const auto& watcher : told) watcher->OnJobChanged();
   told.clear();
   lock.lock();
-}
-
-void Jobs::DropGoneWatchers(const std::string& id) {
-  const auto [begin, end] = watchers_.equal_range(id);
-  for (auto watcher = begin; watcher != end;) {
-    watcher = watcher->second.expired() ? watchers_.erase(watcher) : std::next(watcher);
-  }
 }
 
 void Jobs::LogOnce(const absl::Status& problem) {

@@ -30,6 +30,7 @@
 #include "jobs/job_limits.h"
 #include "jobs/job_record.h"
 #include "jobs/job_store.h"
+#include "jobs/job_watchers.h"
 #include "jobs/picture_source.h"
 #include "jobs/result_folder.h"
 
@@ -45,14 +46,6 @@ struct JobsOptions {
   // Jobs object.
   const base::TimeSource* time = &base::SteadyTime();
   WriteFile write_file = &base::WriteWholeFile;  // writes the files of the results
-};
-
-// A listener that is notified when a job has changed or was removed, or when the server stops.
-class JobWatcher {
- public:
-  virtual ~JobWatcher() = default;
-  // Called on any thread. It must not block.
-  virtual void OnJobChanged() = 0;
 };
 
 // The files of a drawn picture.
@@ -172,8 +165,6 @@ class Jobs {
   absl::Status Save(Lock& lock);
   void SaveNew(const std::string& id, const Done& done);
   void Tell(const std::vector<std::string>& ids, Lock& lock);
-  // DropGoneWatchers requires mutex_.
-  void DropGoneWatchers(const std::string& id);
   void RemoveDropped(const std::vector<ResultFile>& dropped);
   void LogOnce(const absl::Status& problem);
 
@@ -190,7 +181,7 @@ class Jobs {
   std::condition_variable changed_;
   JobBoard board_;
   std::map<PicturePlace, std::shared_ptr<InHand>> in_hand_;
-  std::multimap<std::string, std::weak_ptr<JobWatcher>> watchers_;
+  JobWatchers watchers_;
   std::deque<Task> tasks_;
   // The time since which the thread has been working on a task; nothing while it waits.
   std::optional<base::TimeSource::Clock::time_point> busy_since_;

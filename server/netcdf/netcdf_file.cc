@@ -1,9 +1,7 @@
 #include "netcdf/netcdf_file.h"
 
-#include <fcntl.h>
 #include <netcdf.h>
 #include <netcdf_mem.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +19,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "base/byte_source.h"
-#include "base/file_descriptor.h"
 #include "base/memory_fit.h"
 #include "base/status.h"
 #include "netcdf/classic_file_size.h"
@@ -29,6 +26,7 @@
 #include "netcdf/filters.h"
 #include "netcdf/hdf5_layout.h"
 #include "netcdf/netcdf_lock.h"
+#include "netcdf/open_errors.h"
 #include "netcdf/packing.h"
 
 namespace thunderhead::netcdf {
@@ -38,54 +36,6 @@ constexpr int kNoHandle = -1;
 
 // Maximum length in bytes of a text attribute. No attribute that a reader needs is longer.
 constexpr std::size_t kLongestText = 1 << 20;
-
-// Returns whether a program that is writing the file has locked it. HDF5 uses flock(2) to lock a
-// file that it writes. Opening a locked file for reading fails with NC_EHDFERR, which netCDF-C also
-// returns for any damage.
-bool IsHeldByWriter(int file) {
-  if (flock(file, LOCK_SH | LOCK_NB) != 0) return errno == EWOULDBLOCK;
-  flock(file, LOCK_UN);
-  return false;
-}
-
-bool IsHeldByWriter(const std::string& path) {
-  const base::FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  return file.IsOpen() && IsHeldByWriter(file.Get());
-}
-
-absl::Status HeldByWriter(const std::string& path) {
-  return absl::UnavailableError(absl::StrCat(
-      path, ": another program is writing it; try again when the model has closed it"));
-}
-
-absl::Status OpenError(const std::string& path, int code) {
-  const std::string what = absl::StrCat(path, ": ");
-  switch (code) {
-    case ENOENT:
-      return absl::NotFoundError(absl::StrCat(what, "there is no such file; check the path"));
-    case EACCES:
-      return absl::PermissionDeniedError(
-          absl::StrCat(what, "may not be read; give this user permission to read it"));
-    case EAGAIN:
-      return HeldByWriter(path);
-    case NC_ENOTNC:
-      return absl::InvalidArgumentError(
-          absl::StrCat(what,
-                       "is not a netCDF file, and does not begin like a file of any other "
-                       "format; give a model's output file"));
-    default:
-      return absl::DataLossError(
-          absl::StrCat(what, "cannot be opened as netCDF (", nc_strerror(code),
-                       "); it is cut short, damaged or still being written: wait for the model "
-                       "to finish, or copy the file again"));
-  }
-}
-
-// Returns the error for a file of 0 bytes, which its writer may have just created.
-absl::Status IsEmpty(const std::string& path) {
-  return absl::DataLossError(
-      absl::StrCat(path, ": is empty (0 bytes); wait for the model to write it, or copy it again"));
-}
 
 // Maximum number of groups that NetcdfFile::Groups returns.
 constexpr std::size_t kMostGroups = 1000;
@@ -143,7 +93,7 @@ absl::Status NetcdfFile::CheckStart(const std::string& path, int file) {
     return pread(file, start.data(), start.size(), static_cast<off_t>(offset));
   };
   ssize_t count = read_at(0);
-  if (count == 0) return IsEmpty(path);
+  if (count == 0) return EmptyFile(path);
   if (std::string_view(start.data(), 3) == "CDF") return absl::OkStatus();
   for (std::uint64_t offset = kFirstHdf5Offset; count == std::ssize(start); offset *= 2) {
     if (IsHdf5Signature(std::as_bytes(std::span(start)))) return absl::OkStatus();
@@ -169,7 +119,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::OpenRoot(const std::string& path) {
   if (base::ReadsOnlyFromMemory()) {
     const std::optional<std::span<const std::byte>> bytes = base::RegisteredBytes(path);
     if (!bytes.has_value()) return OpenError(path, EACCES);
-    if (bytes->empty()) return IsEmpty(path);
+    if (bytes->empty()) return EmptyFile(path);
     BytesBuffer buffer(*bytes);
     std::istream header(&buffer);
     THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
@@ -183,7 +133,7 @@ absl::StatusOr<NetcdfFile> NetcdfFile::OpenRoot(const std::string& path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return OpenError(path, ENOENT);
   if (!std::filesystem::is_regular_file(path, error)) return OpenError(path, NC_ENOTNC);
-  if (std::filesystem::file_size(path, error) == 0) return IsEmpty(path);
+  if (std::filesystem::file_size(path, error) == 0) return EmptyFile(path);
   std::ifstream header(path, std::ios::binary);
   THUNDERHEAD_RETURN_IF_ERROR(CheckHeader(path, header));
   int handle = kNoHandle;

@@ -21,6 +21,9 @@
 namespace thunderhead::rpc_port {
 namespace {
 
+// Interval at which gRPC checks whether the copy has changed.
+constexpr unsigned kLookEvery_s = 5;
+
 std::string PathOf(const base::FileDescriptor& file) {
   return absl::StrCat("/proc/self/fd/", file.Get());
 }
@@ -48,7 +51,7 @@ std::string OpenSslError() {
 }
 
 // Checks that the file has a certificate and its key.
-absl::Status Check(const base::FileDescriptor& file, const TlsFiles& names) {
+absl::Status Check(const base::FileDescriptor& file, const base::TlsFiles& names) {
   ERR_clear_error();
   const std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)> context(SSL_CTX_new(TLS_server_method()),
                                                                   &SSL_CTX_free);
@@ -69,7 +72,7 @@ absl::Status Check(const base::FileDescriptor& file, const TlsFiles& names) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<GrpcCertificate>> GrpcCertificate::Open(
-    const TlsFiles& files, const base::TimeSource& time) {
+    const base::TlsFiles& files, const base::TimeSource& time) {
   THUNDERHEAD_ASSIGN_OR_RETURN(base::FileDescriptor empty, MemoryFile(""));
   const auto copy = std::make_shared<const base::FileDescriptor>(std::move(empty));
   const auto take = [copy, files](const base::CertificatePem& pem) -> absl::Status {
@@ -81,11 +84,9 @@ absl::StatusOr<std::unique_ptr<GrpcCertificate>> GrpcCertificate::Open(
     if (dup3(next.Get(), copy->Get(), O_CLOEXEC) < 0) return NoMemoryFile();
     return absl::OkStatus();
   };
-  THUNDERHEAD_ASSIGN_OR_RETURN(
-      std::unique_ptr<base::CertificateFiles> watched,
-      base::CertificateFiles::Open(files.certificate, files.key, take, time));
-  return std::unique_ptr<GrpcCertificate>(
-      new GrpcCertificate(copy, std::move(watched), files.look_every_s));
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<base::CertificateFiles> watched,
+                               base::CertificateFiles::Open(files, take, time));
+  return std::unique_ptr<GrpcCertificate>(new GrpcCertificate(copy, std::move(watched)));
 }
 
 std::string GrpcCertificate::CopyPath() const { return PathOf(*copy_); }
@@ -94,7 +95,7 @@ std::shared_ptr<grpc::ServerCredentials> GrpcCertificate::Credentials() const {
   const std::string path = CopyPath();
   grpc::experimental::TlsServerCredentialsOptions options(
       std::make_shared<grpc::experimental::FileWatcherCertificateProvider>(path, path,
-                                                                           look_every_s_));
+                                                                           kLookEvery_s));
   options.watch_identity_key_cert_pairs();
   options.set_cert_request_type(GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE);
   return grpc::experimental::TlsServerCredentials(options);

@@ -14,7 +14,6 @@
 #include "base/certificate_files.h"
 #include "base/file_descriptor.h"
 #include "base/time_source.h"
-#include "rpc_port/server_settings.h"
 
 namespace thunderhead::rpc_port {
 
@@ -23,23 +22,22 @@ class GrpcCertificate {
   // Returns INVALID_ARGUMENT if the files cannot be read or do not match, and UNAVAILABLE without a
   // free file descriptor. `time` must outlive this object.
   static absl::StatusOr<std::unique_ptr<GrpcCertificate>> Open(
-      const TlsFiles& files, const base::TimeSource& time = base::SteadyTime());
+      const base::TlsFiles& files, const base::TimeSource& time = base::SteadyTime());
 
   // The path of the copy, which holds the certificate and then the key.
   std::string CopyPath() const;
 
-  // The object must outlive a server with these credentials. gRPC looks for a new copy every
-  // TlsFiles::look_every_s.
+  // The object must outlive a server with these credentials. gRPC looks for a new copy every few
+  // seconds.
   std::shared_ptr<grpc::ServerCredentials> Credentials() const;
 
  private:
   GrpcCertificate(std::shared_ptr<const base::FileDescriptor> copy,
-                  std::unique_ptr<base::CertificateFiles> files, unsigned look_every_s)
-      : copy_(std::move(copy)), files_(std::move(files)), look_every_s_(look_every_s) {}
+                  std::unique_ptr<base::CertificateFiles> files)
+      : copy_(std::move(copy)), files_(std::move(files)) {}
 
   const std::shared_ptr<const base::FileDescriptor> copy_;  // certificate and key
   const std::unique_ptr<base::CertificateFiles> files_;
-  const unsigned look_every_s_;
 };
 
 }  // namespace thunderhead::rpc_port

@@ -17,6 +17,7 @@
 #include "base/status.h"
 #include "base/utc_time.h"
 #include "pipeline/sha256.h"
+#include "runs/server_outage.h"
 
 namespace thunderhead::runs {
 namespace {
@@ -24,15 +25,12 @@ namespace {
 using JobStub = v1::RenderJobService::Stub;
 using PictureState = v1::RenderJobPictureState;
 using std::chrono::seconds;
-using std::chrono::steady_clock;
 
 // Jobs are small, so that a request is small and a killed run leaves little behind. Two jobs run at
 // a time, so that one is drawn while the last pictures of the other are fetched.
 constexpr std::size_t kPicturesPerJob = 100;
 constexpr int kJobsAtATime = 2;
-// Retries after the connection to the server was lost: their total time, and the pause between two
-// of them.
-constexpr seconds kServerPatience{60};
+// The pause before a call is tried again after the connection to the server was lost.
 constexpr seconds kServerPause{1};
 
 absl::Status RunInterrupted() { return absl::CancelledError("interrupted"); }
@@ -300,17 +298,15 @@ absl::Status JobRun::Watch(JobShare& share, const std::stop_token& stop) {
 }
 
 absl::Status JobRun::Make(JobShare& share, const std::stop_token& stop) {
-  bool is_lost = false;
-  auto lost_since = steady_clock::now();  // if is_lost: when the first call failed
+  ServerOutage outage;
   while (true) {
     const std::size_t left = share.pictures.size();
     absl::Status status = share.job_id.empty() ? Create(share) : absl::OkStatus();
     if (status.ok()) status = Watch(share, stop);
     if (stop.stop_requested()) return RunInterrupted();
-    if (share.pictures.size() < left) is_lost = false;
+    if (share.pictures.size() < left) outage.End();
     if (status.ok() || share.pictures.empty()) break;
-    if (!std::exchange(is_lost, true)) lost_since = steady_clock::now();
-    if (!MayComeBack(status) || steady_clock::now() - lost_since > kServerPatience) return status;
+    if (!outage.MayRetry(status)) return status;
     PauseForServer(stop);
   }
   // The job has ended, so its remaining pictures will not arrive.

@@ -7,20 +7,17 @@
 #include <numeric>
 #include <optional>
 #include <set>
-#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "base/status.h"
 #include "runs/job_run.h"
+#include "runs/server_outage.h"
 
 namespace thunderhead::runs {
 namespace {
 
-using std::chrono::steady_clock;
-
 // Interval of checks. Each check is a call that reads no storm, unless there is a new time.
 constexpr std::chrono::seconds kLook{2};
-constexpr std::chrono::seconds kWatchPatience{60};
 
 // Returns the number of the storm's times; nothing if the storm does not exist (yet).
 absl::StatusOr<std::optional<int>> TimesOf(ServerLink& server, const std::string& id) {
@@ -96,17 +93,14 @@ class Watching {
 absl::Status WatchServer(const ServerWatch& watch, ServerLink& server, PictureRun& run,
                          RunProgress& progress, const std::stop_token& stop) {
   Watching watching(watch, server, run, progress);
-  bool is_lost = false;
-  auto lost_since = steady_clock::now();  // if is_lost: when the first Look failed
+  ServerOutage outage;
   while (!stop.stop_requested()) {
     absl::Status looked = watching.Look(stop);
     if (stop.stop_requested()) break;
     if (looked.ok()) {
-      is_lost = false;
-    } else {
-      // A call that the server does not answer takes longer than kWatchPatience.
-      if (!std::exchange(is_lost, true)) lost_since = steady_clock::now();
-      if (!MayComeBack(looked) || steady_clock::now() - lost_since > kWatchPatience) return looked;
+      outage.End();
+    } else if (!outage.MayRetry(looked)) {
+      return looked;
     }
     if (watch.is_over(watching.TimesDone())) return watching.Bad();
     PauseForLook(stop);

@@ -104,7 +104,7 @@ class RunningServer final : public Server {
     return absl::OkStatus();
   }
 
-  absl::Status Listen(const std::string& address, const rpc_port::TlsFiles& tls) {
+  absl::Status Listen(const std::string& address, const base::TlsFiles& tls) {
     catalogue_ = std::make_unique<CatalogueFollower>(*store_, sessions_, *loop_);
     engine_ = std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_,
                                               keeper_.get(), *catalogue_, drain_, limits_});

@@ -13,12 +13,12 @@
 
 #include "absl/status/statusor.h"
 #include "access/door.h"
+#include "base/certificate_files.h"
 #include "base/executor.h"
 #include "base/time_source.h"
 #include "drawing/frame_source.h"
 #include "drawing/render_loop.h"
 #include "jobs/jobs.h"
-#include "rpc_port/server_settings.h"
 #include "service/engine/limits.h"
 #include "service/jobs/job_files.h"
 #include "session/session_store.h"
@@ -28,8 +28,8 @@
 namespace thunderhead::service {
 
 struct ServerOptions {
-  std::string address;     // HOST:PORT, with port 0 for a free port; empty means no port
-  rpc_port::TlsFiles tls;  // TLS of that port
+  std::string address;  // HOST:PORT, with port 0 for a free port; empty means no port
+  base::TlsFiles tls;   // TLS of that port
   // The time source of sessions, their people and the limits. It must outlive the server. `door`
   // has its own time source.
   const base::TimeSource* time = &base::SteadyTime();

@@ -397,8 +397,7 @@ void NoteOtherMeridian(const netcdf::NetcdfFile& file, const std::string& field,
   if (meridian_deg == 0.0 || !arrays.meridian.empty()) return;
   places.assumptions.push_back(
       absl::StrFormat("The longitudes %s are taken to count from Greenwich, although the prime "
-                      "meridian of the grid "
-                      "mapping %s is %.6g degrees east of it.",
+                      "meridian of the grid mapping %s is %.6g degrees east of it.",
                       arrays.longitude, mapping.name, meridian_deg));
 }
 

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -16,6 +14,7 @@
 #include "glm/gtc/constants.hpp"
 #include "glm/trigonometric.hpp"
 #include "storm_files/column_raster.h"
+#include "storm_files/measured_domain.h"
 #include "storm_files/model_columns.h"
 #include "storm_files/true_scale.h"
 
@@ -25,53 +24,15 @@ namespace {
 using volume::EarthPlace;
 using volume::MapProjection;
 
-// Columns count as even if no distance differs from the mean distance by more than this share.
-constexpr double kEven = 0.005;
-// The number of places along each axis at which distances are measured.
-constexpr int kSamples = 65;
-// A latitude or longitude that is stored as a float is known to a metre. Distances between such
-// places are measured over this length.
-constexpr double kMeasured_m = 4000.0;
-
 double Least(const glm::dvec2& each) { return std::min(each.x, each.y); }
 double Largest(const glm::dvec2& each) { return std::max(each.x, each.y); }
-
-absl::Status BeyondTheMap() {
-  return absl::InvalidArgumentError(
-      "columns lie beyond the edge of their map projection; correct its parameters");
-}
-
-// Returns up to kSamples numbers from `first` to `last`. They are integers if `whole`.
-std::vector<double> Spread(double first, double last, int most, bool whole) {
-  const int count = std::clamp(most, 1, kSamples);
-  std::vector<double> numbers;
-  for (int i = 0; i < count; ++i) {
-    const double at = count == 1 ? 0.5 * (first + last) : first + (last - first) * i / (count - 1);
-    numbers.push_back(whole ? std::round(at) : at);
-  }
-  return numbers;
-}
-
-// Distances between neighbouring columns along one axis.
-struct Distances {
-  double shortest_m = std::numeric_limits<double>::infinity();
-  double longest_m = 0.0;
-  double mean_m = 0.0;
-  double largest_turn = 0.0;  // the largest deviation of the axis from its compass direction, in
-                              // radians
-
-  bool AreEven() const {
-    return shortest_m >= (1.0 - kEven) * mean_m && longest_m <= (1.0 + kEven) * mean_m;
-  }
-};
 
 // A map on which the columns of a wide domain can be.
 struct WideMap {
   std::string projection;
-  double least_scale = 1.0;
-  double largest_scale = 1.0;
+  MapScale scale;
 
-  double Error() const { return std::max(largest_scale - 1.0, 1.0 - least_scale); }
+  double Error() const { return scale.Error(); }
 };
 
 // Returns a stereographic projection whose scale is true at `middle`.
@@ -84,26 +45,21 @@ std::string StereographicAt(const EarthPlace& middle, const std::string& earth) 
 class Evener {
  public:
   Evener(const ModelColumns& model, const EarthPlace& middle, MapProjection local)
-      : model_(model), middle_(middle), local_(std::move(local)), earth_(local_.Figure()) {}
+      : model_(model),
+        middle_(middle),
+        local_(std::move(local)),
+        earth_(local_.Figure()),
+        domain_(model, earth_) {}
 
   absl::StatusOr<EvenColumns> Make(const EvenOptions& options);
   absl::StatusOr<std::string> Projection(const EvenOptions& options);
 
  private:
-  double Distance_m(const EarthPlace& a, const EarthPlace& b) const {
-    return ShortDistance_m(a, b, earth_);
-  }
-  template <typename Visit>
-  absl::Status VisitSteps(int axis, Visit visit) const;
-  absl::StatusOr<Distances> Measure(int axis) const;
-  absl::Status MeasureScale(WideMap& wide) const;
-  int Span(int axis) const;
   absl::StatusOr<double> GridNorth_rad() const;
   glm::dvec2 StepOn(const MapProjection& map, int axis) const;
   std::string TrueAtMiddle(const std::string& projection) const;
   absl::Status Keep(const std::string& projection, EvenColumns& even) const;
   bool KeepIfEven(EvenColumns& even) const;
-  absl::StatusOr<double> Reach_m() const;
   std::vector<WideMap> ConformalMaps() const;
   absl::Status ChooseWideMap(bool may_stay, EvenColumns& even) const;
   absl::StatusOr<ColumnMesh> MeshOn(const MapProjection& map, const EvenColumns& even) const;
@@ -116,89 +72,8 @@ class Evener {
   const EarthPlace middle_;
   const MapProjection local_;  // stereographic around the middle
   const volume::EarthFigure earth_;
+  const MeasuredDomain domain_;
 };
-
-// Returns the number of columns over which the distance between neighbours is measured.
-int Evener::Span(int axis) const {
-  if (model_.IsProjected()) return 1;
-  const glm::dvec2 at = glm::floor(model_.MiddlePosition());
-  glm::dvec2 next = at;
-  next[axis] += 1.0;
-  const double step_m = Distance_m(*model_.PlaceAt(at), *model_.PlaceAt(next));
-  const double span = std::ceil(kMeasured_m / std::max(step_m, 1.0));
-  return static_cast<int>(std::clamp(span, 1.0, model_.Count()[axis] - 1.0));
-}
-
-// Calls `visit` with two places `span` columns apart along an axis, and with that span, all over
-// the domain.
-template <typename Visit>
-absl::Status Evener::VisitSteps(int axis, Visit visit) const {
-  const int span = Span(axis);
-  const int other = 1 - axis;
-  const bool whole = !model_.IsProjected();
-  const glm::ivec2& count = model_.Count();
-  const double first = whole ? 0.0 : -0.5;
-  for (const double across : Spread(0.0, count[other] - 1.0, count[other], whole)) {
-    for (const double along :
-         Spread(first, first + count[axis] - (whole ? 1.0 + span : 1.0), count[axis], whole)) {
-      glm::dvec2 from;
-      from[axis] = along;
-      from[other] = across;
-      glm::dvec2 to = from;
-      to[axis] += span;
-      const std::optional<EarthPlace> a = model_.PlaceAt(from);
-      const std::optional<EarthPlace> b = model_.PlaceAt(to);
-      if (!a.has_value() || !b.has_value()) return BeyondTheMap();
-      visit(*a, *b, span);
-    }
-  }
-  return absl::OkStatus();
-}
-
-absl::StatusOr<Distances> Evener::Measure(int axis) const {
-  Distances distances;
-  double sum_m = 0.0;
-  int samples = 0;
-  const auto measure = [&](const EarthPlace& a, const EarthPlace& b, int span) {
-    const double distance_m = Distance_m(a, b) / span;
-    distances.shortest_m = std::min(distances.shortest_m, distance_m);
-    distances.longest_m = std::max(distances.longest_m, distance_m);
-    sum_m += distance_m;
-    ++samples;
-    const std::optional<glm::dvec2> from_m = local_.WorldOf(a);
-    const std::optional<glm::dvec2> to_m = local_.WorldOf(b);
-    if (!from_m.has_value() || !to_m.has_value()) return;
-    const glm::dvec2 way_m = *to_m - *from_m;
-    const double turn = axis == 0 ? std::atan2(way_m.y, way_m.x) : std::atan2(-way_m.x, way_m.y);
-    distances.largest_turn = std::max(distances.largest_turn, std::abs(turn));
-  };
-  THUNDERHEAD_RETURN_IF_ERROR(VisitSteps(axis, measure));
-  distances.mean_m = sum_m / samples;
-  if (!std::isfinite(distances.mean_m)) return BeyondTheMap();
-  if (distances.mean_m > 0.0) return distances;
-  return absl::InvalidArgumentError(
-      absl::StrCat("all columns along ", axis == 0 ? "x" : "y",
-                   " are at the same place; correct their latitudes and longitudes"));
-}
-
-// Measures the scale of a map in the domain. Returns INVALID_ARGUMENT if an edge of the map is
-// within the domain.
-absl::Status Evener::MeasureScale(WideMap& wide) const {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const MapProjection map, MapProjection::Open(wide.projection));
-  bool is_on_map = true;
-  const auto measure = [&](const EarthPlace& a, const EarthPlace& b, int /*span*/) {
-    const std::optional<glm::dvec2> from_m = map.WorldOf(a);
-    const std::optional<glm::dvec2> to_m = map.WorldOf(b);
-    const double distance_m = Distance_m(a, b);
-    is_on_map = is_on_map && from_m.has_value() && to_m.has_value();
-    if (!is_on_map || distance_m == 0.0) return;
-    const double scale = glm::distance(*from_m, *to_m) / distance_m;
-    wide.least_scale = std::min(wide.least_scale, scale);
-    wide.largest_scale = std::max(wide.largest_scale, scale);
-  };
-  for (const int axis : {0, 1}) THUNDERHEAD_RETURN_IF_ERROR(VisitSteps(axis, measure));
-  return is_on_map ? absl::OkStatus() : BeyondTheMap();
-}
 
 absl::StatusOr<double> Evener::GridNorth_rad() const {
   const double half = model_.IsProjected() ? 0.5 : 0.5 * (model_.Count().y - 1);
@@ -275,7 +150,7 @@ absl::Status Evener::Keep(const std::string& projection, EvenColumns& even) cons
     const std::optional<EarthPlace> computed = map.PlaceOf(side * half * spacing_m);
     const std::optional<EarthPlace> actual = model_.PlaceAt(model_.MiddlePosition() + side * half);
     if (!computed.has_value() || !actual.has_value()) return BeyondTheMap();
-    if (!(Distance_m(*computed, *actual) <= most_m)) {
+    if (!(ShortDistance_m(*computed, *actual, earth_) <= most_m)) {
       return absl::InvalidArgumentError("the columns are not even on the map");
     }
   }
@@ -297,19 +172,6 @@ bool Evener::KeepIfEven(EvenColumns& even) const {
   return keep(model_.Projection()) || keep(TrueAtMiddle(model_.Projection()));
 }
 
-// Returns the distance of the middle from the farthest edge of the domain.
-absl::StatusOr<double> Evener::Reach_m() const {
-  double reach_m = 0.0;
-  for (const double x : Spread(-0.5, model_.Count().x - 0.5, model_.Count().x + 1, false)) {
-    for (const double y : Spread(-0.5, model_.Count().y - 0.5, model_.Count().y + 1, false)) {
-      const std::optional<EarthPlace> place = model_.PlaceAt({x, y});
-      if (!place.has_value()) return BeyondTheMap();
-      reach_m = std::max(reach_m, GreatCircle_m(middle_, *place, MeanRadius_m(earth_)));
-    }
-  }
-  return reach_m;
-}
-
 // Returns conformal projections with north up and true scale at the middle, without those that have
 // an edge within the domain.
 std::vector<WideMap> Evener::ConformalMaps() const {
@@ -319,7 +181,7 @@ std::vector<WideMap> Evener::ConformalMaps() const {
     south_deg = std::min({south_deg, from.latitude_deg, to.latitude_deg});
     north_deg = std::max({north_deg, from.latitude_deg, to.latitude_deg});
   };
-  if (!VisitSteps(1, extend).ok()) return {};
+  if (!domain_.VisitSteps(1, extend).ok()) return {};
   const std::string rest = absl::StrFormat(" +lon_0=%.10g +x_0=0 +y_0=0 %s +units=m +no_defs",
                                            middle_.longitude_deg, model_.Earth());
   std::vector<std::string> projections = {StereographicAt(middle_, model_.Earth())};
@@ -342,8 +204,10 @@ std::vector<WideMap> Evener::ConformalMaps() const {
   }
   std::vector<WideMap> maps;
   for (std::string& projection : projections) {
-    WideMap map{std::move(projection)};
-    if (MeasureScale(map).ok()) maps.push_back(std::move(map));
+    const absl::StatusOr<MapProjection> map = MapProjection::Open(projection);
+    if (!map.ok()) continue;
+    const absl::StatusOr<MapScale> scale = domain_.ScaleOf(*map);
+    if (scale.ok()) maps.push_back({std::move(projection), *scale});
   }
   return maps;
 }
@@ -376,8 +240,8 @@ absl::Status Evener::ChooseWideMap(bool may_stay, EvenColumns& even) const {
         even.reach_m / 1e3, quarter_m / 1e3));
   }
   even.projection = best->projection;
-  even.least_scale = best->least_scale;
-  even.largest_scale = best->largest_scale;
+  even.least_scale = best->scale.least;
+  even.largest_scale = best->scale.largest;
   even.largest_error = best->Error();
   return absl::OkStatus();
 }
@@ -497,8 +361,8 @@ absl::Status Evener::Resample(const EvenOptions& options, EvenColumns& even) con
 // Returns the columns without their places among the model's columns. If they must be resampled,
 // their number and distances are not set either.
 absl::StatusOr<EvenColumns> Evener::Measured(const EvenOptions& options) const {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Distances x, Measure(0));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const Distances y, Measure(1));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const StepLengths x, domain_.StepsAlong(0, local_));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const StepLengths y, domain_.StepsAlong(1, local_));
   EvenColumns even;
   even.middle = middle_;
   even.model_columns = model_.Count();
@@ -510,7 +374,7 @@ absl::StatusOr<EvenColumns> Evener::Measured(const EvenOptions& options) const {
   const bool upright = model_.IsProjected() || std::max(x.largest_turn, y.largest_turn) <= kEven;
   const bool may_stay = options.columns.value_or(model_.Count()) == model_.Count();
   if (x.AreEven() && y.AreEven() && upright && may_stay && KeepIfEven(even)) return even;
-  THUNDERHEAD_ASSIGN_OR_RETURN(even.reach_m, Reach_m());
+  THUNDERHEAD_ASSIGN_OR_RETURN(even.reach_m, domain_.Reach_m(middle_));
   // The scale of a stereographic projection at an angle c from its centre is 1 / cos(c / 2)^2.
   const double cosine = std::cos(0.5 * even.reach_m / MeanRadius_m(earth_));
   even.largest_scale = 1.0 / (cosine * cosine);

@@ -1,5 +1,7 @@
 #include "storm_store/storm_ids.h"
 
+#include "base/digits.h"
+
 namespace thunderhead::storm_store {
 namespace {
 
@@ -17,8 +19,7 @@ std::optional<std::string> NextPart(std::string_view& text) {
 bool IsIdOf(const std::string& stem, std::string_view id) {
   if (!id.starts_with(stem)) return false;
   id.remove_prefix(stem.size());
-  return id.empty() || (id.size() > 1 && id[0] == '-' &&
-                        id.find_first_not_of("0123456789", 1) == std::string_view::npos);
+  return id.empty() || (id.front() == '-' && base::IsDigits(id.substr(1)));
 }
 
 }  // namespace

@@ -18,7 +18,9 @@
 #include <limits>
 
 #include "absl/strings/str_cat.h"
+#include "base/certificate_files.h"
 #include "base/error_details.h"
+#include "gateway/tls_contexts.h"
 #include "tests/gateway/echo_test.h"
 #include "tests/gateway/raw_client.h"
 #include "tests/support/self_signed.h"
@@ -103,9 +105,8 @@ class TlsTest : public EchoTest {
     std::ofstream(folder_.File("page/index.html")) << "<html>storm</html>";
     std::ofstream(folder_.File("page/big.js")) << std::string(9'000'000, 'x');
     options_.page_directory = folder_.File("page");
-    options_.tls_certificate = Certificate();
-    options_.tls_key = Key();
     DriveTime();
+    options_.tls = TlsContexts::Open({Certificate(), Key()}, time_).value();
     Site();
   }
   ~TlsTest() override { site_.reset(); }
@@ -225,8 +226,8 @@ TEST_F(TlsTest, OneAddressHasSoManyHandshakesASecond) {
 
 TEST_F(TlsTest, FilesThatDoNotFitAreNamed) {
   testing::WriteSelfSigned(folder_.File("other.pem"), folder_.File("other_key.pem"), 3);
-  options_.tls_key = folder_.File("other_key.pem");
-  const absl::Status wrong = Gateway::Start(options_, nullptr).status();
+  const base::TlsFiles files{Certificate(), folder_.File("other_key.pem")};
+  const absl::Status wrong = TlsContexts::Open(files, time_).status();
   EXPECT_EQ(wrong.code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(wrong.message()), HasSubstr("other_key.pem"));
 }

@@ -15,6 +15,7 @@
 
 #include "base/whole_file.h"
 #include "gateway/gateway.h"
+#include "gateway/tls_contexts.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
@@ -350,8 +351,7 @@ TEST(SecureLoad, ComesByTlsToWhomItTrustsOnly) {
   testing::FakeService service;
   gateway::GatewayOptions site;
   site.address = "0.0.0.0";  // an address that the certificate does not name
-  site.tls_certificate = certificate;
-  site.tls_key = folder.File("key.pem");
+  site.tls = gateway::TlsContexts::Open({certificate, folder.File("key.pem")}).value();
   const auto gateway = gateway::Gateway::Start(site, service.server().LocalChannel());
   ASSERT_TRUE(gateway.ok()) << gateway.status();
   const int port = (*gateway)->Port();

@@ -1,16 +1,16 @@
 #include "service/jobs/job_messages.h"
 
-#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "absl/strings/ascii.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/time/time.h"
+#include "base/digits.h"
 #include "base/utf8.h"
 #include "rpc_port/status_table.h"
 #include "service/messages/enum_tables.h"
@@ -49,8 +49,10 @@ void SetProblem(const jobs::Problem& problem, v1::RenderJobProblem& message) {
 // Reads digits without leading zeros, so each picture has one path only.
 bool ReadPlace(const std::string& text, std::size_t& place) {
   const bool has_leading_zero = text.size() > 1 && text.front() == '0';
-  return std::ranges::all_of(text, [](char c) { return absl::ascii_isdigit(c); }) &&
-         !has_leading_zero && absl::SimpleAtoi(text, &place);
+  const std::optional<std::uint64_t> number = base::ParseDigits(text);
+  if (has_leading_zero || !number.has_value()) return false;
+  place = *number;
+  return true;
 }
 
 }  // namespace

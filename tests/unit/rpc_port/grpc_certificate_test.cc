@@ -8,6 +8,7 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "base/certificate_files.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "tests/support/manual_time.h"
@@ -42,7 +43,7 @@ class GrpcCertificateTest : public ::testing::Test {
 
   testing::TemporaryFolder folder_;
   testing::ManualTime time_;
-  const TlsFiles files_{folder_.File("certificate.pem"), folder_.File("key.pem")};
+  const base::TlsFiles files_{folder_.File("certificate.pem"), folder_.File("key.pem")};
 };
 
 // While another program writes a file, it is empty. gRPC would end the process.
