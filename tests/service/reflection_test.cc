@@ -4,6 +4,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include <chrono>
+#include <future>
 #include <map>
 #include <memory>
 #include <string>
@@ -154,7 +155,22 @@ TEST(ReflectionTest, NewerVersionsAreUnknownSoThatClientsUseThisOne) {
             grpc::StatusCode::UNIMPLEMENTED);
 }
 
-TEST(ReflectionTest, ACallThatAsksNothingIsCancelled) {
+TEST(ReflectionTest, ACallThatNeverAsksIsCancelled) {
+  RunningTime time;
+  service::ServerOptions options = Patient(time);
+  options.limits.delivery_time = std::chrono::hours(1);
+  FakeService fake(options);
+  Asking silent(fake.server());
+  auto end = std::async(std::launch::async, [&silent] { return silent.End(); });
+  EXPECT_TRUE(WaitFor([&] {
+    // The call may begin on the server after the time has moved.
+    time.Advance(options.limits.delivery_time);
+    return end.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  }));
+  EXPECT_EQ(end.get().error_code(), grpc::StatusCode::CANCELLED);
+}
+
+TEST(ReflectionTest, ACallThatAsksNoMoreIsCancelled) {
   RunningTime time;
   service::ServerOptions options = Patient(time);
   options.limits.delivery_time = std::chrono::hours(1);
