@@ -39,10 +39,10 @@ def generate(target: pathlib.Path) -> None:
 
     The messages of package google.rpc are moved to thunderhead.rpc. Other libraries bring their own
     google/rpc/status.proto, and a process can load only one file of that name. The data that is sent does not contain
-    package names, so the messages stay compatible.
+    package names, so the messages stay compatible. The protocols of gRPC itself, health and reflection, are left out.
     """
     with tempfile.TemporaryDirectory() as folder:
-        for file in PROTO.rglob("*.proto"):
+        for file in (*PROTO.glob("google/**/*.proto"), *PROTO.glob("thunderhead/**/*.proto")):
             name = str(file.relative_to(PROTO)).replace("google/rpc/", "thunderhead/rpc/")
             text = file.read_text().replace("google/rpc/", "thunderhead/rpc/").replace("google.rpc", "thunderhead.rpc")
             copy = pathlib.Path(folder) / name

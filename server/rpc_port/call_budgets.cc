@@ -26,9 +26,7 @@ class CallCounter final : public grpc::experimental::ServerInterceptorFactoryInt
       grpc::experimental::ServerRpcInfo* call) override {
     const std::optional<std::string> connection = ConnectionOf(*call->server_context());
     if (connection.has_value()) budgets_->Begin(*connection);
-    if (dynamic_cast<grpc::CallbackServerContext*>(call->server_context()) != nullptr) {
-      budgets_->EndWaiting();
-    }
+    budgets_->EndWaiting();
     return nullptr;
   }
 

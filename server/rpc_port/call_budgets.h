@@ -88,8 +88,9 @@ class CallBudgets {
 std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface> CountCalls(
     std::shared_ptr<CallBudgets> budgets);
 
-// Returns the object by which gRPC's server tells `budgets` each call that it has received, except
-// calls of services without callbacks. gRPC itself allocates the contexts.
+// Returns the object by which gRPC's server tells `budgets` each call that it has received. gRPC
+// itself allocates the contexts. All services must use callbacks, because gRPC tells nothing of
+// other calls.
 std::unique_ptr<grpc::ContextAllocator> CountReceived(std::shared_ptr<CallBudgets> budgets);
 
 }  // namespace thunderhead::rpc_port

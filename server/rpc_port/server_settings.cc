@@ -11,9 +11,6 @@ constexpr int kKeepaliveTimeMs = 20'000;
 // Timeouts for a client that connects and sends nothing, and for one that starts no call.
 constexpr int kHandshakeTimeoutMs = 10'000;
 constexpr int kIdleConnectionMs = 60'000;
-// Maximum number of threads for calls that occupy a thread each. Only gRPC's reflection service has
-// such calls. Further calls are refused.
-constexpr int kMaxCallThreads = 16;
 
 // Makes gRPC refuse compressed requests with UNIMPLEMENTED. A megabyte of gzip may contain a
 // gigabyte, and gRPC would decompress a message before it checks the size.
@@ -28,9 +25,8 @@ void RefuseCompression(grpc::ServerBuilder& builder) {
 
 void SetLimits(grpc::ServerBuilder& builder, const PortLimits& limits, int max_response_bytes) {
   grpc::ResourceQuota quota("thunderhead");
-  quota.Resize(limits.grpc_memory_bytes).SetMaxThreads(kMaxCallThreads);
+  quota.Resize(limits.grpc_memory_bytes);
   builder.SetResourceQuota(quota);
-  builder.SetSyncServerOption(grpc::ServerBuilder::NUM_CQS, 1);
   builder.SetMaxReceiveMessageSize(static_cast<int>(limits.max_request_bytes));
   builder.SetMaxSendMessageSize(max_response_bytes);
   RefuseCompression(builder);

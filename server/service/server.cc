@@ -1,12 +1,10 @@
 #include "service/server.h"
 
-#include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/generic/async_generic_service.h>
 #include <grpcpp/grpcpp.h>
 
 #include <chrono>
 #include <memory>
-#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -22,6 +20,7 @@
 #include "rpc_port/local_listener.h"
 #include "rpc_port/open_sockets.h"
 #include "rpc_port/port_listener.h"
+#include "rpc_port/reflection_service.h"
 #include "rpc_port/server_settings.h"
 #include "service/engine/catalogue_follower.h"
 #include "service/engine/engine.h"
@@ -111,13 +110,11 @@ class RunningServer final : public Server {
     service_ = MakeThunderheadService(*engine_, *door_, *connection_calls_);
     job_service_ = std::make_unique<RenderJobService>(*engine_, *door_, *connection_calls_,
                                                       jobs_.get(), job_files_);
-    // This is a global setting, which applies to every server built later.
-    static std::once_flag plugins;
-    std::call_once(plugins, [] { grpc::reflection::InitProtoReflectionServerBuilderPlugin(); });
     grpc::ServerBuilder builder;
     builder.RegisterService(service_.get());
     builder.RegisterService(job_service_.get());
     builder.RegisterService(&health_);
+    builder.RegisterService(&reflection_);
     rpc_port::SetLimits(builder, limits_, kMaxResponseBytes);
     THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<rpc_port::CallBudgets> call_budgets,
                                  rpc_port::CallBudgets::Open(limits_.max_calls_per_address,
@@ -267,6 +264,10 @@ class RunningServer final : public Server {
   // Answers calls of unknown methods with UNIMPLEMENTED, so that they are counted, too.
   grpc::CallbackGenericService unknown_methods_;
   rpc_port::HealthService health_{v1::ThunderheadService::service_full_name()};
+  rpc_port::ReflectionService reflection_{
+      limits_,
+      {v1::ThunderheadService::service_full_name(), v1::RenderJobService::service_full_name(),
+       grpc::health::v1::Health::service_full_name()}};
   std::unique_ptr<rpc_port::GrpcCertificate> certificate_;  // null without TLS
   std::unique_ptr<grpc::Server> server_;
   std::unique_ptr<rpc_port::LocalListener> local_;

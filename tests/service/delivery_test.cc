@@ -87,9 +87,10 @@ TEST_P(PictureDelivery, ItHasItsTime) {
   EXPECT_EQ(fake.server().Load().pictures, 1) << "it waits for its client";
 }
 
-INSTANTIATE_TEST_SUITE_P(Calls, PictureDelivery,
-                         ::testing::Values("ThunderheadService/RenderImage",
-                                           "ThunderheadService/RenderImageWithProgress"));
+INSTANTIATE_TEST_SUITE_P(
+    Calls, PictureDelivery,
+    ::testing::Values("thunderhead.v1.ThunderheadService/RenderImage",
+                      "thunderhead.v1.ThunderheadService/RenderImageWithProgress"));
 
 TEST(JobDelivery, WhoTakesNothingIsCancelledAfterAWhile) {
   const TemporaryFolder folder;
@@ -116,12 +117,12 @@ TEST(JobDelivery, WhoTakesNothingIsCancelledAfterAWhile) {
   ASSERT_TRUE(reader->Finish().ok());
 
   UntakingClient watcher(fake.server().Port());
-  watcher.Call("RenderJobService/WatchRenderJob", watch.SerializeAsString());
+  watcher.Call("thunderhead.v1.RenderJobService/WatchRenderJob", watch.SerializeAsString());
   EXPECT_TRUE(AwaitReset(watcher, time));
   v1::FetchRenderResultRequest fetch;
   fetch.set_job_id(created.job().id());
   UntakingClient fetcher(fake.server().Port());
-  fetcher.Call("RenderJobService/FetchRenderResult", fetch.SerializeAsString());
+  fetcher.Call("thunderhead.v1.RenderJobService/FetchRenderResult", fetch.SerializeAsString());
   EXPECT_TRUE(AwaitReset(fetcher, time));
 }
 
@@ -147,7 +148,7 @@ TEST_F(ViewerDelivery, WhoTakesNoFramesIsCancelledAfterAWhile) {
   v1::WatchFramesRequest watch;
   watch.set_session_id(Create().viewer_key());
   UntakingClient viewer(fake_.server().Port());
-  viewer.Call("ThunderheadService/WatchFrames", watch.SerializeAsString());
+  viewer.Call("thunderhead.v1.ThunderheadService/WatchFrames", watch.SerializeAsString());
   EXPECT_TRUE(AwaitViewers(1));
   EXPECT_TRUE(AwaitReset(viewer, time_));
   EXPECT_TRUE(AwaitViewers(0));
@@ -157,7 +158,7 @@ TEST_F(ViewerDelivery, WhoTakesNothingOfAnInteractIsCancelledAfterAWhile) {
   v1::InteractRequest join;
   join.mutable_join()->set_session_key(Create().viewer_key());
   UntakingClient viewer(fake_.server().Port());
-  viewer.Call("ThunderheadService/Interact", join.SerializeAsString(),
+  viewer.Call("thunderhead.v1.ThunderheadService/Interact", join.SerializeAsString(),
               UntakingClient::Stream::kStaysOpen);
   EXPECT_TRUE(AwaitReset(viewer, time_));
 }
@@ -185,7 +186,8 @@ TEST_P(AnswerDelivery, WhoTakesNothingIsCancelledAfterAWhile) {
   UntakingClient client(fake.server().Port());
   v1::DescribeStormRequest request;
   request.set_storm_id("anvil");
-  client.Call(std::string("ThunderheadService/") + GetParam(), request.SerializeAsString());
+  client.Call(std::string("thunderhead.v1.ThunderheadService/") + GetParam(),
+              request.SerializeAsString());
   EXPECT_TRUE(AwaitReset(client, time));
 }
 
@@ -201,10 +203,10 @@ TEST(AnswersDelivery, ThoseThatNobodyTakesHaveALimit) {
       access::TrustEverybody(), std::make_shared<access::Audit>([](const std::string&) {}), limits);
   FakeService fake(options);
   UntakingClient client(fake.server().Port());
-  for (int i = 0; i < 5; ++i) client.Call("ThunderheadService/ListStorms", "");
+  for (int i = 0; i < 5; ++i) client.Call("thunderhead.v1.ThunderheadService/ListStorms", "");
   EXPECT_TRUE(WaitFor([&] { return client.Refused() >= 2; }));
   UntakingClient other(fake.server().Port());
-  other.Call("ThunderheadService/ListStorms", "");
+  other.Call("thunderhead.v1.ThunderheadService/ListStorms", "");
   EXPECT_TRUE(WaitFor([&] { return other.Refused() >= 1; })) << "of one identity, however it calls";
   // Calls that the server has ended no longer count towards the limit.
   client.Leave();

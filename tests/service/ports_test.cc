@@ -235,7 +235,7 @@ TEST(PortsTest, ConnectionsWhoseCallsAreOnlyAnnouncedAreClosed) {
   GuardedService guarded(options);
   const int port = guarded.service().server().Port();
   UntakingClient announcing(port);
-  for (int i = 0; i < 100; ++i) announcing.Announce("ThunderheadService/ListStorms");
+  for (int i = 0; i < 100; ++i) announcing.Announce("thunderhead.v1.ThunderheadService/ListStorms");
   WatchingClient watching(port, guarded.Create());
   ASSERT_TRUE(watching.Receives());
   EXPECT_FALSE(announcing.IsClosed());
@@ -278,16 +278,11 @@ TEST_P(ResetCallsTest, CloseTheConnectionsOfTheirAddress) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEachKind, ResetCallsTest,
-                         ::testing::Values("ThunderheadService/ListStorms",
-                                           "ThunderheadService/Interact",
-                                           "ThunderheadService/NoSuchMethod"));
-
-TEST(PortsTest, GrpcListensOnAddressesOfIpv6) {
-  service::ServerOptions options = Patient();
-  options.address = "[::]:0";
-  FakeService fake(options);
-  EXPECT_TRUE(IsReached(fake.server().Port())) << "and of IPv4, by any address";
-}
+                         ::testing::Values("thunderhead.v1.ThunderheadService/ListStorms",
+                                           "thunderhead.v1.ThunderheadService/Interact",
+                                           "thunderhead.v1.ThunderheadService/NoSuchMethod",
+                                           "grpc.reflection.v1alpha.ServerReflection/"
+                                           "ServerReflectionInfo"));
 
 // Returns a value of /proc/self/status, in MiB.
 double OwnStatusMib(const std::string& name) {
@@ -296,6 +291,31 @@ double OwnStatusMib(const std::string& name) {
     if (line.starts_with(name + ":")) return std::stod(line.substr(name.size() + 1)) / 1024.0;
   }
   return 0.0;
+}
+
+// All these calls together would take more than 600 MiB.
+TEST(PortsTest, AFloodOfResetCallsOfReflectionTakesLittleMemory) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "AddressSanitizer keeps what is freed";
+#endif
+  service::ServerOptions options = Patient();
+  options.address = "127.0.0.1:0";
+  GuardedService guarded(options);
+  UntakingClient flooding(guarded.service().server().Port());
+  // Resets VmHWM, which is from now on the process's peak memory.
+  std::ofstream("/proc/self/clear_refs") << 5;
+  const double before_mib = OwnStatusMib("VmHWM");
+  EXPECT_FALSE(flooding.CallAndReset(
+      "grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", 40'000));
+  EXPECT_LT(OwnStatusMib("VmHWM") - before_mib, 200.0);
+  EXPECT_THAT(guarded.Audit(), Contains(HasSubstr("TOO_MANY_CALLS")));
+}
+
+TEST(PortsTest, GrpcListensOnAddressesOfIpv6) {
+  service::ServerOptions options = Patient();
+  options.address = "[::]:0";
+  FakeService fake(options);
+  EXPECT_TRUE(IsReached(fake.server().Port())) << "and of IPv4, by any address";
 }
 
 std::string Gzip(const std::string& text) {
@@ -349,7 +369,7 @@ TEST(PortsTest, CompressedRequestsAreNotInflated) {
   std::vector<std::unique_ptr<UntakingClient>> clients;
   for (int i = 0; i < 4; ++i) {
     clients.push_back(std::make_unique<UntakingClient>(fake.server().Port()));
-    clients.back()->CallCompressed("ThunderheadService/ListStorms", bomb);
+    clients.back()->CallCompressed("thunderhead.v1.ThunderheadService/ListStorms", bomb);
   }
   for (const auto& client : clients) {
     EXPECT_TRUE(WaitFor([&] { return client->Refused() > 0 || client->IsReset(); }));

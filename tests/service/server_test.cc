@@ -1,4 +1,4 @@
-// Tests of the server as a whole: ports, health, reflection, shutdown.
+// Tests of the server as a whole: ports, health, shutdown.
 #include "service/server.h"
 
 #include <grpcpp/generic/generic_stub.h>
@@ -85,16 +85,6 @@ TEST(ServerTest, HealthIsServingInProcessAndOnItsPort) {
   service.server().BeginDrain();
   service.server().SetServing(true);
   EXPECT_EQ(health(), not_serving) << "it drains";
-}
-
-TEST(ServerTest, ReflectionListsTheService) {
-  FakeService service;
-  // In ServerReflectionRequest, field 7 (list_services) is "".
-  const std::string services =
-      Ask(service.server().LocalChannel(),
-          "/grpc.reflection.v1alpha.ServerReflection/ServerReflectionInfo", "\x3a\x01*");
-  EXPECT_THAT(services, HasSubstr("thunderhead.v1.ThunderheadService"));
-  EXPECT_THAT(services, HasSubstr("grpc.health.v1.Health"));
 }
 
 TEST(ServerTest, TakenPortIsAnError) {

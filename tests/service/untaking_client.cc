@@ -21,6 +21,7 @@ constexpr char kPing = 6;
 constexpr char kAck = 1;
 constexpr char kEndStream = 1;
 constexpr char kEndHeaders = 4;
+constexpr std::size_t kCancel = 8;  // an error code
 
 std::string Number(std::size_t value, int bytes) {
   std::string text;
@@ -36,7 +37,7 @@ std::string HeadersOf(const std::string& method, const std::string& encoding = "
   std::string headers;
   for (const auto& [name, value] : {std::pair<std::string, std::string>{":method", "POST"},
                                     {":scheme", "http"},
-                                    {":path", "/thunderhead.v1." + method},
+                                    {":path", "/" + method},
                                     {":authority", "localhost"},
                                     {"te", "trailers"},
                                     {"grpc-encoding", encoding},
@@ -82,9 +83,19 @@ void UntakingClient::CallCompressed(const std::string& method, const std::string
   stream_ += 2;
 }
 
-void UntakingClient::Reset() {
-  constexpr std::size_t kCancel = 8;
-  Send(Frame(kReset, 0, stream_ - 2, Number(kCancel, 4)));
+void UntakingClient::Reset() { Send(Frame(kReset, 0, stream_ - 2, Number(kCancel, 4))); }
+
+bool UntakingClient::CallAndReset(const std::string& method, int calls) {
+  const std::string headers = HeadersOf(method);
+  for (int i = 0; i < calls; ++i) {
+    const std::string bytes = Frame(kHeaders, kEndHeaders, stream_, headers) +
+                              Frame(kData, kEndStream, stream_, std::string(5, '\0')) +
+                              Frame(kReset, 0, stream_, Number(kCancel, 4));
+    const auto size = static_cast<ssize_t>(bytes.size());
+    if (send(socket_.Get(), bytes.data(), bytes.size(), MSG_NOSIGNAL) != size) return false;
+    stream_ += 2;
+  }
+  return true;
 }
 
 void UntakingClient::TakeAll() {

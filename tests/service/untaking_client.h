@@ -14,13 +14,16 @@ class UntakingClient {
   explicit UntakingClient(int port);
 
   enum class Stream { kEnds, kStaysOpen };
-  // Calls `method`, whose name includes the service's name. `stream` says whether the client ends
-  // its side of the call after the message, or leaves it open.
+  // Calls `method`, such as "thunderhead.v1.ThunderheadService/ListStorms". `stream` says whether
+  // the client ends its side of the call after the message, or leaves it open.
   void Call(const std::string& method, const std::string& message, Stream stream = Stream::kEnds);
   // Makes a call whose message is `gzip`, a text that is already compressed.
   void CallCompressed(const std::string& method, const std::string& gzip);
   // Resets the newest call.
   void Reset();
+  // Makes `calls` calls with an empty message and resets each at once. Returns false if the server
+  // has closed the connection before.
+  bool CallAndReset(const std::string& method, int calls);
   // Sends the headers of a call whose message never follows.
   void Announce(const std::string& method);
 
