@@ -45,7 +45,7 @@ class TlsPort {
   explicit TlsPort(service::ServerOptions options = Patient()) {
     WriteSelfSigned(Certificate(), Key(), 1);
     options.address = "127.0.0.1:0";
-    options.tls = {Certificate(), Key(), 1};
+    options.tls = {Certificate(), Key()};
     service_.emplace(options);
   }
 
