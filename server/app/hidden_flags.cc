@@ -18,6 +18,15 @@ class Formatter final : public CLI::Formatter {
     if (group == kHidden) return "";
     return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
   }
+
+  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+    if (is_positional || option->get_lnames().size() < 2) {
+      return CLI::Formatter::make_option_name(option, is_positional);
+    }
+    std::string names;
+    for (const std::string& letter : option->get_snames()) names += "-" + letter + ",";
+    return names + "--" + option->get_lnames().front();
+  }
 };
 
 }  // namespace
