@@ -141,6 +141,14 @@ TEST_F(CommandLineTest, TheEarlierNameOfTheFlagTechniqueIsAcceptedAndHidden) {
   ExpectError("measure slices --slab 1 --renderer metaball", 64, "--technique is 'metaball'; ");
 }
 
+// Scripts give this flag, which had an effect in earlier versions.
+TEST_F(CommandLineTest, ServeAcceptsTheEarlierFlagSandbox) {
+  EXPECT_EQ(Run("serve --sandbox all --print-config").out, Run("serve --print-config").out);
+  EXPECT_EQ(Run("serve --sandbox untrusted --print-config").code, 0);
+  ExpectError("serve --sandbox none --print-config", 64, "--sandbox");
+  EXPECT_THAT(Run("serve --help").out, Not(HasSubstr("--sandbox")));
+}
+
 TEST_F(CommandLineTest, WrongSettingsAreRefusedWithTheirFile) {
   const std::string file = folder_.File("serve.conf");
   const auto refuse = [&](const std::string& setting, const std::string& text) {
