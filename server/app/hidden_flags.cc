@@ -9,7 +9,7 @@ namespace thunderhead::app {
 namespace {
 
 // The heading of these flags in the file of --print-config.
-constexpr char kHidden[] = "Rarely changed";
+constexpr char kHidden[] = "Rarely changed settings";
 
 class Formatter final : public CLI::Formatter {
  public:
