@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "accuracy/named_settings.h"
+#include "app/phase_flag.h"
 #include "glm/geometric.hpp"
 #include "gmock/gmock.h"
 #include "google/protobuf/util/json_util.h"
@@ -204,6 +205,13 @@ TEST(FormulaToy, ScattersByItsFormula) {
   }
   EXPECT_NEAR(physics::MeanCosine(phase), 1.0 / 6.0, 1e-6);
   EXPECT_NEAR(MeanSampledCosine(phase), 1.0 / 6.0, 1e-3);
+}
+
+TEST(FormulaToy, CanBeChosenForFluxes) {
+  const auto phase = app::ParsePhase("tilted");
+  ASSERT_TRUE(phase.ok()) << phase.status();
+  EXPECT_NEAR((*phase)->Value(0.3).g, 1.15, 1e-4);
+  EXPECT_THAT(app::PhaseFlagHelp(), HasSubstr("rayleigh, tilted or table:NAME"));
 }
 
 TEST(TableToy, ScattersByItsTable) {
