@@ -16,6 +16,7 @@
 #include "physics/optics.h"
 #include "physics/phase_table.h"
 #include "reference/sampled_phase.h"
+#include "runs/legend.h"
 #include "sandbox/plausible.h"
 #include "scene/drawn_fields.h"
 #include "scene/scene_parts.h"
@@ -159,6 +160,25 @@ TEST(TechniqueToy, IsChosenByItsMessage) {
       std::string(
           service::CheckLimits(Given(R"({"rendering": {"fog": {"depthM": 0}}})")).message()),
       HasSubstr("depth_m is 0; it must be between 1 and 1000 m"));
+}
+
+// The legend needs no other change than the field `false_colors`, which is found by reflection.
+TEST(TechniqueToy, HasALegendIfItPaintsFalseColors) {
+  v1::RenderImageResponse picture;
+  picture.mutable_modelled()->add_fields(v1::HYDROMETEOR_DUST);
+  const auto draw = [&picture](const std::string& json) {
+    const v1::Scene scene = testing::Completed(Given(json));
+    *picture.mutable_scene() = scene;
+    return service::ToScene(scene).rendering.technique;
+  };
+  EXPECT_FALSE(scene::FieldLookOf(draw(R"({"rendering": {"fog": {}}})")).false_colors);
+  EXPECT_TRUE(runs::LegendOf(picture).empty());
+  EXPECT_TRUE(
+      scene::FieldLookOf(draw(R"({"rendering": {"fog": {"falseColors": true}}})")).false_colors);
+  const auto legend = runs::LegendOf(picture);
+  ASSERT_EQ(legend.size(), 1U);
+  EXPECT_EQ(legend[0].name, "dust");
+  EXPECT_EQ(legend[0].color, glm::vec3(0.5F, 0.4F, 0.2F));
 }
 
 TEST(TechniqueToy, IsMeasuredLikeEveryTechnique) {
