@@ -102,7 +102,7 @@ def render_both(number, case, arguments):
         halves.append(exr.read_rgb(half).mean(axis=-1))
     middle = time.monotonic()
     reference = base + ".reference.exr"
-    run(arguments.program, "render", *common, "--renderer", "reference", "--no-air", "--peak-cut", "0",
+    run(arguments.program, "render", *common, "--technique", "reference", "--no-air", "--peak-cut", "0",
         "--max-scatterings", str(case.scatterings), "--spp", str(arguments.reference_samples), "-o", reference)
     # The medium is grey, so the three colours of a path have the same value.
     error = exr.read_rgb(reference, "stderr.")[..., 0]

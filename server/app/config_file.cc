@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "base/named_file.h"
 #include "base/status.h"
 
@@ -80,7 +81,16 @@ absl::Status ReadConfigFile(CLI::App& command, const std::string& path) {
 std::string ConfigFileOf(const CLI::App& command) {
   constexpr bool kDefaultsToo = true;
   constexpr bool kWithMeaning = true;
-  return CLI::ConfigINI().to_config(&command, kDefaultsToo, kWithMeaning, "") + "\n";
+  std::string text =
+      absl::StrCat("; Settings of `thunderhead ", command.get_name(),
+                   "` for its flag --config. A line that begins with ; is a comment.\n",
+                   CLI::ConfigINI().to_config(&command, kDefaultsToo, kWithMeaning, ""), "\n");
+  // CLI11 writes the name of a group with the word "Options" after it, which is no plain heading.
+  for (const std::string& group : command.get_groups()) {
+    text = absl::StrReplaceAll(text, {{absl::StrCat("\n; ", group, " Options\n"),
+                                       absl::StrCat("\n; ---- ", group, " ----\n")}});
+  }
+  return text;
 }
 
 }  // namespace thunderhead::app

@@ -177,9 +177,9 @@ Command AddFlux(CLI::App& app) {
                    "A plane-parallel slab of this optical depth instead of a storm");
   flux->add_option("--time", flags->time_index,
                    "Index of the storm's time, from 0; by default the last");
-  flux->add_option("--phase", flags->phase,
-                   std::string(kPhaseFlagHelp) +
-                       "; by default each field's own, for a slab that of cloud water");
+  flux->add_option(
+      "--phase", flags->phase,
+      PhaseFlagHelp() + "; by default each field's own, for a slab that of cloud water");
   flux->add_option("--albedo", flags->albedo,
                    "Single-scattering albedo, 0 to 1; by default each field's own");
   flux->add_option("--sun-elevation", flags->sun_elevation_deg, "Elevation of the sun in degrees")

@@ -9,7 +9,7 @@ namespace thunderhead::app {
 namespace {
 
 // The heading of the hidden flags in the file of --print-config.
-constexpr char kHidden[] = "Rarely changed";
+constexpr char kHidden[] = "Rarely changed settings";
 
 class Formatter final : public CLI::Formatter {
  public:
@@ -17,6 +17,15 @@ class Formatter final : public CLI::Formatter {
                          std::vector<const CLI::Option*> options) const override {
     if (group == kHidden) return "";
     return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
+  }
+
+  std::string make_option_name(const CLI::Option* option, bool is_positional) const override {
+    if (is_positional || option->get_lnames().size() < 2) {
+      return CLI::Formatter::make_option_name(option, is_positional);
+    }
+    std::string names;
+    for (const std::string& letter : option->get_snames()) names += "-" + letter + ",";
+    return names + "--" + option->get_lnames().front();
   }
 };
 

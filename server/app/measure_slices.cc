@@ -58,7 +58,7 @@ absl::StatusOr<accuracy::PlainTechnique> TechniqueNamed(const std::string& name)
       std::ranges::find(accuracy::kCellTechniques, name, &accuracy::PlainTechnique::name);
   if (found != accuracy::kCellTechniques.end()) return *found;
   return absl::InvalidArgumentError(
-      absl::StrCat("--renderer is '", name, "'; it must be half_angle or light_volume"));
+      absl::StrCat("--technique is '", name, "'; it must be half_angle or light_volume"));
 }
 
 // Returns a smooth cloud of that optical depth, which fills the picture.
@@ -120,7 +120,7 @@ Command AddMeasureSlices(CLI::App& measure) {
   slices->add_option("--scene", flags->scene.file, "Scene as Protobuf JSON");
   slices->add_option("--time", flags->scene.time_index,
                      "Index of the storm's time, from 0; by default the last");
-  slices->add_option("--renderer", flags->scene.technique,
+  slices->add_option(kTechniqueFlag, flags->scene.technique,
                      "half_angle (the default) or light_volume");
   slices->add_option("-o,--output", flags->output,
                      "File to write: a plot (.svg) or a table (.csv)");

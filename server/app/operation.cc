@@ -19,6 +19,7 @@
 #include "app/log_format.h"
 #include "base/status.h"
 #include "gateway/http_policy.h"
+#include "sandbox/child.h"
 #include "spdlog/sinks/sink.h"
 #include "spdlog/spdlog.h"
 #include "telemetry/exposition.h"
@@ -143,7 +144,10 @@ double Operation::StateHangsFor() {
 std::string Operation::MetricsText() {
   const std::lock_guard lock(mutex_);
   std::vector<telemetry::Gauge> gauges{
-      {"thunderhead_memory_bytes", "Memory that the process occupies", telemetry::ResidentBytes()}};
+      {"thunderhead_memory_bytes", "Memory that the process occupies", telemetry::ResidentBytes()},
+      {"thunderhead_readers_abandoned",
+       "Processes that read files and have not ended although they were killed",
+       static_cast<double>(sandbox::AbandonedChildren())}};
   if (server_ != nullptr) {
     const service::ServerLoad load = server_->Load();
     const auto add = [&](const char* name, const char* help, double value) {

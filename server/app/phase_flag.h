@@ -9,11 +9,12 @@
 
 namespace thunderhead::app {
 
-inline constexpr char kPhaseFlagHelp[] =
-    "Phase function: hg:G (Henyey-Greenstein), cs:G (Cornette-Shanks), rayleigh, or table:NAME";
+// Returns the help of the flag, which lists its formats.
+std::string PhaseFlagHelp();
 
-// Parses a phase function such as "hg:0.85", "cs:0.85", "rayleigh" or "table:cloud_re10".
-// INVALID_ARGUMENT lists the formats.
+// Parses a phase function: "table:NAME", or a formula by its name in physics::kPhaseKindNames or by
+// a short name. A formula that uses the asymmetry has it after a colon. Examples are "hg:0.85",
+// "henyey_greenstein:0.85", "rayleigh" and "table:cloud_re10". INVALID_ARGUMENT lists the formats.
 absl::StatusOr<std::shared_ptr<const reference::SampledPhase>> ParsePhase(const std::string& text);
 
 }  // namespace thunderhead::app

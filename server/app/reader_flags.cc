@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <cmath>
+#include <string>
 
+#include "app/hidden_flags.h"
 #include "sandbox/confined_files.h"
 
 namespace thunderhead::app {
@@ -19,6 +21,13 @@ void AddReaderFlags(CLI::App& command, ReaderFlags& flags) {
                   "Maximum seconds for reading one time of a storm file")
       ->check(CLI::Range(1.0, 86400.0))
       ->capture_default_str();
+  // An earlier flag that scripts still give. It has no effect, because every storm file is read by
+  // a confined process.
+  CLI::Option* const sandbox = command.add_option_function<std::string>(
+      "--sandbox", [](const std::string& /*files*/) {},
+      "Has no effect: every storm file is read by a confined process");
+  sandbox->check(CLI::IsMember({"untrusted", "all"}))->configurable(false);
+  HideFromHelp(*sandbox);
 }
 
 sandbox::ReaderLimits LimitsOf(const ReaderFlags& flags) {

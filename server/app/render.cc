@@ -131,12 +131,12 @@ void TellOfNight(const v1::Scene& scene) {
 absl::Status ByReference(const RenderFlags& flags, const runs::ProductFormat& format) {
   if (!flags.server.address.empty() || flags.json) {
     return absl::InvalidArgumentError(
-        "--renderer reference works only in this process: omit --server and --json");
+        "--technique reference works only in this process: omit --server and --json");
   }
   if (!format.fingerprint.empty() ||
       (!format.IsPicture() && format.kind != runs::ProductKind::kExr)) {
     return absl::InvalidArgumentError(
-        "--renderer reference writes only .png, .jpg and .exr, without --annotate and "
+        "--technique reference writes only .png, .jpg and .exr, without --annotate and "
         "--world-file: omit them");
   }
   return RenderReference(flags.storm, flags.scene, flags.reference, flags.output, flags.device);
@@ -169,7 +169,7 @@ absl::Status Render(const RenderFlags& flags) {
       flags.reference.light.detail_voxels_per_cell != 0) {
     return absl::InvalidArgumentError(
         "--spp, --seconds, --target-error, --max-scatterings, --detail and --no-air are for "
-        "--renderer reference");
+        "--technique reference");
   }
   request.set_format(format.Drawn());
   request.set_error_seconds(static_cast<float>(flags.error_seconds));

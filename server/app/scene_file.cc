@@ -120,7 +120,7 @@ absl::Status SetTechnique(const std::string& name, v1::Rendering& rendering) {
   const auto field = std::ranges::find(fields, name, [](const auto* each) { return each->name(); });
   if (field == fields.end()) {
     return absl::InvalidArgumentError(
-        absl::StrCat("--renderer is '", name, "'; it must be ", NamesOf(fields, " or ")));
+        absl::StrCat("--technique is '", name, "'; it must be ", NamesOf(fields, " or ")));
   }
   rendering.GetReflection()->MutableMessage(&rendering, *field);
   return absl::OkStatus();
@@ -161,7 +161,7 @@ absl::Status SetSlices(std::uint32_t slices, v1::Scene& scene) {
 absl::Status SetRendering(const SceneFlags& flags, v1::Scene& scene) {
   if (!flags.technique.empty() && !flags.preset.empty()) {
     return absl::InvalidArgumentError(
-        "--renderer and --preset (or --quality) exclude each other: omit one");
+        "--technique and --preset (or --quality) exclude each other: omit one");
   }
   if (!flags.technique.empty()) {
     THUNDERHEAD_RETURN_IF_ERROR(SetTechnique(flags.technique, *scene.mutable_rendering()));
@@ -202,10 +202,10 @@ void AddTechniqueOptions(CLI::App& command, SceneFlags& flags) {
           ->check(CLI::IsMember({"fast", "balanced", "accurate"}));
   CLI::Option* preset = command.add_option(
       "--preset", flags.preset, "A named setting, such as the papers' per_field_phase_translucent");
-  CLI::Option* renderer = command.add_option("--renderer", flags.technique,
-                                             "Technique: " + NamesOf(TechniqueFields(), " or "));
-  quality->excludes(preset)->excludes(renderer);
-  preset->excludes(renderer);
+  CLI::Option* technique = command.add_option(kTechniqueFlag, flags.technique,
+                                              "Technique: " + NamesOf(TechniqueFields(), " or "));
+  quality->excludes(preset)->excludes(technique);
+  preset->excludes(technique);
   command.add_option("--slices", flags.slices, "Number of slices, or samples along a ray");
 }
 

@@ -10,6 +10,10 @@
 
 namespace thunderhead::app {
 
+// The names of the flag that chooses the technique. The second name is the earlier one, which is
+// still accepted.
+inline constexpr char kTechniqueFlag[] = "--technique,--renderer";
+
 struct SceneFlags {
   std::string file;  // may be empty, like the other strings
   std::string view;  // another file, whose values override those of `file`
@@ -27,7 +31,7 @@ struct SceneFlags {
 void AddViewOptions(CLI::App& command, SceneFlags& flags);
 // Adds the same options and --time, for commands that show one time.
 void AddSceneOptions(CLI::App& command, SceneFlags& flags);
-// Adds the options of commands that draw the scene: --quality, --preset, --renderer, --slices.
+// Adds the options of commands that draw the scene: --quality, --preset, --technique, --slices.
 void AddTechniqueOptions(CLI::App& command, SceneFlags& flags);
 
 // Returns the scene. INVALID_ARGUMENT names the file or flag, and what is wrong with it.

@@ -244,10 +244,8 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags) {
       "--state", flags.state,
       "Folder in which sessions and render jobs are saved across restarts, or 'none'; by default "
       "$STATE_DIRECTORY, otherwise the folder thunderhead in $XDG_STATE_HOME or ~/.local/state");
-  serve
-      .add_option("--roster-timeouts", flags.roster_timeouts,
-                  "File with the times after which people of a session count as away, for tests")
-      ->configurable(false);
+  serve.add_option("--roster-timeouts", flags.roster_timeouts,
+                   "File with the times after which people of a session count as away, for tests");
   AddMemoryFlags(serve, flags);
   AddCatalogueFlags(serve, flags.catalogue);
   AddReaderFlags(serve, flags.reader);

@@ -4,9 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <utility>
-#include <vector>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -16,13 +14,12 @@
 #include "base/utc_time.h"
 #include "frame/image_codec.h"
 #include "frame/png_text.h"
-#include "google/protobuf/descriptor.h"
-#include "google/protobuf/message.h"
 #include "picture/exr_file.h"
 #include "product/annotation.h"
 #include "product/geotiff.h"
 #include "product/light_netcdf.h"
 #include "product/map_place.h"
+#include "runs/legend.h"
 #include "service/messages/picture_texts.h"
 #include "volume/map_projection.h"
 
@@ -50,37 +47,6 @@ std::string RunText(const Texts& texts, absl::Time valid) {
   const std::int64_t minutes = absl::ToInt64Minutes(valid - *run);
   return absl::StrFormat("run %s, %+d h %02d min", MinuteOf(*run), minutes / 60,
                          std::abs(minutes % 60));
-}
-
-// Returns true if the chosen technique's setting false_colors is on.
-bool ShowsFalseColors(const v1::Rendering& rendering) {
-  const google::protobuf::FieldDescriptor* const technique =
-      rendering.GetReflection()->GetOneofFieldDescriptor(
-          rendering, rendering.GetDescriptor()->FindOneofByName("technique"));
-  if (technique == nullptr) return false;
-  const google::protobuf::Message& settings =
-      rendering.GetReflection()->GetMessage(rendering, technique);
-  const google::protobuf::FieldDescriptor* const field =
-      settings.GetDescriptor()->FindFieldByName("false_colors");
-  return field != nullptr && settings.GetReflection()->GetBool(settings, field);
-}
-
-// Returns the legend of the fields that the picture shows, if their colours distinguish them.
-std::vector<product::LegendEntry> LegendOf(const v1::RenderImageResponse& picture) {
-  std::vector<product::LegendEntry> legend;
-  if (!ShowsFalseColors(picture.scene().rendering())) return legend;
-  for (const v1::FieldParameters& field : picture.scene().fields()) {
-    bool shown = false;
-    for (const int hydrometeor : picture.modelled().fields()) {
-      shown = shown || hydrometeor == static_cast<int>(field.hydrometeor());
-    }
-    if (!shown) continue;
-    const v1::Color& color = field.false_color();
-    legend.push_back({absl::AsciiStrToLower(absl::StripPrefix(
-                          v1::Hydrometeor_Name(field.hydrometeor()), "HYDROMETEOR_")),
-                      {color.red(), color.green(), color.blue()}});
-  }
-  return legend;
 }
 
 absl::Status Annotate(const ProductFormat& format, const std::string& storm,

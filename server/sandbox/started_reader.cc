@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/mman.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,10 +11,8 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <mutex>
 #include <string_view>
 #include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -30,22 +27,9 @@
 namespace thunderhead::sandbox {
 namespace {
 
-using std::chrono::milliseconds;
-
 absl::Status NoReader(const std::string& path, int error) {
   return absl::UnavailableError(absl::StrCat(path, ": no process can be started to read it (",
                                              std::strerror(error), "); try again"));
-}
-
-// Collects processes that did not end at once when they were killed. Such a process is still
-// freeing much memory, or is waiting for a network file system that is down. All of them are
-// checked again whenever another process ends.
-void ReapLater(pid_t process) {
-  static std::mutex mutex;
-  static std::vector<pid_t> left;
-  const std::lock_guard lock(mutex);
-  if (process > 0) left.push_back(process);
-  std::erase_if(left, [](pid_t each) { return waitpid(each, nullptr, WNOHANG) != 0; });
 }
 
 // Returns the variables that a program needs to start, and none of this process' secrets.
@@ -144,28 +128,6 @@ absl::Status CheckStormStart(const std::string& path, int file) {
   return formats.CheckStart(path, file);
 }
 
-Child::~Child() {
-  if (process_ <= 0) return;
-  kill(process_, SIGKILL);
-  if (!End(milliseconds(2)).has_value()) ReapLater(std::exchange(process_, 0));
-}
-
-std::optional<int> Child::End(milliseconds patience) {
-  const auto until = time_.Now() + patience;
-  int status = 0;
-  while (process_ > 0) {
-    const pid_t ended = waitpid(process_, &status, WNOHANG);
-    if (ended != 0) {
-      process_ = 0;
-      ReapLater(0);
-      return ended > 0 && WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    }
-    if (time_.Now() >= until) return std::nullopt;
-    std::this_thread::sleep_for(milliseconds(1));
-  }
-  return 0;
-}
-
 void UnmapBytes::operator()(const std::byte* bytes) const {
   munmap(const_cast<std::byte*>(bytes), size);
 }
@@ -204,6 +166,8 @@ absl::StatusOr<std::unique_ptr<StartedReader>> StartedReader::Start(const std::s
                                                                     const Request& first,
                                                                     const FileChecks& checks,
                                                                     const base::TimeSource& time) {
+  absl::StatusOr<ChildPlace> place = ChildPlace::Take();
+  if (!place.ok()) return base::Annotate(place.status(), first.path);
   FileBundle given;
   SharedArrays arrays;
   const auto open = [&](const std::string& path) { return OpenForReader(path, checks); };
@@ -231,7 +195,8 @@ absl::StatusOr<std::unique_ptr<StartedReader>> StartedReader::Start(const std::s
   const int error = Spawn(
       program, {requests_from.Get(), replies_to.Get(), given.file.Get(), arrays.File()}, process);
   if (error != 0) return NoReader(first.path, error);
-  std::unique_ptr<StartedReader> reader(new StartedReader(first.path, process, time));
+  std::unique_ptr<StartedReader> reader(
+      new StartedReader(first.path, process, *std::move(place), time));
   reader->bundled_ = first.bundled;
   reader->stamps_ = std::move(given.stamps);
   reader->arrays_ = std::move(arrays);

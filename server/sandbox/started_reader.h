@@ -8,7 +8,6 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "base/file_descriptor.h"
 #include "base/file_stamp.h"
 #include "base/time_source.h"
+#include "sandbox/child.h"
 #include "sandbox/messages.h"
 
 namespace thunderhead::sandbox {
@@ -37,26 +37,6 @@ absl::Status CheckStormStart(const std::string& path, int file);
 struct FileChecks {
   CheckOpened opened = {};
   CheckStart start = CheckStormStart;
-};
-
-// A child process. The destructor kills the process and collects its exit status.
-class Child {
- public:
-  Child(pid_t process, const base::TimeSource& time) : process_(process), time_(time) {}
-  ~Child();
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
-
-  // Returns the id of the process, or 0 once End has found that it ended.
-  pid_t Process() const { return process_; }
-
-  // Waits up to `patience` for the process to end. Returns the signal that ended the process, or 0
-  // if it exited normally. Returns nothing if the process still runs.
-  std::optional<int> End(std::chrono::milliseconds patience);
-
- private:
-  pid_t process_;
-  const base::TimeSource& time_;
 };
 
 struct UnmapBytes {
@@ -88,8 +68,9 @@ class StartedReader {
  public:
   // Opens the file or the bundled files that `first` names, unless `first` is a probe. Then starts
   // `program` for them, with the limits of memory and processor time in `first`. Returns
-  // UNAVAILABLE if no process can be started. If a file cannot be opened or fails a check, the
-  // error names the file. `time` must outlive the reader.
+  // UNAVAILABLE if no process can be started, also because too many earlier ones were abandoned
+  // (ChildPlace). If a file cannot be opened or fails a check, the error names the file. `time`
+  // must outlive the reader.
   static absl::StatusOr<std::unique_ptr<StartedReader>> Start(const std::string& program,
                                                               const Request& first,
                                                               const FileChecks& checks,
@@ -109,8 +90,8 @@ class StartedReader {
   base::TimeSource::Clock::time_point Began() const { return began_; }
 
  private:
-  StartedReader(std::string path, pid_t process, const base::TimeSource& time)
-      : path_(std::move(path)), began_(time.Now()), child_(process, time) {}
+  StartedReader(std::string path, pid_t process, ChildPlace place, const base::TimeSource& time)
+      : path_(std::move(path)), began_(time.Now()), child_(process, std::move(place), time) {}
 
   const std::string path_;
   const base::TimeSource::Clock::time_point began_;

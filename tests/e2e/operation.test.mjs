@@ -28,7 +28,7 @@ async function start(...more) {
   // Begins a picture that takes some seconds. The promise resolves when the server has received the request.
   const beginPicture = async (file) => {
     const child = spawn(BINARY, [
-      ...["render", "supercell", "-o", file, "--renderer", "light_volume", "--slices", "512"],
+      ...["render", "supercell", "-o", file, "--technique", "light_volume", "--slices", "512"],
       ...["--size", "1920x1080", "--server", `127.0.0.1:${ports.grpcPort}`],
     ]);
     let said = "";

@@ -8,6 +8,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "accuracy/named_settings.h"
+#include "app/phase_flag.h"
 #include "glm/geometric.hpp"
 #include "gmock/gmock.h"
 #include "google/protobuf/util/json_util.h"
@@ -15,6 +16,7 @@
 #include "physics/optics.h"
 #include "physics/phase_table.h"
 #include "reference/sampled_phase.h"
+#include "runs/legend.h"
 #include "sandbox/plausible.h"
 #include "scene/drawn_fields.h"
 #include "scene/scene_parts.h"
@@ -160,6 +162,25 @@ TEST(TechniqueToy, IsChosenByItsMessage) {
       HasSubstr("depth_m is 0; it must be between 1 and 1000 m"));
 }
 
+// The legend needs no other change than the field `false_colors`, which is found by reflection.
+TEST(TechniqueToy, HasALegendIfItPaintsFalseColors) {
+  v1::RenderImageResponse picture;
+  picture.mutable_modelled()->add_fields(v1::HYDROMETEOR_DUST);
+  const auto draw = [&picture](const std::string& json) {
+    const v1::Scene scene = testing::Completed(Given(json));
+    *picture.mutable_scene() = scene;
+    return service::ToScene(scene).rendering.technique;
+  };
+  EXPECT_FALSE(scene::FieldLookOf(draw(R"({"rendering": {"fog": {}}})")).false_colors);
+  EXPECT_TRUE(runs::LegendOf(picture).empty());
+  EXPECT_TRUE(
+      scene::FieldLookOf(draw(R"({"rendering": {"fog": {"falseColors": true}}})")).false_colors);
+  const auto legend = runs::LegendOf(picture);
+  ASSERT_EQ(legend.size(), 1U);
+  EXPECT_EQ(legend[0].name, "dust");
+  EXPECT_EQ(legend[0].color, glm::vec3(0.5F, 0.4F, 0.2F));
+}
+
 TEST(TechniqueToy, IsMeasuredLikeEveryTechnique) {
   std::vector<std::string_view> names;
   for (const accuracy::PlainTechnique& technique : accuracy::kPlainTechniques) {
@@ -204,6 +225,13 @@ TEST(FormulaToy, ScattersByItsFormula) {
   }
   EXPECT_NEAR(physics::MeanCosine(phase), 1.0 / 6.0, 1e-6);
   EXPECT_NEAR(MeanSampledCosine(phase), 1.0 / 6.0, 1e-3);
+}
+
+TEST(FormulaToy, CanBeChosenForFluxes) {
+  const auto phase = app::ParsePhase("tilted");
+  ASSERT_TRUE(phase.ok()) << phase.status();
+  EXPECT_NEAR((*phase)->Value(0.3).g, 1.15, 1e-4);
+  EXPECT_THAT(app::PhaseFlagHelp(), HasSubstr("rayleigh, tilted or table:NAME"));
 }
 
 TEST(TableToy, ScattersByItsTable) {

@@ -103,18 +103,22 @@ TOYS = {
         after("scene.proto", "    OtherTechnique other = 17;\n", "    // Fog.\n    Fog fog = 18;\n"),
         after("scene.proto", "  map<string, double> numbers = 2;\n}\n",
               "\n// A fog.\nmessage Fog {\n  // Its depth.\n  optional float depth_m = 1 [(number) = {minimum: 1, "
-              "maximum: 1000, default_value: 50, unit: \"m\"}];\n}\n"),
+              "maximum: 1000, default_value: 50, unit: \"m\"}];\n  // Whether to paint each field in its false colour.\n"
+              "  optional bool false_colors = 2 [(default_on) = false];\n}\n"),
         Edit("technique_messages.cc", "scene::LightVolume ToSettings(",
              "void SetSettings(const scene::Fog& settings, v1::Rendering& rendering) {\n"
-             "  rendering.mutable_fog()->set_depth_m(settings.depth_m);\n}\n\n"
-             "scene::Fog ToSettings(const v1::Fog& message) { return {message.depth_m()}; }\n\n"
+             "  rendering.mutable_fog()->set_depth_m(settings.depth_m);\n"
+             "  rendering.mutable_fog()->set_false_colors(settings.false_colors);\n}\n\n"
+             "scene::Fog ToSettings(const v1::Fog& message) {\n"
+             "  return {message.depth_m(), message.false_colors()};\n}\n\n"
              "scene::LightVolume ToSettings("),
         after("technique_messages.cc", "      return scene::Cumulus{};\n",
               "    case v1::Rendering::kFog:\n      return scene::Fog{};\n"),
         after("technique_messages.cc", "      return ToSettings(rendering.cumulus());\n",
               "    case v1::Rendering::kFog:\n      return ToSettings(rendering.fog());\n"),
         Append("tests/service/scene_parts.txt",
-               "scene.rendering.fog.depth_m: rendering.technique, view, light correction, measured error\n"),
+               "scene.rendering.fog.depth_m: rendering.technique, view, light correction, measured error\n"
+               "scene.rendering.fog.false_colors: rendering.technique, view, light correction, measured error\n"),
     ], {"techniques/": "fog.h"}, elsewhere=("built_in_techniques.cc",)),
     "formula": Toy("A phase function by a formula", [
         after("hydrometeors.h", "  kRayleigh,\n", "  kTilted,\n"),

@@ -199,8 +199,8 @@ class MapTest(ProductTest):
         self.assertIn("camera is not: use --camera top-down", said)
         said = self.render(SAMPLE, self.folder / "view.nc", "--camera", "top-down", "--annotate", code=64)
         self.assertIn("contains radiance and no pixels", said)
-        said = self.render(SAMPLE, self.folder / "view.tif", "--camera", "top-down", "--renderer", "reference", code=64)
-        self.assertIn("--renderer reference writes only .png, .jpg and .exr", said)
+        said = self.render(SAMPLE, self.folder / "view.tif", "--camera", "top-down", "--technique", "reference", code=64)
+        self.assertIn("--technique reference writes only .png, .jpg and .exr", said)
         self.assertEqual([file.name for file in self.folder.iterdir()], [])
 
     def test_without_gdal_it_names_the_package(self) -> None:

@@ -129,6 +129,26 @@ TEST_F(CommandLineTest, ServeAcceptsTheEarlierNamesOfTheLimitsOfImages) {
   EXPECT_THAT(printed, HasSubstr("max-images-each=55\n"));
 }
 
+TEST_F(CommandLineTest, TheEarlierNameOfTheFlagTechniqueIsAcceptedAndHidden) {
+  for (const std::string command : {"render", "sequence", "measure slices"}) {
+    const std::string help = Run(command + " --help").out;
+    EXPECT_THAT(help, HasSubstr("  --technique TEXT")) << command;
+    EXPECT_THAT(help, Not(HasSubstr("--renderer"))) << command;
+  }
+  ExpectError(render_ + " --renderer voxels", 64, "--technique is 'voxels'; it must be ");
+  ExpectError(render_ + " --renderer metaball --quality fast", 64,
+              "--quality excludes --technique");
+  ExpectError("measure slices --slab 1 --renderer metaball", 64, "--technique is 'metaball'; ");
+}
+
+// Scripts give this flag, which had an effect in earlier versions.
+TEST_F(CommandLineTest, ServeAcceptsTheEarlierFlagSandbox) {
+  EXPECT_EQ(Run("serve --sandbox all --print-config").out, Run("serve --print-config").out);
+  EXPECT_EQ(Run("serve --sandbox untrusted --print-config").code, 0);
+  ExpectError("serve --sandbox none --print-config", 64, "--sandbox");
+  EXPECT_THAT(Run("serve --help").out, Not(HasSubstr("--sandbox")));
+}
+
 TEST_F(CommandLineTest, WrongSettingsAreRefusedWithTheirFile) {
   const std::string file = folder_.File("serve.conf");
   const auto refuse = [&](const std::string& setting, const std::string& text) {
@@ -207,7 +227,7 @@ TEST_F(CommandLineTest, IntegersAreDecimalAndNotTooLarge) {
 
 // In these flags, 0 is not a way to ask for the default.
 TEST_F(CommandLineTest, TheLimitsOfTheReferenceAreAboveZero) {
-  const std::string reference = render_ + " --size 16x9 --renderer reference ";
+  const std::string reference = render_ + " --size 16x9 --technique reference ";
   for (const char* const number : {"0", "-1"}) {
     const std::string is = std::string(" is ") + number + "; it must be ";
     for (const std::string flag : {"--spp", "--max-scatterings"}) {
@@ -217,7 +237,7 @@ TEST_F(CommandLineTest, TheLimitsOfTheReferenceAreAboveZero) {
       ExpectError(reference + flag + " " + number, 64, flag + is + "above 0");
     }
   }
-  ExpectError(render_ + " --spp 0", 64, "are for --renderer reference");
+  ExpectError(render_ + " --spp 0", 64, "are for --technique reference");
 }
 
 TEST_F(CommandLineTest, FlagsWithoutAValueAreTrueOrFalse) {
@@ -273,9 +293,9 @@ TEST_F(CommandLineTest, WrongUsageIsABadRequest) {
   ExpectError("render " + kSample, 64, "--output");
   ExpectError("render " + kSample + " -o storm.gif", 64, "must end in .png");
   ExpectError(render_ + " --size 12", 64, "WIDTHxHEIGHT");
-  ExpectError(render_ + " --renderer voxels", 64,
+  ExpectError(render_ + " --technique voxels", 64,
               "'voxels'; it must be light_volume, half_angle, metaball, cumulus or reference");
-  ExpectError(render_ + " --renderer metaball --slices 9", 64, "for light_volume and half_angle;");
+  ExpectError(render_ + " --technique metaball --slices 9", 64, "for light_volume and half_angle;");
   ExpectError(render_ + " --camera kite", 64, "orbit, spotter or top-down");
   ExpectError("serve --data " + kSample + " --http nowhere", 64, "--http");
   ExpectError("serve --data " + kSample + " --http 0.0.0.0:0", 64, "accept this with --insecure");
@@ -574,7 +594,7 @@ TEST_F(CommandLineTest, MeasureSlicesWritesThePlot) {
   EXPECT_THAT(Contents(plot), HasSubstr("consistent, order"));
   ExpectError("measure slices", 64, "either a STORM or --slab TAU");
   ExpectError("measure slices --slab -1", 64, "above 0");
-  ExpectError("measure slices --slab 1 --renderer metaball", 64, "half_angle or light_volume");
+  ExpectError("measure slices --slab 1 --technique metaball", 64, "half_angle or light_volume");
   ExpectError("measure slices --slab 1 -o x.png", 64, ".svg or .csv");
 }
 
@@ -660,7 +680,7 @@ TEST_F(CommandLineTest, ServeRefusesAClockThatIsWrongByDecades) {
 
 TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {
   const std::string reference =
-      "render " + kSample + " --renderer reference --device software --size 24x16 --spp 4 -o ";
+      "render " + kSample + " --technique reference --device software --size 24x16 --spp 4 -o ";
   const Outcome exr = Run(reference + folder_.File("reference.exr"));
   ASSERT_EQ(exr.code, 0) << exr.err;
   EXPECT_THAT(exr.out, StartsWith("4 samples a pixel"));
@@ -669,8 +689,8 @@ TEST_F(CommandLineTest, TheReferenceRendersToExrAndPng) {
   const auto png = frame::DecodePng(Contents(picture_));
   ASSERT_TRUE(png.ok());
   EXPECT_EQ(png->width_px, 24);
-  ExpectError(render_ + " --spp 4", 64, "for --renderer reference");
-  ExpectError(render_ + " --no-air", 64, "for --renderer reference");
+  ExpectError(render_ + " --spp 4", 64, "for --technique reference");
+  ExpectError(render_ + " --no-air", 64, "for --technique reference");
   ExpectError(reference + picture_ + " --max-scatterings -2", 64, "--max-scatterings is -2");
   ExpectError(reference + "reference.txt", 64, "must end in");
   ExpectError(reference + picture_ + " --seconds -1", 64, "--seconds is -1");

@@ -168,7 +168,7 @@ TEST_F(GenerateCommand, EmptyVolumesAreNamedByFitAndDrawnAsSky) {
     EXPECT_EQ(Run("fit " + cloud_ + " --balls 3 -o " + folder_.File("x.balls")), 64) << value;
     EXPECT_THAT(err_, HasSubstr("empty")) << value;
     for (const std::string renderer : {"metaball", "cumulus", "light_volume", "half_angle"}) {
-      EXPECT_EQ(Run("render " + cloud_ + " --device software --size 16x12 --renderer " + renderer +
+      EXPECT_EQ(Run("render " + cloud_ + " --device software --size 16x12 --technique " + renderer +
                     " -o " + folder_.File("sky.png")),
                 0)
           << renderer << ' ' << value << ' ' << err_;

@@ -304,7 +304,8 @@ TEST_F(HungStorageTest, AStateFolderThatHangsHoldsUpNothingElse) {
   EXPECT_TRUE(BecomesHealthy("/healthz"));
   EXPECT_THAT(BodyOf(operators_port_, "/readyz"), HasSubstr("the state folder has not answered"));
   EXPECT_THAT(BodyOf(operators_port_, "/metrics"),
-              ContainsRegex("\nthunderhead_state_stuck_seconds [1-9]"));
+              AllOf(ContainsRegex("\nthunderhead_state_stuck_seconds [1-9]"),
+                    ContainsRegex("\nthunderhead_readers_abandoned [0-9]+\n")));
   EXPECT_THAT(Contents(err_), ContainsRegex("cannot save sessions.*" + state));
   EXPECT_EQ(CodeAfterSigterm(), 0) << Contents(err_);
 }

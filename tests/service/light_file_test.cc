@@ -88,12 +88,12 @@ TEST_P(LightFile, OpacityAndOpticalDepthAgree) {
 
 INSTANTIATE_TEST_SUITE_P(Renderers, LightFile,
                          ::testing::Values(Renderer{"light_volume", {"--quality", "fast"}},
-                                           Renderer{"half_angle", {"--renderer", "half_angle"}},
-                                           Renderer{"metaball", {"--renderer", "metaball"}, 0.1},
+                                           Renderer{"half_angle", {"--technique", "half_angle"}},
+                                           Renderer{"metaball", {"--technique", "metaball"}, 0.1},
                                            // This renderer shows only cloud water and ice.
-                                           Renderer{"cumulus", {"--renderer", "cumulus"}, 0.2},
+                                           Renderer{"cumulus", {"--technique", "cumulus"}, 0.2},
                                            Renderer{"reference",
-                                                    {"--renderer", "reference", "--spp", "32"}}),
+                                                    {"--technique", "reference", "--spp", "32"}}),
                          [](const auto& each) { return each.param.name; });
 
 // One field with a phase function in closed form, that of Henyey and Greenstein.

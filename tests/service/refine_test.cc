@@ -275,7 +275,7 @@ TEST_F(RefineTest, RenderImageSaysThatItIsForSessions) {
   const grpc::Status status =
       Call(service_.stub(), &v1::ThunderheadService::Stub::RenderImage, request, &response);
   EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
-  EXPECT_THAT(status.error_message(), HasSubstr("--renderer reference"));
+  EXPECT_THAT(status.error_message(), HasSubstr("--technique reference"));
 }
 
 TEST_F(RefineTest, StopsAmidWork) {

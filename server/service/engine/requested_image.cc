@@ -103,7 +103,7 @@ absl::Status RequestedImage::CompleteScene() {
   if (!scene.rendering().has_reference()) return absl::OkStatus();
   return base::InvalidField("scene.rendering.reference",
                             "is given, which only sessions can show; for a file use "
-                            "thunderhead render --renderer reference",
+                            "thunderhead render --technique reference",
                             "TECHNIQUE_FOR_SESSIONS_ONLY");
 }
 

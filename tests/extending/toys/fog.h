@@ -14,11 +14,12 @@ struct Fog {
   static constexpr Capabilities kCapabilities{};
 
   float depth_m = 50.0F;
+  bool false_colors = false;
 
   bool operator==(const Fog&) const = default;
 
   const MediumSettings* Medium() const { return nullptr; }
-  FieldLook Look() const { return {}; }
+  FieldLook Look() const { return {.false_colors = false_colors}; }
   double SamplesPerPixel(double /*slice_share*/) const { return 1.0; }
 
   Stage DirtiedSince(const Fog& before) const {

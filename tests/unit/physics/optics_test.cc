@@ -1,7 +1,11 @@
 #include "physics/optics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "glm/trigonometric.hpp"
 #include "gtest/gtest.h"
@@ -12,26 +16,44 @@ namespace {
 constexpr PhaseKind kHg = PhaseKind::kHenyeyGreenstein;
 constexpr PhaseKind kCs = PhaseKind::kCornetteShanks;
 
-const PhaseFunction kAll[] = {{kHg, 0.0F},
-                              {kHg, 0.85F},
-                              {kHg, -0.5F},
-                              {kCs, 0.0F},
-                              {kCs, 0.979F},
-                              {PhaseKind::kRayleigh, 0.0F},
-                              {PhaseKind::kWaterDroplets, 0.0F, 5e-6F},
-                              {PhaseKind::kWaterDroplets, 0.0F, 5e-4F},
-                              {PhaseKind::kIceColumns},
-                              {PhaseKind::kIcePlates},
-                              {PhaseKind::kIceRough}};
+// Returns phase functions of every kind: formulas with several asymmetries, and all tables.
+std::vector<PhaseFunction> AllPhases() {
+  std::vector<PhaseFunction> phases;
+  for (const PhaseKindName& each : kPhaseKindNames) {
+    if (const PhaseFormula* const formula = FormulaOf(each.kind); formula != nullptr) {
+      for (const float g : {0.0F, 0.85F, -0.5F, 0.979F}) {
+        if (formula->has_asymmetry || g == 0.0F) phases.push_back({each.kind, g});
+      }
+      continue;
+    }
+    for (const PhaseTableName& table : kPhaseTables) {
+      if (table.kind == each.kind) phases.push_back({each.kind, 0.0F, table.droplet_radius_m});
+    }
+  }
+  return phases;
+}
 
-TEST(PhaseFunctions, AreNormalisedOverTheSphere) {
-  for (const PhaseFunction& phase : kAll) {
-    EXPECT_NEAR(CumulativePhase(phase, std::numbers::pi), 1.0, 2e-5) << phase.asymmetry;
+// Names the phase function in the message of a failed test.
+std::string NameOf(const PhaseFunction& phase) {
+  const auto* const name = std::ranges::find(kPhaseKindNames, phase.kind, &PhaseKindName::kind);
+  return std::string(name->name) + ", asymmetry " + std::to_string(phase.asymmetry) + ", radius " +
+         std::to_string(1e6F * phase.droplet_radius_m) + " um";
+}
+
+TEST(PhaseFunctions, TheTestsHaveEveryKind) {
+  std::set<PhaseKind> kinds;
+  for (const PhaseFunction& phase : AllPhases()) kinds.insert(phase.kind);
+  EXPECT_EQ(kinds.size(), kPhaseKindNames.size());
+}
+
+TEST(PhaseFunctions, HaveTheMeanOneOverTheSphere) {
+  for (const PhaseFunction& phase : AllPhases()) {
+    EXPECT_NEAR(CumulativePhase(phase, std::numbers::pi), 1.0, 2e-5) << NameOf(phase);
   }
 }
 
 TEST(PhaseFunctions, ASingleValueIsTheLuminanceOfTheColors) {
-  for (const PhaseFunction& phase : kAll) {
+  for (const PhaseFunction& phase : AllPhases()) {
     for (double angle_deg = 0.3; angle_deg < 180.0; angle_deg += 7.1) {
       const double mu = std::cos(glm::radians(angle_deg));
       const glm::dvec3 colors = PhaseColors(phase, mu);
@@ -133,7 +155,7 @@ TEST(PhaseFunctions, ShareScatteredWithinTenDegrees) {
 }
 
 TEST(DeltaScaling, WhatIsCutAndWhatIsLeftAddUp) {
-  for (const PhaseFunction& phase : kAll) {
+  for (const PhaseFunction& phase : AllPhases()) {
     const DeltaScaling cut = CutForwardPeak(phase, glm::radians(10.0));
     double left = 0.0;
     constexpr int kSteps = 20000;
@@ -142,7 +164,7 @@ TEST(DeltaScaling, WhatIsCutAndWhatIsLeftAddUp) {
       left += PhaseValue(phase, std::fmin(mu, cut.cut_cosine)) / kSteps;
     }
     // The tolerance covers the error of the midpoint rule at the edges of halos.
-    EXPECT_NEAR(left + cut.forward_share, 1.0, 1e-4) << static_cast<int>(phase.kind);
+    EXPECT_NEAR(left + cut.forward_share, 1.0, 1e-4) << NameOf(phase);
     EXPECT_GE(cut.forward_share, 0.0);
   }
   EXPECT_GT(CutForwardPeak({kCs, 0.85F}, glm::radians(10.0)).forward_share, 0.1);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <netcdf.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -22,6 +23,7 @@
 #include "base/error_details.h"
 #include "base/stopwatch.h"
 #include "base/utf8.h"
+#include "sandbox/child.h"
 #include "sandbox/messages.h"
 #include "storm_store/storm_catalogue.h"
 #include "storm_store/storm_store.h"
@@ -302,6 +304,55 @@ TEST_F(ConfinedFilesTest, AReaderRestsForAMoment) {
   EXPECT_NE(third, second);
   time_.Advance(std::chrono::seconds(2));
   EXPECT_TRUE(WaitFor([&] { return kill(third, 0) != 0; })) << "it is ended and collected";
+}
+
+// A process that waits for a storage that does not answer cannot be killed. Children that are not
+// killed take the place of such processes here.
+TEST_F(ConfinedFilesTest, AtMostEightReadersThatCannotBeKilledAreAbandoned) {
+  ASSERT_TRUE(WaitFor([] { return AbandonedChildren() == 0; }));
+  const auto files = Files();
+  const std::string path = Bad("named");
+  std::vector<pid_t> stuck;
+  while (stuck.size() < kMaxAbandonedChildren) {
+    absl::StatusOr<ChildPlace> place = ChildPlace::Take();
+    ASSERT_TRUE(place.ok()) << stuck.size() << ": " << place.status();
+    const pid_t process = fork();
+    if (process == 0) {
+      for (;;) pause();
+    }
+    ASSERT_GT(process, 0);
+    const Child child(process, *std::move(place), base::SteadyTime(), [](pid_t) {});
+    stuck.push_back(process);
+  }
+  EXPECT_EQ(AbandonedChildren(), 8U);
+  const absl::Status refused = files->Describe(path).status();
+  EXPECT_EQ(refused.code(), absl::StatusCode::kUnavailable) << refused;
+  EXPECT_EQ(base::DetailsOf(refused).reason, "STORAGE_HANGS");
+  EXPECT_THAT(std::string(refused.message()),
+              HasSubstr("named.bad: no process can be started to read it, because 8 earlier ones "
+                        "cannot be ended; check whether the storage"));
+  // When one of them ends, one file can be read at a time.
+  kill(stuck.back(), SIGKILL);
+  EXPECT_TRUE(WaitFor([] { return AbandonedChildren() == 7; }));
+  {
+    const absl::StatusOr<ChildPlace> running = ChildPlace::Take();
+    EXPECT_TRUE(running.ok()) << running.status();
+    EXPECT_FALSE(files->Describe(path).ok());
+  }
+  EXPECT_TRUE(files->Describe(path).ok());
+  for (const pid_t process : stuck) kill(process, SIGKILL);
+  EXPECT_TRUE(WaitFor([] { return AbandonedChildren() == 0; }));
+}
+
+// A limit on all children would hold up a busy server whose storage answers.
+TEST(ChildPlaceTest, RunningChildrenAreNotLimitedWhileNoneIsAbandoned) {
+  ASSERT_TRUE(WaitFor([] { return AbandonedChildren() == 0; }));
+  std::vector<ChildPlace> places;
+  for (std::size_t i = 0; i < 3 * kMaxAbandonedChildren; ++i) {
+    absl::StatusOr<ChildPlace> place = ChildPlace::Take();
+    ASSERT_TRUE(place.ok()) << place.status();
+    places.push_back(*std::move(place));
+  }
 }
 
 // An attacker may replace a folder by a symbolic link after the path was checked.
