@@ -11,7 +11,7 @@
 
 #include "absl/status/statusor.h"
 #include "base/file_stamp.h"
-#include "base/looks.h"
+#include "base/storage_checks.h"
 #include "base/time_source.h"
 
 namespace thunderhead::access {
@@ -37,7 +37,7 @@ class KeptFile {
       const std::string& path, Parse parse, const base::TimeSource& time = base::SteadyTime());
 
   // Returns the newest valid contents, after checking whether the file has changed. Waits at most
-  // base::Looks::kPatience for this check.
+  // base::StorageChecks::kPatience for this check.
   std::shared_ptr<const Value> Current();
 
  private:
@@ -55,11 +55,11 @@ class KeptFile {
 
   KeptFile(const std::shared_ptr<State>& state, const base::TimeSource& time)
       : state_(state),
-        looks_(
-            state->path, [state] { state->Look(); }, base::Looks::kPatience, time) {}
+        checks_(
+            state->path, [state] { state->Look(); }, base::StorageChecks::kPatience, time) {}
 
   const std::shared_ptr<State> state_;
-  base::Looks looks_;
+  base::StorageChecks checks_;
 };
 
 // Logs that the file at `path` has been read again, or why that failed.
@@ -76,7 +76,7 @@ absl::StatusOr<std::unique_ptr<KeptFile<Value>>> KeptFile<Value>::Open(
 template <typename Value>
 std::shared_ptr<const Value> KeptFile<Value>::Current() {
   // The file is checked at every call, so that a token that was removed is refused from then on.
-  looks_.LookAgain();
+  checks_.LookAgain();
   const std::lock_guard lock(state_->mutex);
   return state_->value;
 }

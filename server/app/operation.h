@@ -16,7 +16,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/memory_budget.h"
-#include "base/patient_calls.h"
+#include "base/timed_calls.h"
 #include "service/server.h"
 #include "telemetry/operator_port.h"
 #include "telemetry/watchdog.h"
@@ -62,7 +62,7 @@ class Operation {
   struct Resources {
     std::shared_ptr<const base::MemoryBudget> memory;
     std::shared_ptr<const base::MemoryBudget> gpu_memory;
-    std::shared_ptr<base::PatientCalls> state;  // calls to the storage of the state folder
+    std::shared_ptr<base::TimedCalls> state;  // calls to the storage of the state folder
   };
 
   // Sets the server and its resources. The server must stay alive until SetServer(nullptr) is

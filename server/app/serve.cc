@@ -63,18 +63,18 @@ std::string DefaultPageFolder() {
   return "";
 }
 
-void ShowOwnToken(const access::Door& door, grpc::ClientContext& context) {
-  context.AddMetadata("authorization", absl::StrCat("Bearer ", door.OwnToken()));
+void ShowOwnToken(const access::AccessControl& access_control, grpc::ClientContext& context) {
+  context.AddMetadata("authorization", absl::StrCat("Bearer ", access_control.OwnToken()));
 }
 
 // Opens a session, waits for its first frame, and closes it.
 grpc::Status ShowOnce(v1::ThunderheadService::Stub& stub, const v1::Scene& scene,
-                      const access::Door& door) {
+                      const access::AccessControl& access_control) {
   v1::CreateSessionRequest request;
   *request.mutable_scene() = scene;
   v1::CreateSessionResponse session;
   grpc::ClientContext creating;
-  ShowOwnToken(door, creating);
+  ShowOwnToken(access_control, creating);
   if (grpc::Status status = stub.CreateSession(&creating, request, &session); !status.ok()) {
     return status;
   }
@@ -82,7 +82,7 @@ grpc::Status ShowOnce(v1::ThunderheadService::Stub& stub, const v1::Scene& scene
     v1::WatchFramesRequest watch;
     watch.set_session_id(session.session_id());
     grpc::ClientContext watching;
-    ShowOwnToken(door, watching);
+    ShowOwnToken(access_control, watching);
     const auto frames = stub.WatchFrames(&watching, watch);
     v1::WatchFramesResponse event;
     while (frames->Read(&event) && !event.has_frame() && !event.has_problem()) {
@@ -94,20 +94,21 @@ grpc::Status ShowOnce(v1::ThunderheadService::Stub& stub, const v1::Scene& scene
   close.set_session_id(session.session_id());
   v1::CloseSessionResponse closed;
   grpc::ClientContext closing;
-  ShowOwnToken(door, closing);
+  ShowOwnToken(access_control, closing);
   return stub.CloseSession(&closing, close, &closed);
 }
 
 // Draws two small pictures, one with the sun in front of the eye and one with the sun behind it.
 // After that, the storm and the shaders are ready for the first viewer.
-void WarmUp(const std::shared_ptr<grpc::Channel>& channel, const access::Door& door) {
+void WarmUp(const std::shared_ptr<grpc::Channel>& channel,
+            const access::AccessControl& access_control) {
   const auto stub = v1::ThunderheadService::NewStub(channel);
   for (const float azimuth_deg : {255.0F, 75.0F}) {
     v1::Scene scene;
     scene.mutable_output()->set_width_px(64);
     scene.mutable_output()->set_height_px(36);
     scene.mutable_camera()->mutable_orbit()->set_azimuth_deg(azimuth_deg);
-    const grpc::Status status = ShowOnce(*stub, scene, door);
+    const grpc::Status status = ShowOnce(*stub, scene, access_control);
     if (!status.ok()) spdlog::warn("cannot draw the first storm: {}", status.error_message());
   }
 }
@@ -178,7 +179,8 @@ absl::Status Serve(ServeFlags flags) {
   // that hangs. Signals are therefore handled meanwhile.
   std::jthread starting = EndIfToldWhileStarting(signals);
   THUNDERHEAD_RETURN_IF_ERROR(CompleteFlags(flags));
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::Door> door, MakeDoor(flags));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<access::AccessControl> access_control,
+                               MakeAccessControl(flags));
   // The certificate is loaded before any port is opened, and before the storms are searched, so
   // that a wrong file is reported at once.
   if (!flags.tls.certificate.empty()) {
@@ -238,7 +240,7 @@ absl::Status Serve(ServeFlags flags) {
   };
   server_options.address = ToString(grpc);
   server_options.tls = flags.tls;
-  server_options.door = door;
+  server_options.access_control = access_control;
   server_options.limits = flags.limits;
   server_options.sessions = flags.sessions;
   if (!flags.roster_timeouts.empty()) {
@@ -262,9 +264,9 @@ absl::Status Serve(ServeFlags flags) {
   gateway_options.find_kept_file = [&server](std::string_view path) {
     return FindResult(*server, path);
   };
-  gateway_options.on_refusal = [&door](const gateway::GatewayRefusal& refusal) {
+  gateway_options.on_refusal = [&access_control](const gateway::GatewayRefusal& refusal) {
     telemetry::Counted().refusals.Of(base::DetailsOf(refusal.why).reason).Add();
-    door->ReportBeforeCall(refusal.peer, refusal.act, refusal.why);
+    access_control->ReportBeforeCall(refusal.peer, refusal.act, refusal.why);
   };
   const std::shared_ptr<grpc::Channel> channel = server->LocalChannel();
   THUNDERHEAD_ASSIGN_OR_RETURN(std::unique_ptr<gateway::Gateway> gateway,
@@ -278,7 +280,7 @@ absl::Status Serve(ServeFlags flags) {
     operation->SetServer(server.get(), {budgets.memory, budgets.gpu, state.calls});
     std::cout << "Thunderhead is ready at " << (flags.tls.certificate.empty() ? "http" : "https")
               << "://" << ToString(http) << "/ (gRPC " << ToString(grpc) << ")" << std::endl;
-    warm_up = std::thread([channel, door] { WarmUp(channel, *door); });
+    warm_up = std::thread([channel, access_control] { WarmUp(channel, *access_control); });
   });
   std::jthread roster_timeouts;
   if (!flags.roster_timeouts.empty()) {
@@ -287,7 +289,7 @@ absl::Status Serve(ServeFlags flags) {
                                              server->SetRosterTimeouts(timeouts);
                                            });
   }
-  const auto last = [door] { door->FlushAudit(kLastLines); };
+  const auto last = [access_control] { access_control->FlushAudit(kLastLines); };
   operation->WaitAndDrain(signals, *server, last);
   const std::jthread ends_anyway = EndAnywayAfter(
       kEndPatience, [given_up] { return static_cast<int>(runs::ExitCodeOf(*given_up)); }, last);

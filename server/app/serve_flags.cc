@@ -279,7 +279,7 @@ absl::StatusOr<base::TrustedProxies> ProxiesOf(const ServeFlags& flags) {
 
 }  // namespace
 
-absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags) {
+absl::StatusOr<std::shared_ptr<access::AccessControl>> MakeAccessControl(const ServeFlags& flags) {
   const std::string& mode = flags.auth.front();
   const bool has_file = flags.auth.size() == 2;
   std::unique_ptr<access::Authenticator> authenticator;
@@ -298,8 +298,8 @@ absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags) 
   THUNDERHEAD_ASSIGN_OR_RETURN(std::shared_ptr<access::Audit> audit,
                                OpenAudit(flags.audit_log, flags.operation.log_format));
   THUNDERHEAD_ASSIGN_OR_RETURN(base::TrustedProxies proxies, ProxiesOf(flags));
-  return std::make_shared<access::Door>(std::move(authenticator), std::move(audit), flags.quotas,
-                                        std::move(proxies));
+  return std::make_shared<access::AccessControl>(std::move(authenticator), std::move(audit),
+                                                 flags.quotas, std::move(proxies));
 }
 
 absl::Status CompleteFlags(ServeFlags& flags) {

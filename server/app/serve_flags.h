@@ -9,7 +9,7 @@
 #include "CLI/CLI.hpp"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "access/door.h"
+#include "access/access_control.h"
 #include "app/address.h"
 #include "app/catalogue_flags.h"
 #include "app/jobs_flags.h"
@@ -80,7 +80,7 @@ void AddServeFlags(CLI::App& serve, ServeFlags& flags);
 
 // Creates the access control from --auth and the related flags. Returns INVALID_ARGUMENT for a
 // wrong flag, and errors of files name the file.
-absl::StatusOr<std::shared_ptr<access::Door>> MakeDoor(const ServeFlags& flags);
+absl::StatusOr<std::shared_ptr<access::AccessControl>> MakeAccessControl(const ServeFlags& flags);
 
 // Fills in settings that depend on others: limits in the units of the code, allowed hosts, and TLS.
 // Returns INVALID_ARGUMENT for a wrong flag, and FAILED_PRECONDITION for a TLS key that other users

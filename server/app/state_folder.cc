@@ -12,11 +12,11 @@
 #include "base/status.h"
 #include "base/whole_file.h"
 #include "spdlog/spdlog.h"
-#include "store/patient_stores.h"
 #include "store/private_files.h"
 #include "store/sqlite_job_store.h"
 #include "store/sqlite_session_store.h"
 #include "store/state_file.h"
+#include "store/timed_stores.h"
 
 namespace thunderhead::app {
 namespace {
@@ -100,7 +100,7 @@ absl::StatusOr<State> OpenState(const std::string& folder) {
   THUNDERHEAD_ASSIGN_OR_RETURN(auto sessions, store::SqliteSessionStore::In(*file));
   THUNDERHEAD_ASSIGN_OR_RETURN(auto jobs, store::SqliteJobStore::In(*file));
   State state;
-  state.calls = std::make_shared<base::PatientCalls>(kPatience);
+  state.calls = std::make_shared<base::TimedCalls>(kPatience);
   state.sessions = store::WithPatience(std::shared_ptr<session::SessionStore>(std::move(sessions)),
                                        state.calls, path);
   state.jobs =

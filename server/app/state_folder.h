@@ -5,7 +5,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "base/patient_calls.h"
+#include "base/timed_calls.h"
 #include "jobs/job_store.h"
 #include "session/session_store.h"
 #include "storm_store/storm_store.h"
@@ -19,7 +19,7 @@ struct State {
   std::shared_ptr<jobs::JobStore> jobs;
   std::string folder;  // empty if no state is kept
   // Calls to the folder's storage. While they hang, both stores return UNAVAILABLE.
-  std::shared_ptr<base::PatientCalls> calls;
+  std::shared_ptr<base::TimedCalls> calls;
 };
 
 // Opens the state in the folder, which is created for this user only. If `folder` is "none", no

@@ -76,7 +76,7 @@ absl::StatusOr<std::unique_ptr<CertificateFiles>> CertificateFiles::Open(const T
 }
 
 CertificateFiles::CertificateFiles(const std::shared_ptr<State>& state, const TimeSource& time)
-    : looks_(Looks::Every(
+    : checks_(StorageChecks::Every(
           kPause, state->files.certificate, [state] { state->Look(); }, time)) {}
 
 }  // namespace thunderhead::base

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "base/looks.h"
+#include "base/storage_checks.h"
 #include "base/time_source.h"
 
 namespace thunderhead::base {
@@ -42,7 +42,7 @@ class CertificateFiles {
 
   CertificateFiles(const std::shared_ptr<State>& state, const TimeSource& time);
 
-  const std::unique_ptr<Looks> looks_;
+  const std::unique_ptr<StorageChecks> checks_;
 };
 
 // Returns INVALID_ARGUMENT, which says that the file at `path` cannot be used as the `what` of TLS,

@@ -1,6 +1,6 @@
 // Reports file system calls that take long, with their file or folder. A call to a storage that
 // hangs does not return, so the calling thread cannot report the delay itself. This class only
-// reports; patient_calls.h adds timeouts.
+// reports; timed_calls.h adds timeouts.
 #pragma once
 
 #include <chrono>

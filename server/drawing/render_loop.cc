@@ -279,9 +279,9 @@ void RenderLoop::DrawWith(std::unique_ptr<FrameSource> source,
     std::vector<Contender> contenders;
     contenders.reserve(sessions.size() + workers->All().size());
     for (const auto& session : sessions) {
-      const SessionDrawer::Wish wish = drawer.Look(session);
-      contenders.push_back({session->id(), session->IsOwnView(), wish.work});
-      look_again_at = Earlier(look_again_at, wish.look_again_at);
+      const SessionDrawer::PendingWork pending = drawer.Look(session);
+      contenders.push_back({session->id(), session->IsOwnView(), pending.work});
+      look_again_at = Earlier(look_again_at, pending.look_again_at);
     }
     // The light tracer begins its step after all sessions were asked for their work, because a
     // session may just have requested light.

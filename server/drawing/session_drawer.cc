@@ -100,7 +100,7 @@ SessionDrawer::SessionDrawer(const PlannerTargets& targets, const FieldsAccess& 
       share_(share),
       time_(time) {}
 
-SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<session::Session>& session) {
+SessionDrawer::PendingWork SessionDrawer::Look(const std::shared_ptr<session::Session>& session) {
   const std::optional<session::NewestScene> newest = session->Newest();
   if (!newest.has_value() || !session->hub().HasViewers()) return {};
   const Turn turn{session, KeptFor(*session)};
@@ -114,16 +114,17 @@ SessionDrawer::Wish SessionDrawer::Look(const std::shared_ptr<session::Session>&
   const bool traces = std::holds_alternative<TraceLight>(turn.kept.work) ||
                       std::holds_alternative<ShowLight>(turn.kept.work);
   if (!traces) light_tracer_.Stop(session->id());
-  Wish wish = std::visit([&](const auto& work) { return Need(turn, work); }, turn.kept.work);
+  PendingWork pending =
+      std::visit([&](const auto& work) { return Need(turn, work); }, turn.kept.work);
   // The work is read again here, because Need may have replaced it, for example by work that shows
   // the light traced meanwhile.
   turn.kept.in_worker = turn.kept.in_worker || IsLong(turn, turn.kept.work);
-  if (turn.kept.in_worker && !worker_.IsFree()) wish.work.reset();
-  return wish;
+  if (turn.kept.in_worker && !worker_.IsFree()) pending.work.reset();
+  return pending;
 }
 
-std::optional<SessionDrawer::Wish> SessionDrawer::LookInWorker(const Turn& turn,
-                                                               const session::NewestScene& newest) {
+std::optional<SessionDrawer::PendingWork> SessionDrawer::LookInWorker(
+    const Turn& turn, const session::NewestScene& newest) {
   if (!in_worker_.has_value() || !worker_.IsFor(turn.session->id())) return std::nullopt;
   // A changed scene cancels only refinement. An interactive frame is ready soon, and if each change
   // cancelled it, no frame would ever be shown.
@@ -133,8 +134,8 @@ std::optional<SessionDrawer::Wish> SessionDrawer::LookInWorker(const Turn& turn,
     return std::nullopt;
   }
   turn.kept.gives_turn = worker_.WantsTurn();
-  if (!turn.kept.gives_turn) return Wish{};
-  return Wish{in_worker_->turn_class, std::nullopt};
+  if (!turn.kept.gives_turn) return PendingWork{};
+  return PendingWork{in_worker_->turn_class, std::nullopt};
 }
 
 void SessionDrawer::TakeTurn(const std::shared_ptr<session::Session>& session) {
@@ -336,20 +337,20 @@ bool SessionDrawer::IsLong(const Turn& turn, const SessionWork& work) const {
   return ms > (alone_ ? targets_.refined_ms : targets_.whole_ms);
 }
 
-SessionDrawer::Wish SessionDrawer::Need(const Turn& /*turn*/, const WaitUntil& work) {
+SessionDrawer::PendingWork SessionDrawer::Need(const Turn& /*turn*/, const WaitUntil& work) {
   return {std::nullopt, work.time};
 }
 
-SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const DrawFrame& /*work*/) {
+SessionDrawer::PendingWork SessionDrawer::Need(const Turn& turn, const DrawFrame& /*work*/) {
   const bool moves = turn.kept.view.state() == SessionView::State::kMoving;
   return {moves ? TurnClass::kInteractive : TurnClass::kRefining, std::nullopt};
 }
 
-SessionDrawer::Wish SessionDrawer::Need(const Turn& /*turn*/, const CheckSlices& /*work*/) {
+SessionDrawer::PendingWork SessionDrawer::Need(const Turn& /*turn*/, const CheckSlices& /*work*/) {
   return {TurnClass::kRefining, std::nullopt};
 }
 
-SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const TraceLight& work) {
+SessionDrawer::PendingWork SessionDrawer::Need(const Turn& turn, const TraceLight& work) {
   const std::string& id = turn.session->id();
   // A viewer's own view traces no light itself. It shows the light that is traced for its session.
   if (turn.session->IsOwnView()) {
@@ -384,11 +385,11 @@ SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const TraceLight& work
   return Need(turn, show);
 }
 
-SessionDrawer::Wish SessionDrawer::Need(const Turn& /*turn*/, const ShowLight& /*work*/) {
+SessionDrawer::PendingWork SessionDrawer::Need(const Turn& /*turn*/, const ShowLight& /*work*/) {
   return {TurnClass::kRefining, std::nullopt};
 }
 
-SessionDrawer::Wish SessionDrawer::Need(const Turn& turn, const ShowReference& work) {
+SessionDrawer::PendingWork SessionDrawer::Need(const Turn& turn, const ShowReference& work) {
   const absl::Status beyond = CheckReference(turn);
   const absl::StatusOr<bool> news =
       beyond.ok() ? turn.kept.reference.Trace(work.shown, turn.kept.fields.Fields()) : beyond;

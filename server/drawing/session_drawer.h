@@ -41,11 +41,11 @@ class SessionDrawer {
                 SessionWorker& worker, const Share& share,
                 const base::TimeSource& time = base::SteadyTime());
 
-  struct Wish {
+  struct PendingWork {
     std::optional<TurnClass> work;  // work that needs a turn on the device
     std::optional<session::Clock::time_point> look_again_at;
   };
-  Wish Look(const std::shared_ptr<session::Session>& session);
+  PendingWork Look(const std::shared_ptr<session::Session>& session);
   // Does the work that the last Look found for the session: all of it, or one piece.
   void TakeTurn(const std::shared_ptr<session::Session>& session);
   // Passes the frame that was drawn by the worker, if one is ready, to the encoder. `sessions` must
@@ -107,9 +107,9 @@ class SessionDrawer {
   absl::Status CheckReference(const Turn& turn) const;
   void TakeRead(const Turn& turn);
   SessionWork NextWork(const Turn& turn, const session::NewestScene& newest);
-  // Returns the wish of a session whose frame the worker draws. Returns none if the session no
-  // longer shows the scene of that frame.
-  std::optional<Wish> LookInWorker(const Turn& turn, const session::NewestScene& newest);
+  // Returns the pending work of a session whose frame the worker draws. Returns none if the session
+  // no longer shows the scene of that frame.
+  std::optional<PendingWork> LookInWorker(const Turn& turn, const session::NewestScene& newest);
   // Returns the work, moved to the worker if it takes too long for the render loop or if the
   // worker's source can reuse more stages than the render loop's source. The frame's quality is
   // then planned again for the stages that the worker must rerun.
@@ -120,12 +120,12 @@ class SessionDrawer {
   void Show(const Turn& turn, const InWorker& drawn, SessionWorker::Picture picture);
 
   // Each function returns the class of the turn that the work needs; absent if it needs no turn.
-  Wish Need(const Turn& turn, const WaitUntil& work);
-  Wish Need(const Turn& turn, const DrawFrame& work);
-  Wish Need(const Turn& turn, const CheckSlices& work);
-  Wish Need(const Turn& turn, const TraceLight& work);
-  Wish Need(const Turn& turn, const ShowLight& work);
-  Wish Need(const Turn& turn, const ShowReference& work);
+  PendingWork Need(const Turn& turn, const WaitUntil& work);
+  PendingWork Need(const Turn& turn, const DrawFrame& work);
+  PendingWork Need(const Turn& turn, const CheckSlices& work);
+  PendingWork Need(const Turn& turn, const TraceLight& work);
+  PendingWork Need(const Turn& turn, const ShowLight& work);
+  PendingWork Need(const Turn& turn, const ShowReference& work);
 
   void Do(const Turn& turn, const WaitUntil& work);
   void Do(const Turn& turn, const DrawFrame& work);

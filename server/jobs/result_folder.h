@@ -16,8 +16,8 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "base/patient_calls.h"
 #include "base/time_source.h"
+#include "base/timed_calls.h"
 #include "base/whole_file.h"
 #include "jobs/picture_source.h"
 
@@ -63,12 +63,12 @@ class ResultFolder {
                WriteFile write_file)
       : path_(std::move(path)),
         write_file_(std::move(write_file)),
-        calls_(std::make_unique<base::PatientCalls>(patience, time)) {}
+        calls_(std::make_unique<base::TimedCalls>(patience, time)) {}
   void RemoveAll(const std::vector<std::string>& paths);
 
   std::string path_;
   WriteFile write_file_;
-  std::unique_ptr<base::PatientCalls> calls_;
+  std::unique_ptr<base::TimedCalls> calls_;
   std::vector<std::string> removed_;  // paths that are still to be removed, because the storage
                                       // hung
 };

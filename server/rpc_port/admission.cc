@@ -33,9 +33,10 @@ std::string ForwardedFor(const grpc::CallbackServerContext& context) {
   return all;
 }
 
-std::string PeerOf(const access::Door& door, const grpc::CallbackServerContext& context) {
+std::string PeerOf(const access::AccessControl& access_control,
+                   const grpc::CallbackServerContext& context) {
   if (const auto connection = ConnectionOf(context); connection.has_value()) {
-    return door.Proxies().ClientOf(*connection, ForwardedFor(context));
+    return access_control.Proxies().ClientOf(*connection, ForwardedFor(context));
   }
   // The call came through the local socket, to which only this user's processes connect. The
   // gateway reports its client's address.
@@ -44,9 +45,9 @@ std::string PeerOf(const access::Door& door, const grpc::CallbackServerContext& 
 
 }  // namespace
 
-CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, const char* method,
-               access::CallKind kind) {
-  access::Credentials credentials{"", PeerOf(door, context)};
+CallerOr Admit(access::AccessControl& access_control, const grpc::CallbackServerContext& context,
+               const char* method, access::CallKind kind) {
+  access::Credentials credentials{"", PeerOf(access_control, context)};
   const std::string header = Metadata(context, "authorization").value_or("");
   // If there are several tokens, a proxy in front may have checked a different one than this server
   // would. All of them are therefore rejected.
@@ -54,12 +55,12 @@ CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, c
   if (is_one && absl::StartsWithIgnoreCase(header, kScheme)) {
     credentials.token = header.substr(sizeof(kScheme) - 1);
   }
-  return door.Admit(method, kind, std::move(credentials));
+  return access_control.Admit(method, kind, std::move(credentials));
 }
 
 CallerOr Entrance::Enter(const grpc::CallbackServerContext& context, const char* method,
                          access::CallKind kind) const {
-  CallerOr caller = Admit(door_, context, method, kind);
+  CallerOr caller = Admit(access_control_, context, method, kind);
   if (caller.ok() && !closed_.ok()) return closed_;
   const std::optional<std::string> connection = ConnectionOf(context);
   if (!caller.ok() || !connection.has_value()) return caller;

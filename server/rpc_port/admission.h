@@ -1,5 +1,5 @@
 // Admits calls: reads the client's credentials from a call's metadata and asks the access control
-// (access::Door) whether the call is allowed.
+// (access::AccessControl) whether the call is allowed.
 #pragma once
 
 #include <grpcpp/server_context.h>
@@ -10,7 +10,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "access/door.h"
+#include "access/access_control.h"
 #include "rpc_port/connection_calls.h"
 #include "rpc_port/finished.h"
 
@@ -20,8 +20,8 @@ using CallerOr = absl::StatusOr<std::shared_ptr<const access::Caller>>;
 
 // Admits a call by its header "authorization: Bearer TOKEN" and the client's address. The gateway
 // and trusted proxies report the address of their client, which is used instead of their own.
-CallerOr Admit(access::Door& door, const grpc::CallbackServerContext& context, const char* method,
-               access::CallKind kind);
+CallerOr Admit(access::AccessControl& access_control, const grpc::CallbackServerContext& context,
+               const char* method, access::CallKind kind);
 
 // The entry point of one service. Each call is either handled or refused. If a handler throws an
 // exception, the call ends with INTERNAL.
@@ -29,8 +29,9 @@ class Entrance {
  public:
   // If `closed` is not OK, it is the error of every call that the access control admits. `calls`
   // counts the admitted calls of each connection.
-  Entrance(access::Door& door, ConnectionCalls& calls, absl::Status closed = absl::OkStatus())
-      : door_(door), calls_(calls), closed_(std::move(closed)) {}
+  Entrance(access::AccessControl& access_control, ConnectionCalls& calls,
+           absl::Status closed = absl::OkStatus())
+      : access_control_(access_control), calls_(calls), closed_(std::move(closed)) {}
 
   // Handles a unary call. `handle` takes the caller and returns the call's reactor.
   template <typename Handler>
@@ -58,7 +59,7 @@ class Entrance {
   CallerOr Enter(const grpc::CallbackServerContext& context, const char* method,
                  access::CallKind kind) const;
 
-  access::Door& door_;
+  access::AccessControl& access_control_;
   ConnectionCalls& calls_;
   const absl::Status closed_;
 };

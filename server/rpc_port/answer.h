@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "absl/status/status.h"
-#include "access/door.h"
+#include "access/access_control.h"
 #include "rpc_port/delivery_deadline.h"
 #include "rpc_port/port_limits.h"
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "absl/status/status.h"
-#include "access/door.h"
+#include "access/access_control.h"
 #include "base/executor.h"
 #include "base/guarded.h"
 #include "rpc_port/answer.h"

@@ -9,7 +9,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "base/error_details.h"
-#include "base/patient_calls.h"
+#include "base/timed_calls.h"
 
 namespace thunderhead::sandbox {
 namespace {

@@ -1,7 +1,7 @@
 #include "base/error_details.h"
 #include "base/guarded.h"
-#include "base/patient_calls.h"
 #include "base/status.h"
+#include "base/timed_calls.h"
 #include "rpc_port/finished.h"
 #include "service/engine/scene_update.h"
 #include "service/handlers.h"

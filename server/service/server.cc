@@ -42,10 +42,10 @@ namespace {
 // with a margin.
 constexpr int kMaxResponseBytes = 128 << 20;
 
-std::shared_ptr<access::Door> OpenDoor() {
-  return std::make_shared<access::Door>(access::TrustEverybody(),
-                                        std::make_shared<access::Audit>([](const std::string&) {}),
-                                        access::QuotaLimits());
+std::shared_ptr<access::AccessControl> OpenAccessControl() {
+  return std::make_shared<access::AccessControl>(
+      access::TrustEverybody(), std::make_shared<access::Audit>([](const std::string&) {}),
+      access::QuotaLimits());
 }
 
 session::SessionsOptions SessionsOf(const ServerOptions& options) {
@@ -66,7 +66,8 @@ class RunningServer final : public Server {
   RunningServer(const ServerOptions& options, std::shared_ptr<storm_store::StormStore> store)
       : store_(std::move(store)),
         session_store_(options.session_store),
-        door_(options.door != nullptr ? options.door : OpenDoor()),
+        access_control_(options.access_control != nullptr ? options.access_control
+                                                          : OpenAccessControl()),
         limits_(LimitsOf(options)),
         job_files_(options.job_files),
         shutdown_grace_(options.shutdown_grace),
@@ -107,18 +108,19 @@ class RunningServer final : public Server {
     catalogue_ = std::make_unique<CatalogueFollower>(*store_, sessions_, *loop_);
     engine_ = std::make_unique<Engine>(Engine{*store_, sessions_, *loop_, wake_, executor_, clouds_,
                                               keeper_.get(), *catalogue_, drain_, limits_});
-    service_ = MakeThunderheadService(*engine_, *door_, *connection_calls_);
-    job_service_ = std::make_unique<RenderJobService>(*engine_, *door_, *connection_calls_,
-                                                      jobs_.get(), job_files_);
+    service_ = MakeThunderheadService(*engine_, *access_control_, *connection_calls_);
+    job_service_ = std::make_unique<RenderJobService>(*engine_, *access_control_,
+                                                      *connection_calls_, jobs_.get(), job_files_);
     grpc::ServerBuilder builder;
     builder.RegisterService(service_.get());
     builder.RegisterService(job_service_.get());
     builder.RegisterService(&health_);
     builder.RegisterService(&reflection_);
     rpc_port::SetLimits(builder, limits_, kMaxResponseBytes);
-    THUNDERHEAD_ASSIGN_OR_RETURN(const std::shared_ptr<rpc_port::CallBudgets> call_budgets,
-                                 rpc_port::CallBudgets::Open(limits_.max_calls_per_address,
-                                                             door_->Proxies(), *limits_.time));
+    THUNDERHEAD_ASSIGN_OR_RETURN(
+        const std::shared_ptr<rpc_port::CallBudgets> call_budgets,
+        rpc_port::CallBudgets::Open(limits_.max_calls_per_address, access_control_->Proxies(),
+                                    *limits_.time));
     std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> counters;
     counters.push_back(rpc_port::CountCalls(call_budgets));
     builder.experimental().SetInterceptorCreators(std::move(counters));
@@ -145,16 +147,16 @@ class RunningServer final : public Server {
       THUNDERHEAD_RETURN_IF_ERROR(port_->Start(
           std::move(acceptor),
           rpc_port::OpenSockets(limits_.max_connections, limits_.max_connections_per_address,
-                                door_->Proxies(), connection_calls_),
+                                access_control_->Proxies(), connection_calls_),
           {.unused = limits_.unused_connection,
            .handshakes_per_address =
                tls.certificate.empty() ? 0.0 : limits_.max_handshakes_per_address,
            .calls = call_budgets,
-           .proxies = door_->Proxies(),
+           .proxies = access_control_->Proxies(),
            .time = limits_.time},
           [this](const std::string& peer, const absl::Status& why) {
             telemetry::Counted().refusals.Of(base::DetailsOf(why).reason).Add();
-            door_->ReportBeforeCall(peer, "Connect", why);
+            access_control_->ReportBeforeCall(peer, "Connect", why);
           }));
     }
     SetServing(true);
@@ -244,7 +246,7 @@ class RunningServer final : public Server {
   base::WakeSignal due_;
   const std::shared_ptr<storm_store::StormStore> store_;
   const std::shared_ptr<session::SessionStore> session_store_;
-  const std::shared_ptr<access::Door> door_;
+  const std::shared_ptr<access::AccessControl> access_control_;
   const Limits limits_;
   const JobFiles job_files_;
   const std::chrono::seconds shutdown_grace_;

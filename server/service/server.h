@@ -12,7 +12,7 @@
 #include <string_view>
 
 #include "absl/status/statusor.h"
-#include "access/door.h"
+#include "access/access_control.h"
 #include "base/certificate_files.h"
 #include "base/executor.h"
 #include "base/time_source.h"
@@ -30,11 +30,11 @@ namespace thunderhead::service {
 struct ServerOptions {
   std::string address;  // HOST:PORT, with port 0 for a free port; empty means no port
   base::TlsFiles tls;   // TLS of that port
-  // The time source of sessions, their people and the limits. It must outlive the server. `door`
-  // has its own time source.
+  // The time source of sessions, their people and the limits. It must outlive the server.
+  // `access_control` has its own time source.
   const base::TimeSource* time = &base::SteadyTime();
   // Decides who may call. If null, all calls are allowed and no audit log is written.
-  std::shared_ptr<access::Door> door;
+  std::shared_ptr<access::AccessControl> access_control;
   Limits limits;
   std::string clouds_folder;  // folder for generated clouds; if empty, none can be generated
   session::SessionsOptions sessions;
@@ -53,7 +53,7 @@ struct ServerOptions {
 struct ServerLoad {
   int sessions = 0;
   std::size_t max_sessions = 0;  // sessions that may be open at once
-  int viewers = 0;  // viewers of sessions' views and of their own views
+  int viewers = 0;               // viewers of sessions' views and of their own views
   int storms = 0;
   double cached_bytes = 0.0;  // size of the storms' fields in memory
   int pictures = 0;           // single pictures that were requested and not yet delivered

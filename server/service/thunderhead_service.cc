@@ -28,8 +28,9 @@ using Calls = Generated::WithCallbackMethod_GetServerInfo<Generated::WithCallbac
 
 class ThunderheadService final : public Calls {
  public:
-  ThunderheadService(Engine& engine, access::Door& door, rpc_port::ConnectionCalls& calls)
-      : engine_(engine), door_(door), entrance_(door, calls) {}
+  ThunderheadService(Engine& engine, access::AccessControl& access_control,
+                     rpc_port::ConnectionCalls& calls)
+      : engine_(engine), access_control_(access_control), entrance_(access_control, calls) {}
 
   grpc::ServerUnaryReactor* GetServerInfo(grpc::CallbackServerContext* context,
                                           const v1::GetServerInfoRequest* request,
@@ -130,7 +131,7 @@ class ThunderheadService final : public Calls {
   InteractReactor* Interact(grpc::CallbackServerContext* context) override {
     return entrance_.Stream<InteractReactor>("Interact", context, [&](CallerRef caller) {
       return service::Interact(engine_, context, std::move(caller),
-                               door_.limits().requests_per_second);
+                               access_control_.limits().requests_per_second);
     });
   }
 
@@ -152,15 +153,16 @@ class ThunderheadService final : public Calls {
 
  private:
   Engine& engine_;
-  access::Door& door_;
+  access::AccessControl& access_control_;
   const rpc_port::Entrance entrance_;
 };
 
 }  // namespace
 
-std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine, access::Door& door,
+std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine,
+                                                      access::AccessControl& access_control,
                                                       rpc_port::ConnectionCalls& calls) {
-  return std::make_unique<ThunderheadService>(engine, door, calls);
+  return std::make_unique<ThunderheadService>(engine, access_control, calls);
 }
 
 }  // namespace thunderhead::service

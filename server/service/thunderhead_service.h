@@ -6,14 +6,15 @@
 
 #include <memory>
 
-#include "access/door.h"
+#include "access/access_control.h"
 #include "rpc_port/connection_calls.h"
 #include "service/engine/engine.h"
 
 namespace thunderhead::service {
 
 // Returns the service. All arguments must outlive the service.
-std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine, access::Door& door,
+std::unique_ptr<grpc::Service> MakeThunderheadService(Engine& engine,
+                                                      access::AccessControl& access_control,
                                                       rpc_port::ConnectionCalls& calls);
 
 }  // namespace thunderhead::service

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "base/patient_calls.h"
 #include "base/time_source.h"
+#include "base/timed_calls.h"
 #include "storm_files/storm_format.h"
 #include "storm_store/fair_folders.h"
 #include "storm_store/left_out_log.h"
@@ -178,7 +178,7 @@ class CatalogueScan {
 
   const Options options_;
   std::atomic<bool> stopping_ = false;
-  base::PatientCalls calls_;
+  base::TimedCalls calls_;
   FoundByPath found_;
   std::set<std::string> hanging_;  // paths whose storage hangs
   std::map<std::string, Known> known_;

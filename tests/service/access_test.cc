@@ -493,7 +493,7 @@ TEST(AccessTest, BehindATrustedProxyEachClientHasAShareOfItsOwn) {
     ManualTime time;
     service::ServerOptions options = Patient(time);
     options.address = "127.0.0.1:0";
-    options.door = std::make_shared<access::Door>(
+    options.access_control = std::make_shared<access::AccessControl>(
         access::TrustEverybody(), std::make_shared<access::Audit>([&](const std::string& line) {
           const std::lock_guard lock(mutex);
           lines.push_back(line);

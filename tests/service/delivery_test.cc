@@ -6,9 +6,9 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "access/access_control.h"
 #include "access/audit.h"
 #include "access/authenticator.h"
-#include "access/door.h"
 #include "gtest/gtest.h"
 #include "store/sqlite_job_store.h"
 #include "store/state_file.h"
@@ -199,7 +199,7 @@ TEST(AnswersDelivery, ThoseThatNobodyTakesHaveALimit) {
   options.address = "127.0.0.1:0";
   access::QuotaLimits limits;
   limits.max_streams_per_identity = 3;
-  options.door = std::make_shared<access::Door>(
+  options.access_control = std::make_shared<access::AccessControl>(
       access::TrustEverybody(), std::make_shared<access::Audit>([](const std::string&) {}), limits);
   FakeService fake(options);
   UntakingClient client(fake.server().Port());

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "absl/strings/escaping.h"
-#include "access/door.h"
+#include "access/access_control.h"
 #include "gtest/gtest.h"
 #include "tests/service/fake_service.h"
 #include "tests/support/temporary_folder.h"
@@ -49,8 +49,8 @@ class GuardedService {
       const std::lock_guard lock(mutex_);
       lines_.push_back(line);
     });
-    options.door = std::make_shared<access::Door>(*access::TrustTokens(path), audit, quotas,
-                                                  base::TrustedProxies(), *options.time);
+    options.access_control = std::make_shared<access::AccessControl>(
+        *access::TrustTokens(path), audit, quotas, base::TrustedProxies(), *options.time);
     service_.emplace(options);
   }
 

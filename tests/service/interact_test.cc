@@ -4,7 +4,7 @@
 #include <thread>
 #include <utility>
 
-#include "access/door.h"
+#include "access/access_control.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "telemetry/metrics.h"
@@ -1130,7 +1130,7 @@ TEST(InteractTest, AMarkWaitsUntilTheLastOneHasItsPlace) {
 TEST(InteractTest, WhoReadsNoAnswersIsNotHeardAnyMore) {
   service::ServerOptions options = Patient();
   options.address = "127.0.0.1:0";
-  options.door = std::make_shared<access::Door>(
+  options.access_control = std::make_shared<access::AccessControl>(
       access::TrustEverybody(), std::make_shared<access::Audit>([](const std::string&) {}),
       access::QuotaLimits{.requests_per_second = 0.0});
   Class group({}, options);

@@ -7,11 +7,11 @@
 #include <mutex>
 #include <set>
 
-#include "base/patient_calls.h"
+#include "base/timed_calls.h"
 #include "gmock/gmock.h"
 #include "gtest/gtest.h"
 #include "service/stored_scene.h"
-#include "store/patient_stores.h"
+#include "store/timed_stores.h"
 #include "telemetry/metrics.h"
 #include "tests/service/fake_service.h"
 #include "tests/service/interacting.h"
@@ -572,7 +572,7 @@ TEST_F(KeptSessionsTest, AnEndIsSavedWhereOnlyOthersCannotBe) {
 TEST_F(KeptSessionsTest, AStoreThatHangsRefusesWhatItWouldHaveToKeep) {
   constexpr std::chrono::hours kStorePatience{1};
   options_.session_store = store::WithPatience(
-      store_, std::make_shared<base::PatientCalls>(kStorePatience, time_), "/state");
+      store_, std::make_shared<base::TimedCalls>(kStorePatience, time_), "/state");
   Start();
   const auto stays = Create();
   const auto goes = Create();

@@ -14,7 +14,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "base/memory_budget.h"
-#include "base/patient_calls.h"
+#include "base/timed_calls.h"
 #include "clouds/cloud_file.h"
 #include "storm_store/storm_store.h"
 
@@ -64,8 +64,8 @@ class CloudStore {
   const std::string path_;
   storm_store::StormStore& store_;
   const std::shared_ptr<base::MemoryBudget> memory_;
-  base::PatientCalls patient_{std::chrono::seconds(10)};  // calls to the storage, with a timeout
-  std::mutex making_;                                     // held while a cloud is generated
+  base::TimedCalls patient_{std::chrono::seconds(10)};  // calls to the storage, with a timeout
+  std::mutex making_;                                   // held while a cloud is generated
   mutable std::mutex mutex_;  // not held during calls to the storage, which may block
   struct File {
     std::string path;

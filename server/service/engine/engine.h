@@ -9,7 +9,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "access/door.h"
+#include "access/access_control.h"
 #include "base/executor.h"
 #include "base/wake_signal.h"
 #include "drawing/render_loop.h"

@@ -8,7 +8,7 @@
 
 #include <memory>
 
-#include "access/door.h"
+#include "access/access_control.h"
 #include "service/engine/engine.h"
 
 namespace thunderhead::service {

@@ -13,7 +13,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "access/door.h"
+#include "access/access_control.h"
 #include "service/engine/engine.h"
 #include "service/interact/looking_around.h"
 #include "session/sessions.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "access/door.h"
+#include "access/access_control.h"
 #include "jobs/job_board.h"
 #include "service/engine/engine.h"
 #include "thunderhead/v1/job.pb.h"

@@ -10,8 +10,8 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
 #include "base/error_details.h"
-#include "base/patient_calls.h"
 #include "base/status.h"
+#include "base/timed_calls.h"
 #include "service/engine/catalogue_follower.h"
 #include "service/engine/requested_image.h"
 #include "service/messages/prepare_scene.h"
@@ -45,7 +45,7 @@ class StormFiles {
 
  private:
   const std::function<std::optional<base::FileStamp>(const std::string&)> stamp_;
-  base::PatientCalls calls_;
+  base::TimedCalls calls_;
 };
 
 class JobPicture final : public jobs::PictureInHand, private ImageListener {

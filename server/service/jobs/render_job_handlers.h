@@ -5,7 +5,7 @@
 #include <grpcpp/support/server_callback.h>
 
 #include "base/executor.h"
-#include "base/patient_calls.h"
+#include "base/timed_calls.h"
 #include "jobs/jobs.h"
 #include "service/engine/engine.h"
 #include "service/engine/limits.h"
@@ -42,7 +42,7 @@ grpc::ServerUnaryReactor* CancelRenderJob(jobs::Jobs& jobs, const Limits& limits
 // storage with a timeout, and the function that opens a file.
 struct ResultReading {
   base::Executor& threads;
-  base::PatientCalls& calls;
+  base::TimedCalls& calls;
   OpenResult open;
 };
 grpc::ServerWriteReactor<v1::FetchRenderResultResponse>* FetchRenderResult(

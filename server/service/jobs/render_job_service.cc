@@ -17,18 +17,18 @@ absl::Status NoJobs() {
 
 }  // namespace
 
-RenderJobService::RenderJobService(Engine& engine, access::Door& door,
+RenderJobService::RenderJobService(Engine& engine, access::AccessControl& access_control,
                                    rpc_port::ConnectionCalls& calls, jobs::Jobs* jobs,
                                    const JobFiles& files)
     : engine_(engine),
       jobs_(jobs),
-      entrance_(door, calls, jobs != nullptr ? absl::OkStatus() : NoJobs()),
+      entrance_(access_control, calls, jobs != nullptr ? absl::OkStatus() : NoJobs()),
       open_(files.open_result),
       // The executor's queue has room for every read: each stream waits for at most one read at a
       // time, and the access control limits the number of streams.
       reading_({.threads = kReadingThreads,
-                .max_waiting = door.limits().max_streams,
-                .max_waiting_each = door.limits().max_streams_per_identity}),
+                .max_waiting = access_control.limits().max_streams,
+                .max_waiting_each = access_control.limits().max_streams_per_identity}),
       calls_(files.patience, engine.sessions.time()) {}
 
 grpc::ServerUnaryReactor* RenderJobService::CreateRenderJob(

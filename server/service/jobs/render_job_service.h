@@ -2,9 +2,9 @@
 // handler (render_job_handlers.h).
 #pragma once
 
-#include "access/door.h"
+#include "access/access_control.h"
 #include "base/executor.h"
-#include "base/patient_calls.h"
+#include "base/timed_calls.h"
 #include "jobs/jobs.h"
 #include "rpc_port/admission.h"
 #include "service/engine/engine.h"
@@ -17,8 +17,8 @@ class RenderJobService final : public v1::RenderJobService::CallbackService {
  public:
   // `jobs` is null if the server keeps no jobs. All arguments must outlive this object. Fetching a
   // result fails if its storage does not respond within `files.patience`.
-  RenderJobService(Engine& engine, access::Door& door, rpc_port::ConnectionCalls& calls,
-                   jobs::Jobs* jobs, const JobFiles& files);
+  RenderJobService(Engine& engine, access::AccessControl& access_control,
+                   rpc_port::ConnectionCalls& calls, jobs::Jobs* jobs, const JobFiles& files);
 
   grpc::ServerUnaryReactor* CreateRenderJob(grpc::CallbackServerContext* context,
                                             const v1::CreateRenderJobRequest* request,
@@ -50,7 +50,7 @@ class RenderJobService final : public v1::RenderJobService::CallbackService {
   const rpc_port::Entrance entrance_;
   const OpenResult open_;
   base::Executor reading_;
-  base::PatientCalls calls_;  // requests to the storage of results
+  base::TimedCalls calls_;  // requests to the storage of results
 };
 
 }  // namespace thunderhead::service

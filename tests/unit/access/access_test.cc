@@ -17,7 +17,7 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
-#include "access/door.h"
+#include "access/access_control.h"
 #include "access/jwt_key.h"
 #include "access/rules.h"
 #include "access/secret_file.h"
@@ -533,25 +533,27 @@ TEST(AuditTest, AFloodBeforeCallsHidesNoRefusedCall) {
   EXPECT_THAT(lines.back(), HasSubstr("left_out=950"));
 }
 
-TEST(DoorTest, WhatTheGatewayRefusesIsWrittenWithoutAnIdentity) {
+TEST(AccessControlTest, WhatTheGatewayRefusesIsWrittenWithoutAnIdentity) {
   std::vector<std::string> lines;
   SecretFile file(LineOf("anna", "viewer", "one"));
-  Door door(*TrustTokens(file.Path(), StandingTime()),
-            std::make_shared<Audit>([&](const std::string& line) { lines.push_back(line); }), {});
-  door.ReportBeforeCall("192.0.2.7:1", "Request",
-                        base::WithDetails(absl::PermissionDeniedError("evil.example"),
-                                          {.reason = "HOST_NOT_ALLOWED"}));
+  AccessControl access_control(
+      *TrustTokens(file.Path(), StandingTime()),
+      std::make_shared<Audit>([&](const std::string& line) { lines.push_back(line); }), {});
+  access_control.ReportBeforeCall("192.0.2.7:1", "Request",
+                                  base::WithDetails(absl::PermissionDeniedError("evil.example"),
+                                                    {.reason = "HOST_NOT_ALLOWED"}));
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_THAT(lines[0], HasSubstr("identity=\"\" role=none peer=\"192.0.2.7:1\" act=Request "
                                   "verdict=refused reason=\"HOST_NOT_ALLOWED\""));
 }
 
-TEST(DoorTest, ATokenThatIsTakenAwayEndsWhatItOpened) {
+TEST(AccessControlTest, ATokenThatIsTakenAwayEndsWhatItOpened) {
   std::vector<std::string> lines;
   SecretFile file(LineOf("anna", "viewer", "one"));
-  Door door(*TrustTokens(file.Path(), StandingTime()),
-            std::make_shared<Audit>([&](const std::string& line) { lines.push_back(line); }), {});
-  const auto caller = door.Admit("Interact", CallKind::kStream, {"one", "192.0.2.7:1"});
+  AccessControl access_control(
+      *TrustTokens(file.Path(), StandingTime()),
+      std::make_shared<Audit>([&](const std::string& line) { lines.push_back(line); }), {});
+  const auto caller = access_control.Admit("Interact", CallKind::kStream, {"one", "192.0.2.7:1"});
   ASSERT_TRUE(caller.ok()) << caller.status();
   const auto now = std::chrono::steady_clock::now();
   EXPECT_TRUE((*caller)->StillKnown(now).ok());
@@ -565,14 +567,15 @@ TEST(DoorTest, ATokenThatIsTakenAwayEndsWhatItOpened) {
                                   "verdict=refused"));
 }
 
-TEST(DoorTest, ItsOwnTokenIsAnOperators) {
+TEST(AccessControlTest, ItsOwnTokenIsAnOperators) {
   SecretFile file(LineOf("anna", "viewer", "one"));
-  Door door(*TrustTokens(file.Path(), StandingTime()),
-            std::make_shared<Audit>([](const std::string&) {}), {});
-  EXPECT_TRUE(door.Admit("RenderImage", CallKind::kUnary, {door.OwnToken(), ""}).ok());
-  std::string other = door.OwnToken();
+  AccessControl access_control(*TrustTokens(file.Path(), StandingTime()),
+                               std::make_shared<Audit>([](const std::string&) {}), {});
+  EXPECT_TRUE(
+      access_control.Admit("RenderImage", CallKind::kUnary, {access_control.OwnToken(), ""}).ok());
+  std::string other = access_control.OwnToken();
   other.back() = other.back() == '0' ? '1' : '0';
-  EXPECT_FALSE(door.Admit("RenderImage", CallKind::kUnary, {other, ""}).ok());
+  EXPECT_FALSE(access_control.Admit("RenderImage", CallKind::kUnary, {other, ""}).ok());
 }
 
 TEST(RulesTest, WhatHasNoRuleIsNobodys) {

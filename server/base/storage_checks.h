@@ -18,25 +18,27 @@
 
 namespace thunderhead::base {
 
-class Looks {
+class StorageChecks {
  public:
   static constexpr std::chrono::seconds kPatience{1};
 
   // Creates an object whose checks call `look`. `look` must own everything it uses, because a
   // hanging check can outlive the object. In the log, `path` names the checked file or folder.
   // `time` must outlive this object.
-  Looks(const std::string& path, std::function<void()> look,
-        std::chrono::milliseconds patience = kPatience, const TimeSource& time = SteadyTime())
-      : Looks(path, std::move(look), patience, std::nullopt, time) {}
+  StorageChecks(const std::string& path, std::function<void()> look,
+                std::chrono::milliseconds patience = kPatience,
+                const TimeSource& time = SteadyTime())
+      : StorageChecks(path, std::move(look), patience, std::nullopt, time) {}
   // Returns an object that also checks automatically, after each `pause`.
-  static std::unique_ptr<Looks> Every(std::chrono::milliseconds pause, const std::string& path,
-                                      std::function<void()> look,
-                                      const TimeSource& time = SteadyTime()) {
-    return std::unique_ptr<Looks>(new Looks(path, std::move(look), kPatience, pause, time));
+  static std::unique_ptr<StorageChecks> Every(std::chrono::milliseconds pause,
+                                              const std::string& path, std::function<void()> look,
+                                              const TimeSource& time = SteadyTime()) {
+    return std::unique_ptr<StorageChecks>(
+        new StorageChecks(path, std::move(look), kPatience, pause, time));
   }
-  ~Looks();
-  Looks(const Looks&) = delete;
-  Looks& operator=(const Looks&) = delete;
+  ~StorageChecks();
+  StorageChecks(const StorageChecks&) = delete;
+  StorageChecks& operator=(const StorageChecks&) = delete;
 
   // Requests a check and waits until it has ended, but no longer than the object's patience. While
   // an earlier check hangs, the function returns at once. Safe from any thread.
@@ -55,8 +57,9 @@ class Looks {
     bool hangs = false;
     bool stopping = false;
   };
-  Looks(const std::string& path, std::function<void()> look, std::chrono::milliseconds patience,
-        std::optional<std::chrono::milliseconds> pause, const TimeSource& time);
+  StorageChecks(const std::string& path, std::function<void()> look,
+                std::chrono::milliseconds patience, std::optional<std::chrono::milliseconds> pause,
+                const TimeSource& time);
   static void Run(const std::shared_ptr<Shared>& shared);
 
   const std::chrono::milliseconds patience_;

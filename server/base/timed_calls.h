@@ -22,15 +22,15 @@ namespace thunderhead::base {
 // The reason in the details of the error for a call that timed out.
 inline constexpr char kStorageHangs[] = "STORAGE_HANGS";
 
-class PatientCalls {
+class TimedCalls {
  public:
   // `time` must outlive this object.
-  explicit PatientCalls(std::chrono::milliseconds patience, const TimeSource& time = SteadyTime())
+  explicit TimedCalls(std::chrono::milliseconds patience, const TimeSource& time = SteadyTime())
       : patience_(patience), time_(time) {}
   // Abandons the threads of calls that hang.
-  ~PatientCalls();
-  PatientCalls(const PatientCalls&) = delete;
-  PatientCalls& operator=(const PatientCalls&) = delete;
+  ~TimedCalls();
+  TimedCalls(const TimedCalls&) = delete;
+  TimedCalls& operator=(const TimedCalls&) = delete;
 
   // Runs `call`, which must own everything it uses, because it may outlive this object. If `call`
   // does not return within the timeout, returns DEADLINE_EXCEEDED with the reason STORAGE_HANGS and

@@ -1,4 +1,4 @@
-#include "access/door.h"
+#include "access/access_control.h"
 
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
@@ -74,8 +74,9 @@ absl::Status Caller::Identified() const {
       {.reason = "TOKEN_CHANGED"});
 }
 
-Door::Door(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> audit,
-           const QuotaLimits& limits, base::TrustedProxies proxies, const base::TimeSource& time)
+AccessControl::AccessControl(std::unique_ptr<Authenticator> authenticator,
+                             std::shared_ptr<Audit> audit, const QuotaLimits& limits,
+                             base::TrustedProxies proxies, const base::TimeSource& time)
     : authenticator_(std::move(authenticator)),
       audit_(std::move(audit)),
       quotas_(limits),
@@ -84,7 +85,7 @@ Door::Door(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> 
       time_(time),
       own_token_(RandomToken()) {}
 
-absl::Status Door::Check(std::string_view method, CallKind kind, Caller& caller) {
+absl::Status AccessControl::Check(std::string_view method, CallKind kind, Caller& caller) {
   const Identity& identity = caller.identity_;
   if (!MayCall(identity.role, method)) return NotForRole(method, identity);
   if (caller.authenticator_ == nullptr || identity.name.empty()) return absl::OkStatus();
@@ -95,7 +96,7 @@ absl::Status Door::Check(std::string_view method, CallKind kind, Caller& caller)
   return absl::OkStatus();
 }
 
-absl::StatusOr<Identity> Door::Identify(const Credentials& shown) {
+absl::StatusOr<Identity> AccessControl::Identify(const Credentials& shown) {
   const auto now = time_.Now();
   THUNDERHEAD_RETURN_IF_ERROR(wrong_tokens_.MayShow(shown, now));
   absl::StatusOr<Identity> identity = authenticator_->Identify(shown);
@@ -107,8 +108,9 @@ absl::StatusOr<Identity> Door::Identify(const Credentials& shown) {
   return identity;
 }
 
-absl::StatusOr<std::shared_ptr<const Caller>> Door::Admit(std::string_view method, CallKind kind,
-                                                          Credentials credentials) {
+absl::StatusOr<std::shared_ptr<const Caller>> AccessControl::Admit(std::string_view method,
+                                                                   CallKind kind,
+                                                                   Credentials credentials) {
   auto caller = std::make_shared<Caller>();
   caller->audit_ = audit_.get();
   caller->time_ = &time_;
@@ -134,8 +136,8 @@ absl::StatusOr<std::shared_ptr<const Caller>> Door::Admit(std::string_view metho
   return status;
 }
 
-void Door::ReportBeforeCall(const std::string& peer, std::string_view act,
-                            const absl::Status& refusal) {
+void AccessControl::ReportBeforeCall(const std::string& peer, std::string_view act,
+                                     const absl::Status& refusal) {
   audit_->Write({"", "", peer, std::string(act), /*before_call=*/true}, refusal);
 }
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "base/patient_calls.h"
+#include "base/timed_calls.h"
 #include "jobs/job_store.h"
 #include "session/session_store.h"
 
@@ -16,10 +16,10 @@ namespace thunderhead::store {
 
 // `folder` is the state folder; messages name the storage by it.
 std::shared_ptr<session::SessionStore> WithPatience(std::shared_ptr<session::SessionStore> store,
-                                                    std::shared_ptr<base::PatientCalls> calls,
+                                                    std::shared_ptr<base::TimedCalls> calls,
                                                     const std::string& folder);
 std::shared_ptr<jobs::JobStore> WithPatience(std::shared_ptr<jobs::JobStore> store,
-                                             std::shared_ptr<base::PatientCalls> calls,
+                                             std::shared_ptr<base::TimedCalls> calls,
                                              const std::string& folder);
 
 }  // namespace thunderhead::store

@@ -1,6 +1,7 @@
-// Access control: every call passes through Door::Admit. Admit identifies the caller, and checks
-// whether the caller's role may make the call and whether the caller has reached a limit. Each
-// refusal is written to the audit log. This code does not depend on HTTP or on the API's messages.
+// Access control: every call passes through AccessControl::Admit. Admit identifies the caller, and
+// checks whether the caller's role may make the call and whether the caller has reached a limit.
+// Each refusal is written to the audit log. This code does not depend on HTTP or on the API's
+// messages.
 #pragma once
 
 #include <atomic>
@@ -43,7 +44,7 @@ class Caller {
       std::optional<std::chrono::steady_clock::time_point> at = std::nullopt) const;
 
  private:
-  friend class Door;
+  friend class AccessControl;
 
   absl::Status Identified() const;
 
@@ -61,12 +62,13 @@ class Caller {
 // The kind of a call: kUnary counts as a request only, kStream also as an open stream.
 enum class CallKind { kUnary, kStream };
 
-class Door {
+class AccessControl {
  public:
-  // `time` must outlive the door. It is the clock for quotas and for repeated checks of tokens.
-  Door(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> audit,
-       const QuotaLimits& limits, base::TrustedProxies proxies = {},
-       const base::TimeSource& time = base::SteadyTime());
+  // `time` must outlive the object. It is the clock for quotas and for repeated checks of
+  // tokens.
+  AccessControl(std::unique_ptr<Authenticator> authenticator, std::shared_ptr<Audit> audit,
+                const QuotaLimits& limits, base::TrustedProxies proxies = {},
+                const base::TimeSource& time = base::SteadyTime());
 
   // Admits a call, or returns UNAUTHENTICATED, PERMISSION_DENIED or RESOURCE_EXHAUSTED. The
   // returned Caller must not outlive this object.

@@ -1,4 +1,4 @@
-#include "store/patient_stores.h"
+#include "store/timed_stores.h"
 
 #include <mutex>
 #include <type_traits>
@@ -29,8 +29,7 @@ void KeepForEver(std::shared_ptr<const void> object) {
 template <typename Store>
 class Patient {
  public:
-  Patient(std::shared_ptr<Store> store, std::shared_ptr<base::PatientCalls> calls,
-          std::string folder)
+  Patient(std::shared_ptr<Store> store, std::shared_ptr<base::TimedCalls> calls, std::string folder)
       : store_(std::move(store)), calls_(std::move(calls)), folder_(std::move(folder)) {}
   Patient(const Patient&) = delete;
   Patient& operator=(const Patient&) = delete;
@@ -64,13 +63,13 @@ class Patient {
 
  private:
   std::shared_ptr<Store> store_;
-  const std::shared_ptr<base::PatientCalls> calls_;
+  const std::shared_ptr<base::TimedCalls> calls_;
   const std::string folder_;
 };
 
-class PatientSessionStore final : public session::SessionStore {
+class TimedSessionStore final : public session::SessionStore {
  public:
-  explicit PatientSessionStore(auto... parts) : store_(std::move(parts)...) {}
+  explicit TimedSessionStore(auto... parts) : store_(std::move(parts)...) {}
 
   absl::Status Save(const std::vector<SessionRecord>& records) override {
     return store_.Do([records](SessionStore& store) { return store.Save(records); });
@@ -87,9 +86,9 @@ class PatientSessionStore final : public session::SessionStore {
   const Patient<SessionStore> store_;
 };
 
-class PatientJobStore final : public jobs::JobStore {
+class TimedJobStore final : public jobs::JobStore {
  public:
-  explicit PatientJobStore(auto... parts) : store_(std::move(parts)...) {}
+  explicit TimedJobStore(auto... parts) : store_(std::move(parts)...) {}
 
   absl::Status Add(const JobRecord& job) override {
     return store_.Do([job](JobStore& store) { return store.Add(job); });
@@ -109,15 +108,15 @@ class PatientJobStore final : public jobs::JobStore {
 }  // namespace
 
 std::shared_ptr<session::SessionStore> WithPatience(std::shared_ptr<session::SessionStore> store,
-                                                    std::shared_ptr<base::PatientCalls> calls,
+                                                    std::shared_ptr<base::TimedCalls> calls,
                                                     const std::string& folder) {
-  return std::make_shared<PatientSessionStore>(std::move(store), std::move(calls), folder);
+  return std::make_shared<TimedSessionStore>(std::move(store), std::move(calls), folder);
 }
 
 std::shared_ptr<jobs::JobStore> WithPatience(std::shared_ptr<jobs::JobStore> store,
-                                             std::shared_ptr<base::PatientCalls> calls,
+                                             std::shared_ptr<base::TimedCalls> calls,
                                              const std::string& folder) {
-  return std::make_shared<PatientJobStore>(std::move(store), std::move(calls), folder);
+  return std::make_shared<TimedJobStore>(std::move(store), std::move(calls), folder);
 }
 
 }  // namespace thunderhead::store

@@ -1,5 +1,5 @@
 // Tests of a state file whose storage hangs: calls and the shutdown must return in time.
-#include "store/patient_stores.h"
+#include "store/timed_stores.h"
 
 #include <atomic>
 #include <chrono>
@@ -69,7 +69,7 @@ class Jobs final : public jobs::JobStore {
   absl::StatusOr<std::vector<JobRecord>> Load() override { return std::vector<JobRecord>(); }
 };
 
-class PatientStoresTest : public ::testing::Test {
+class TimedStoresTest : public ::testing::Test {
  protected:
   static void ExpectHangs(const absl::Status& status) {
     EXPECT_TRUE(absl::IsUnavailable(status)) << status;
@@ -96,15 +96,15 @@ class PatientStoresTest : public ::testing::Test {
   }
 
   const std::shared_ptr<Storage> storage_ = std::make_shared<Storage>();
-  const std::shared_ptr<base::PatientCalls> calls_ =
-      std::make_shared<base::PatientCalls>(kPatience, Time());
+  const std::shared_ptr<base::TimedCalls> calls_ =
+      std::make_shared<base::TimedCalls>(kPatience, Time());
   std::shared_ptr<session::SessionStore> sessions_ =
       store::WithPatience(std::make_shared<Sessions>(storage_), calls_, "/var/lib/storms");
   std::shared_ptr<jobs::JobStore> jobs_ =
       store::WithPatience(std::make_shared<Jobs>(), calls_, "/var/lib/storms");
 };
 
-TEST_F(PatientStoresTest, GiveWhatTheStoresGive) {
+TEST_F(TimedStoresTest, GiveWhatTheStoresGive) {
   EXPECT_TRUE(sessions_->Save({}).ok());
   EXPECT_TRUE(jobs_->Add({}).ok());
   JobRecord wrong;
@@ -115,7 +115,7 @@ TEST_F(PatientStoresTest, GiveWhatTheStoresGive) {
   EXPECT_EQ(storage_->uses, 2) << "it is closed";
 }
 
-TEST_F(PatientStoresTest, AreUnavailableWhileTheStorageHangs) {
+TEST_F(TimedStoresTest, AreUnavailableWhileTheStorageHangs) {
   storage_->Hang();
   ExpectHangs(UseInVain([&] { return sessions_->Save({}); }));
   // The storage is known to hang, so these calls end at once, although no time passes.
@@ -129,7 +129,7 @@ TEST_F(PatientStoresTest, AreUnavailableWhileTheStorageHangs) {
   EXPECT_TRUE(jobs_->Add({}).ok());
 }
 
-TEST_F(PatientStoresTest, EndWhileTheStorageHangs) {
+TEST_F(TimedStoresTest, EndWhileTheStorageHangs) {
   storage_->Hang();
   ExpectHangs(UseInVain([&] { return sessions_->Save({}); }));
   // Time stands still meanwhile.
@@ -139,7 +139,7 @@ TEST_F(PatientStoresTest, EndWhileTheStorageHangs) {
   storage_->Answer();
 }
 
-TEST_F(PatientStoresTest, EndWhereTheStorageHangsAsItIsClosed) {
+TEST_F(TimedStoresTest, EndWhereTheStorageHangsAsItIsClosed) {
   storage_->Hang();
   UseInVain([&] { sessions_.reset(); });
   EXPECT_GT(calls_->HangingSeconds(), 0.0);

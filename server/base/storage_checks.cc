@@ -1,4 +1,4 @@
-#include "base/looks.h"
+#include "base/storage_checks.h"
 
 #include <new>
 #include <utility>
@@ -8,15 +8,15 @@
 
 namespace thunderhead::base {
 
-Looks::Looks(const std::string& path, std::function<void()> look,
-             std::chrono::milliseconds patience, std::optional<std::chrono::milliseconds> pause,
-             const TimeSource& time)
+StorageChecks::StorageChecks(const std::string& path, std::function<void()> look,
+                             std::chrono::milliseconds patience,
+                             std::optional<std::chrono::milliseconds> pause, const TimeSource& time)
     : patience_(patience),
       shared_(new Shared{.look = std::move(look), .path = path, .pause = pause, .time = time}),
       thread_(
           absl::StrCat("a check of ", path), [shared = shared_] { Run(shared); }, time) {}
 
-Looks::~Looks() {
+StorageChecks::~StorageChecks() {
   bool hangs = false;
   {
     const std::lock_guard lock(shared_->mutex);
@@ -27,7 +27,7 @@ Looks::~Looks() {
   if (hangs) thread_.LetGo();
 }
 
-void Looks::LookAgain() {
+void StorageChecks::LookAgain() {
   std::unique_lock lock(shared_->mutex);
   if (shared_->hangs) return;
   const std::uint64_t asked = ++shared_->asked;
@@ -38,7 +38,7 @@ void Looks::LookAgain() {
   if (!done) shared_->hangs = true;
 }
 
-void Looks::Run(const std::shared_ptr<Shared>& shared) {
+void StorageChecks::Run(const std::shared_ptr<Shared>& shared) {
   std::unique_lock lock(shared->mutex);
   while (true) {
     const auto is_due = [&] { return shared->stopping || shared->asked > shared->done; };

@@ -1,4 +1,4 @@
-#include "base/looks.h"
+#include "base/storage_checks.h"
 
 #include <atomic>
 #include <future>
@@ -33,7 +33,7 @@ std::function<void()> LookAt(const std::shared_ptr<File>& file) {
 }
 
 // Checks again while the file hangs, until the timeout.
-void LookInVain(Looks& looks, const File& file, ManualTime& time, milliseconds patience) {
+void LookInVain(StorageChecks& looks, const File& file, ManualTime& time, milliseconds patience) {
   const int begun = file.begun;
   auto waiting = std::async(std::launch::async, [&] { looks.LookAgain(); });
   EXPECT_TRUE(WaitFor([&] { return file.begun > begun; }));
@@ -48,9 +48,9 @@ void LookInVain(Looks& looks, const File& file, ManualTime& time, milliseconds p
   waiting.get();
 }
 
-TEST(LooksTest, WhoAsksGetsALookOfItsOwnOrALaterOne) {
+TEST(StorageChecksTest, WhoAsksGetsALookOfItsOwnOrALaterOne) {
   const auto file = std::make_shared<File>();
-  Looks looks("/file", LookAt(file), testing::kHangLimit);
+  StorageChecks looks("/file", LookAt(file), testing::kHangLimit);
   for (int i = 1; i <= 100; ++i) {
     looks.LookAgain();
     EXPECT_EQ(file->looks, i);
@@ -67,10 +67,10 @@ TEST(LooksTest, WhoAsksGetsALookOfItsOwnOrALaterOne) {
   }
 }
 
-TEST(LooksTest, OneThatHangsHoldsUpOnce) {
+TEST(StorageChecksTest, OneThatHangsHoldsUpOnce) {
   const auto file = std::make_shared<File>();
   ManualTime time;
-  Looks looks("/file", LookAt(file), milliseconds(200), time);
+  StorageChecks looks("/file", LookAt(file), milliseconds(200), time);
   looks.LookAgain();
   file->hangs = true;
   LookInVain(looks, *file, time, milliseconds(200));
@@ -85,13 +85,13 @@ TEST(LooksTest, OneThatHangsHoldsUpOnce) {
   })) << "it is looked at again";
 }
 
-TEST(LooksTest, OneThatHangsIsLeftBehindAtTheEnd) {
+TEST(StorageChecksTest, OneThatHangsIsLeftBehindAtTheEnd) {
   const auto file = std::make_shared<File>();
   file->hangs = true;
   // The clock is static, because the pending check outlives the test.
   static ManualTime time;
   {
-    Looks looks("/file", LookAt(file), milliseconds(100), time);
+    StorageChecks looks("/file", LookAt(file), milliseconds(100), time);
     LookInVain(looks, *file, time, milliseconds(100));
     // The destructor returns while time stands still, because the check has already timed out.
   }

@@ -1,4 +1,4 @@
-#include "base/patient_calls.h"
+#include "base/timed_calls.h"
 
 #include <pthread.h>
 
@@ -43,7 +43,7 @@ class Storage {
 };
 
 // Calls the storage while time passes, until the timeout.
-absl::Status CallInVain(PatientCalls& calls, Storage& storage, ManualTime& time) {
+absl::Status CallInVain(TimedCalls& calls, Storage& storage, ManualTime& time) {
   const int begun = storage.Begun();
   auto hangs =
       std::async(std::launch::async, [&] { return calls.Run("/mnt/gone", storage.Call()); });
@@ -61,14 +61,14 @@ absl::Status CallInVain(PatientCalls& calls, Storage& storage, ManualTime& time)
 
 // The test makes the creation of a thread fail by requesting a stack that no system has space for.
 // A limited address space has the same effect.
-TEST(PatientCallsTest, ACallForWhichThereIsNoThreadIsRefused) {
+TEST(TimedCallsTest, ACallForWhichThereIsNoThreadIsRefused) {
   pthread_attr_t usual;
   pthread_attr_t huge;
   ASSERT_EQ(pthread_getattr_default_np(&usual), 0);
   ASSERT_EQ(pthread_getattr_default_np(&huge), 0);
   ASSERT_EQ(pthread_attr_setstacksize(&huge, std::size_t{1} << 47), 0);
   ASSERT_EQ(pthread_setattr_default_np(&huge), 0);
-  PatientCalls calls(kPatience);
+  TimedCalls calls(kPatience);
   bool called = false;
   const absl::Status refused = calls.Run("/mnt/state", [&called] { called = true; });
   ASSERT_EQ(pthread_setattr_default_np(&usual), 0);
@@ -80,17 +80,17 @@ TEST(PatientCallsTest, ACallForWhichThereIsNoThreadIsRefused) {
   pthread_attr_destroy(&huge);
 }
 
-TEST(PatientCallsTest, WaitsForACallThatReturns) {
+TEST(TimedCallsTest, WaitsForACallThatReturns) {
   const ManualTime time;
-  PatientCalls calls(kPatience, time);
+  TimedCalls calls(kPatience, time);
   const auto ran = std::make_shared<bool>(false);
   EXPECT_TRUE(calls.Run("/data", [ran] { *ran = true; }).ok());
   EXPECT_TRUE(*ran);
 }
 
-TEST(PatientCallsTest, AStorageThatHangsHoldsUpOnceAndNoOtherStorage) {
+TEST(TimedCallsTest, AStorageThatHangsHoldsUpOnceAndNoOtherStorage) {
   ManualTime time;
-  PatientCalls calls(kPatience, time);
+  TimedCalls calls(kPatience, time);
   Storage storage;
   const absl::Status hangs = CallInVain(calls, storage, time);
   EXPECT_TRUE(absl::IsDeadlineExceeded(hangs)) << hangs;
@@ -104,9 +104,9 @@ TEST(PatientCallsTest, AStorageThatHangsHoldsUpOnceAndNoOtherStorage) {
   EXPECT_TRUE(WaitFor([&] { return calls.Run("/mnt/gone", [] {}).ok(); })) << "it answers again";
 }
 
-TEST(PatientCallsTest, GivesWhatTheCallGaveOrThrew) {
+TEST(TimedCallsTest, GivesWhatTheCallGaveOrThrew) {
   const ManualTime time;
-  PatientCalls calls(kPatience, time);
+  TimedCalls calls(kPatience, time);
   const auto given = calls.Ask("/data", []() -> absl::StatusOr<int> { return 7; });
   ASSERT_TRUE(given.ok()) << given.status();
   EXPECT_EQ(*given, 7);
@@ -115,9 +115,9 @@ TEST(PatientCallsTest, GivesWhatTheCallGaveOrThrew) {
   EXPECT_THROW((void)calls.Run("/data", [] { throw std::bad_alloc(); }), std::bad_alloc);
 }
 
-TEST(PatientCallsTest, TellsForHowLongAStorageHasHung) {
+TEST(TimedCallsTest, TellsForHowLongAStorageHasHung) {
   ManualTime time;
-  PatientCalls calls(kPatience, time);
+  TimedCalls calls(kPatience, time);
   Storage storage;
   EXPECT_TRUE(calls.Run("/data", [] {}).ok());
   EXPECT_EQ(calls.HangingSeconds(), 0.0);
@@ -129,12 +129,12 @@ TEST(PatientCallsTest, TellsForHowLongAStorageHasHung) {
   EXPECT_TRUE(WaitFor([&] { return calls.HangingSeconds() == 0.0; })) << "it answers again";
 }
 
-TEST(PatientCallsTest, WhatHangsIsLeftBehindAtTheEnd) {
+TEST(TimedCallsTest, WhatHangsIsLeftBehindAtTheEnd) {
   // The clock is static, because the call outlives the test.
   static ManualTime time;
   Storage storage;
   {
-    PatientCalls calls(kPatience, time);
+    TimedCalls calls(kPatience, time);
     EXPECT_FALSE(CallInVain(calls, storage, time).ok());
     // The destructor returns while time stands still, because the call has already timed out.
   }

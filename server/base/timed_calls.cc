@@ -1,4 +1,4 @@
-#include "base/patient_calls.h"
+#include "base/timed_calls.h"
 
 #include <algorithm>
 #include <optional>
@@ -23,11 +23,11 @@ absl::Status NoAnswer(const std::string& storage) {
 
 }  // namespace
 
-PatientCalls::~PatientCalls() {
+TimedCalls::~TimedCalls() {
   for (auto& [storage, call] : hanging_) call.thread.LetGo();
 }
 
-absl::Status PatientCalls::Run(const std::string& storage, const std::function<void()>& call) {
+absl::Status TimedCalls::Run(const std::string& storage, const std::function<void()>& call) {
   {
     const std::lock_guard lock(mutex_);
     if (Hangs(storage)) return NoAnswer(storage);
@@ -50,7 +50,7 @@ absl::Status PatientCalls::Run(const std::string& storage, const std::function<v
   return NoAnswer(storage);
 }
 
-double PatientCalls::HangingSeconds() {
+double TimedCalls::HangingSeconds() {
   const std::lock_guard lock(mutex_);
   const auto now = time_.Now();
   TimeSource::Clock::duration longest{};
@@ -60,7 +60,7 @@ double PatientCalls::HangingSeconds() {
   return std::chrono::duration<double>(longest).count();
 }
 
-bool PatientCalls::Hangs(const std::string& storage) {
+bool TimedCalls::Hangs(const std::string& storage) {
   const auto [begin, end] = hanging_.equal_range(storage);
   for (auto call = begin; call != end;) {
     if (!call->second.thread.HasEnded()) return true;
