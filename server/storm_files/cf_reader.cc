@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "netcdf/netcdf_file.h"
 #include "storm_files/grib_air.h"
@@ -69,6 +70,7 @@ class CfSource final : public LayerSource {
   absl::StatusOr<std::vector<float>> ReadMotion(const CfWindField& field) const;
   absl::StatusOr<std::vector<float>> ReadWind(WindVariable wind) const;
   absl::StatusOr<std::vector<float>> ReadAir(const CfAirField& field) const;
+  absl::StatusOr<std::vector<float>> Faces_m();
   absl::StatusOr<std::vector<float>> FacesOfArray(const std::vector<float>& terrain_m) const;
   absl::StatusOr<std::vector<float>> HydrostaticFaces(const std::vector<float>& terrain_m);
   absl::StatusOr<std::vector<float>> LinearFaces() const;
@@ -164,7 +166,28 @@ absl::StatusOr<std::vector<float>> CfSource::LinearFaces() const {
   return heights_m;
 }
 
+// Returns the faces of the layers. It is an error if most columns reach far above the weather,
+// because the heights then are in another unit. A single impossible height is missing later.
 absl::StatusOr<std::vector<float>> CfSource::InterfaceHeights_m() {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> faces_m, Faces_m());
+  // Computed heights follow from the air and not from a unit of length.
+  if (metadata_.heights.kind == CfHeightKind::kPressure) return faces_m;
+  const std::size_t columns = domain_.Columns();
+  std::size_t too_high = 0;
+  float highest_m = 0.0F;
+  for (std::size_t i = faces_m.size() - columns; i < faces_m.size(); ++i) {
+    if (!(faces_m[i] > kHighestTop_m)) continue;
+    ++too_high;
+    highest_m = std::max(highest_m, faces_m[i]);
+  }
+  if (2 * too_high <= columns) return faces_m;
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "%s: the heights %s of record %d reach up to %g km, far above the weather; correct their "
+      "units attribute",
+      metadata_.path, metadata_.heights.name, domain_.record, highest_m / 1000.0F));
+}
+
+absl::StatusOr<std::vector<float>> CfSource::Faces_m() {
   const CfHeights& heights = metadata_.heights;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> terrain_m, Terrain_m());
   const std::size_t columns = domain_.Columns();

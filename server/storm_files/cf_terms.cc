@@ -80,6 +80,27 @@ std::optional<CfParametric> FindByNames(const netcdf::NetcdfFile& file, const Cf
   return found;
 }
 
+bool LiesAlong(const netcdf::NetcdfFile& file, const std::string& name, const CfDimension& z) {
+  const auto on = file.Dimensions(name);
+  return on.ok() && *on == std::vector<std::string>{z.name};
+}
+
+// Returns the hybrid height coordinate whose terms have the names that iris gives to those of the
+// Unified Model.
+std::optional<CfParametric> FindUnifiedModel(const netcdf::NetcdfFile& file, const CfDimension& z) {
+  const std::string height_units = file.TextOrEmpty("level_height", "units");
+  const std::string sigma_units = file.TextOrEmpty("sigma", "units");
+  if (!LiesAlong(file, "level_height", z) || !LiesAlong(file, "sigma", z) ||
+      !ConversionOf(height_units, "m").has_value() ||
+      !(HasNoUnits(sigma_units) || ConversionOf(sigma_units, "1").has_value())) {
+    return std::nullopt;
+  }
+  return CfParametric{"level_height",
+                      "atmosphere_hybrid_height_coordinate",
+                      {{"a", "level_height"}, {"b", "sigma"}, {"orog", "surface_altitude"}},
+                      {}};
+}
+
 // Adds the faces that CAM and ECHAM write, if the coordinate has their names and no others.
 void AddFacesByNames(const netcdf::NetcdfFile& file, const CfDimension& z,
                      CfParametric& coordinate) {
@@ -130,6 +151,7 @@ std::optional<CfParametric> FindCfParametric(const netcdf::NetcdfFile& file,
   const CfDimension& z = dimensions.axes[2];
   std::optional<CfParametric> found = FindByAttribute(file, z);
   if (!found.has_value()) found = FindByNames(file, z);
+  if (!found.has_value()) found = FindUnifiedModel(file, z);
   if (!found.has_value()) return std::nullopt;
   // CDO writes the standard name without "atmosphere", and others write the terms alone.
   const bool has_pressure_terms = found->terms.contains("b") && found->terms.contains("ps");

@@ -212,6 +212,51 @@ TEST_F(CfLayouts, HybridHeightsFollowFromTheirFormula) {
   ExpectError(file, "needs the formula term orog (orog)");
 }
 
+// iris writes the Unified Model's terms also without formula_terms.
+TEST_F(CfLayouts, HybridHeightsFollowFromTheNamesOfIris) {
+  SyntheticCf file = Cloud(2);
+  file.coordinates[2] = {
+      "z", {1.0, 2.0}, {{"units", "1"}, {"standard_name", "model_level_number"}}, {}};
+  ExpectError(file, "the Unified Model writes level_height, sigma and surface_altitude");
+  file.variables.push_back(Values("level_height", {"z"}, "m", [](const Index& at) {
+    return at.at("z") == 0 ? 500.0 : 1500.0;
+  }));
+  file.variables.push_back(
+      Values("sigma", {"z"}, "1", [](const Index& at) { return at.at("z") == 0 ? 0.75 : 0.25; }));
+  ExpectError(file, "needs the formula term orog (surface_altitude)");
+  file.variables.push_back(Terrain({"y", "x"}));
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  // The same as with formula_terms, above.
+  EXPECT_NEAR((*fields)->fields[0].statistics.maximum_water_path_kg_per_m2, 1e-4 * 1000.0, 1e-6);
+  EXPECT_NEAR((*fields)->fields[0].statistics.mean_water_path_kg_per_m2,
+              1e-4 * (1000.0 - 0.5 * 265.0), 1e-6);
+  EXPECT_THAT(info_.assumptions, Contains(HasSubstr("follow from level_height and the terrain")));
+  // Without units, the terms could be anything.
+  for (CfContent& variable : file.variables) {
+    if (variable.name == "level_height") variable.attributes.erase("units");
+  }
+  ExpectError(file, "holds numbers of levels");
+}
+
+// The error begins with its cause. A file of numbered levels may need another file with heights.
+TEST_F(CfLayouts, TheCauseOfARefusalComesFirst) {
+  SyntheticCf file = Cloud(2);
+  file.coordinates[2] = {
+      "lev", {0.9, 0.8}, {{"units", "1"}, {"standard_name", "atmosphere_sigma_coordinate"}}, {}};
+  file.variables[0].dimensions = {"lev", "y", "x"};
+  file.variables[0].value = [](const Index&) { return 1e-4; };
+  const auto fields = Read(file);
+  ASSERT_FALSE(fields.ok());
+  const std::string message(fields.status().message());
+  EXPECT_THAT(message, ::testing::StartsWith(
+                           path_ + ": the vertical coordinate lev holds values of "
+                                   "atmosphere_sigma_coordinate without usable formula_terms"));
+  EXPECT_THAT(message, ::testing::Not(HasSubstr("COSMO")));
+  EXPECT_THAT(message, ::testing::EndsWith("If the file is one of several files of a time, give "
+                                           "the folder with all of them"));
+}
+
 // In air of 280 K at rest, a layer is R T / g ln(p_below / p_above) thick.
 TEST_F(CfLayouts, HybridPressuresGiveHydrostaticHeights) {
   SyntheticCf file = FromTheTop();
