@@ -14,6 +14,7 @@
 #include "storm_files/cell_methods.h"
 #include "storm_files/cf_formula.h"
 #include "storm_files/cf_height_array.h"
+#include "storm_files/cf_isobaric.h"
 #include "storm_files/cf_origin.h"
 #include "storm_files/units.h"
 
@@ -56,8 +57,9 @@ std::string WhereHeightsAre(const netcdf::NetcdfFile& file, const std::string& n
   const CfDescription described = DescribeCf(file, name);
   const std::string& standard = described.standard_name;
   if (ConversionOf(described.units, "Pa").has_value()) {
-    return " (files of pressure levels need the geopotential height of each level, such as zg in m "
-           "or a geopotential in m2 s-2; heights are not computed from temperature and pressure)";
+    return " (pressure levels need the geopotential height of each level, such as zg in m, or the "
+           "temperature with the height and the pressure of the ground: surface_altitude and "
+           "surface_air_pressure)";
   }
   if (!CountsLevels(described) || absl::StrContains(standard, "sigma") ||
       absl::StrContains(standard, "atmosphere_")) {
@@ -166,6 +168,9 @@ absl::StatusOr<CfHeights> ReadCfHeights(const netcdf::NetcdfFile& file,
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(std::optional<CfHeights> formula,
                                ReadFormulaHeights(file, dimensions, terrain, assumptions));
+  if (formula.has_value()) return *std::move(formula);
+  THUNDERHEAD_ASSIGN_OR_RETURN(formula,
+                               ReadIsobaricHeights(file, dimensions, terrain, assumptions));
   if (formula.has_value()) return *std::move(formula);
   const CfDimension& z = dimensions.axes[2];
   const bool has_heights = !z.coordinate.empty() && !WhyNoHeight(file, z.coordinate).has_value();

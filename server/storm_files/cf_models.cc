@@ -110,8 +110,8 @@ void StateAirOfRatios(CfMetadata& metadata) {
 // States that the air is taken as dry, if the file has no humidity. MPAS writes the density of dry
 // air, which needs none.
 void StateDryAir(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
-  const bool needs_air = std::ranges::any_of(metadata.fields, IsRatio) ||
-                         metadata.heights.kind == CfHeightKind::kPressure;
+  const bool needs_air =
+      std::ranges::any_of(metadata.fields, IsRatio) || FollowFromAir(metadata.heights.kind);
   if (!needs_air || Has(metadata, AirVariable::kVapour)) return;
   const auto density =
       std::ranges::find(metadata.air, AirVariable::kDensity,

@@ -182,8 +182,10 @@ std::optional<CfQuantity> FromName(const CfDescription& variable) {
     quantity.mixed = each.mixed;
     return quantity;
   }
-  // iris and others use the standard name as the name.
-  return FromStandardName(name);
+  // Some programs use the standard name as the name, and write no attribute.
+  std::optional<CfQuantity> by_standard_name = FromStandardName(name);
+  if (by_standard_name.has_value()) by_standard_name->of_air_by = "name";
+  return by_standard_name;
 }
 
 // Returns whether a variable holds something else than its name says: the liquid water potential
@@ -251,17 +253,20 @@ std::optional<AirVariable> AirByName(const CfDescription& variable) {
     return AirVariable::kDensity;
   }
   if (standard == "air_pressure" ||
-      (plain && IsOneOf(name, {"p", "prs", "pres", "pressure", "pabst"}))) {
+      (plain && IsOneOf(name, {"p", "prs", "pres", "pressure", "pabst", "air_pressure"}))) {
     return AirVariable::kPressure;
   }
-  if (standard == "air_temperature" || (plain && IsOneOf(name, {"t", "ta", "temp", "tabs"}))) {
+  if (standard == "air_temperature" ||
+      (plain && IsOneOf(name, {"t", "ta", "temp", "tabs", "air_temperature"}))) {
     return AirVariable::kTemperature;
   }
-  if (standard == "air_potential_temperature" || (plain && IsOneOf(name, {"th", "theta", "tht"}))) {
+  if (standard == "air_potential_temperature" ||
+      (plain && IsOneOf(name, {"th", "theta", "tht", "air_potential_temperature"}))) {
     return AirVariable::kPotentialTemperature;
   }
   if (IsOneOf(standard, {"specific_humidity", "humidity_mixing_ratio"}) ||
-      (plain && IsOneOf(name, {"qv", "qvapor", "q", "hus", "rvt", "q_vapour"}))) {
+      (plain && IsOneOf(name, {"qv", "qvapor", "q", "hus", "rvt", "q_vapour", "specific_humidity",
+                               "humidity_mixing_ratio"}))) {
     return AirVariable::kVapour;
   }
   return std::nullopt;
@@ -333,8 +338,8 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
   CfAir air;
   air.variable = *kind;
   air.of_moist_air = variable.standard_name == "specific_humidity" ||
-                     (HasPlainName(variable) &&
-                      IsOneOf(absl::AsciiStrToLower(variable.name), {"q", "hus", "qv_s"}));
+                     (HasPlainName(variable) && IsOneOf(absl::AsciiStrToLower(variable.name),
+                                                        {"q", "hus", "qv_s", "specific_humidity"}));
   const auto use = [&](std::string_view unit) {
     if (HasNoUnits(variable.units)) return true;
     const std::optional<UnitConversion> conversion = ConversionOf(variable.units, unit);

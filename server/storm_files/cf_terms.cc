@@ -54,17 +54,6 @@ bool HasLength(const netcdf::NetcdfFile& file, const std::string& name, std::siz
   return shape.ok() && *shape == std::vector<std::size_t>{length};
 }
 
-// Returns the variable with the pressure at the surface, or an empty text.
-std::string SurfacePressure(const netcdf::NetcdfFile& file) {
-  for (const std::string& name : file.Variables()) {
-    if (file.TextOrEmpty(name, "standard_name") == "surface_air_pressure") return name;
-  }
-  for (const char* name : {"PS", "ps", "aps", "sp"}) {
-    if (file.HasVariable(name)) return name;
-  }
-  return "";
-}
-
 // Returns the hybrid sigma pressure coordinate whose terms have the names of CAM and ECHAM.
 std::optional<CfParametric> FindByNames(const netcdf::NetcdfFile& file, const CfDimension& z) {
   if (!HasLength(file, "hyam", z.length) || !HasLength(file, "hybm", z.length)) return std::nullopt;
@@ -75,7 +64,7 @@ std::optional<CfParametric> FindByNames(const netcdf::NetcdfFile& file, const Cf
                      {{is_pressure ? "ap" : "a", "hyam"},
                       {"b", "hybm"},
                       {"p0", file.HasVariable("p0") ? "p0" : "P0"},
-                      {"ps", SurfacePressure(file)}},
+                      {"ps", CfSurfacePressure(file)}},
                      {}};
   return found;
 }
@@ -140,6 +129,16 @@ absl::Status OrderByNumbers(const netcdf::NetcdfFile& file, const std::string& n
 }
 
 }  // namespace
+
+std::string CfSurfacePressure(const netcdf::NetcdfFile& file) {
+  for (const std::string& name : file.Variables()) {
+    if (file.TextOrEmpty(name, "standard_name") == "surface_air_pressure") return name;
+  }
+  for (const char* name : {"PS", "ps", "aps", "sp"}) {
+    if (file.HasVariable(name)) return name;
+  }
+  return "";
+}
 
 std::string CfTerm(const CfTerms& terms, const std::string& name) {
   const auto found = terms.find(name);

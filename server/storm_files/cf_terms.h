@@ -37,6 +37,9 @@ struct CfTermValues {
 std::optional<CfParametric> FindCfParametric(const netcdf::NetcdfFile& file,
                                              const CfDimensions& dimensions);
 
+// Returns the variable with the pressure at the surface, or an empty text.
+std::string CfSurfacePressure(const netcdf::NetcdfFile& file);
+
 // Returns the variable of a term, or an empty text.
 std::string CfTerm(const CfTerms& terms, const std::string& name);
 

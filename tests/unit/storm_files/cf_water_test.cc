@@ -85,6 +85,17 @@ TEST_F(CfWater, AStandardNameMayBeTheName) {
   ExpectPaths(AirWith({WaterOf("mass_concentration_of_snow_in_air",
                                "mass_concentration_of_snow_in_air", 1e-3, "kg m-3")}),
               {{Hydrometeor::kSnow, 2.0}});
+  // The air's variables may have such names, too. Of 1 kg of the whole air, 0.01 kg is vapour.
+  SyntheticCf file = AirWith({WaterOf(cloud, "", 1e-3), WaterOf("specific_humidity", "", 0.01)});
+  const double vapour = 0.01 / 0.99;  // per kg of dry air
+  const double with_vapour = PathOf(1e-3) / 0.999 * (1.0 + vapour) / (1.0 + 1.608 * vapour);
+  for (CfContent& variable : file.variables) {
+    variable.attributes.erase("standard_name");
+    if (variable.name == "p") variable.name = "air_pressure";
+    if (variable.name == "t") variable.name = "air_temperature";
+  }
+  ExpectPaths(file, {{Hydrometeor::kCloud, with_vapour}});
+  ExpectSaid(cloud + " is per kg of the whole air (dry air, vapour and condensate), by the name.");
   // ICON repeats its own names.
   ExpectPaths(AirWith({WaterOf("qc", "qc", 1e-3)}), {{Hydrometeor::kCloud, PathOf(1e-3)}});
 }
