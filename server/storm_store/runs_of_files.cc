@@ -53,6 +53,7 @@ std::vector<std::vector<storm_files::StormFile>> ByFields(
   std::map<std::vector<physics::Hydrometeor>, std::vector<storm_files::StormFile>> groups;
   for (storm_files::StormFile& file : files) groups[file.fields].push_back(std::move(file));
   std::vector<std::vector<storm_files::StormFile>> list;
+  list.reserve(groups.size());
   for (auto& [fields, group] : groups) list.push_back(std::move(group));
   return list;
 }
