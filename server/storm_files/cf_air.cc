@@ -13,6 +13,7 @@
 #include "spdlog/spdlog.h"
 #include "storm_files/cell_methods.h"
 #include "storm_files/cf_checks.h"
+#include "storm_files/cf_isobaric.h"
 #include "storm_files/cf_models.h"
 #include "storm_files/units.h"
 
@@ -77,17 +78,12 @@ class AirFinder {
   absl::Status TakeLevels() {
     const std::string& name = metadata_.dimensions.axes[2].coordinate;
     if (name.empty() || Has(metadata_, AirVariable::kPressure) ||
-        metadata_.heights.kind == CfHeightKind::kPressure) {
+        metadata_.heights.kind == CfHeightKind::kPressure || !HoldsAirPressure(file_, name)) {
       return absl::OkStatus();
     }
     const CfDescription levels = DescribeCf(file_, name);
     const auto conversion = ConversionOf(levels.units, "Pa");
-    const std::string long_name = absl::AsciiStrToLower(levels.long_name);
-    for (const char* nominal : {"hybrid", "sigma", "eta", "nominal", "reference", "midpoint"}) {
-      if (absl::StrContains(long_name, nominal)) return absl::OkStatus();
-    }
-    if (!conversion.has_value() || !levels.standard_name.empty() || !IsProfile(name) ||
-        !file_.TextOrEmpty(name, "formula_terms").empty()) {
+    if (!conversion.has_value() || !levels.standard_name.empty() || !IsProfile(name)) {
       return absl::OkStatus();
     }
     metadata_.assumptions.push_back(
@@ -151,7 +147,7 @@ class AirFinder {
 
   // Finds the reference atmosphere of pressure deviations. Heights must be known independently.
   bool HasReference() {
-    if (metadata_.heights.kind == CfHeightKind::kPressure) return false;
+    if (FollowFromAir(metadata_.heights.kind)) return false;
     if (!metadata_.reference.has_value()) metadata_.reference = ReadReferenceAtmosphere(file_);
     return metadata_.reference.has_value();
   }
@@ -226,7 +222,7 @@ absl::Status FindCfAir(const netcdf::NetcdfFile& file, const std::vector<CfDescr
   const bool mixed = std::ranges::any_of(metadata->fields, [](const CfField& field) {
     return field.quantity.mixed != MixedWater::kNone;
   });
-  const bool hydrostatic = metadata->heights.kind == CfHeightKind::kPressure;
+  const bool hydrostatic = FollowFromAir(metadata->heights.kind);
   if (ratio == metadata->fields.end() && !hydrostatic && !mixed) return absl::OkStatus();
   AirFinder finder(file, *metadata);
   THUNDERHEAD_RETURN_IF_ERROR(finder.Take(variables, false));

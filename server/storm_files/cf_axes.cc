@@ -15,6 +15,7 @@ namespace thunderhead::storm_files {
 namespace {
 
 constexpr std::size_t kMaxCells = 100'000;
+constexpr double kMetresPerKm = 1000.0;
 
 // A relative tolerance. It is necessary because coordinates are often rounded when they are
 // written, or stored as floats.
@@ -191,6 +192,53 @@ std::optional<std::size_t> FirstGap(const std::vector<double>& pairs) {
   return std::nullopt;
 }
 
+// Returns whether whole numbers follow one another, upwards or downwards.
+bool AreNumbersOfLevels(const std::vector<double>& values) {
+  if (values.size() < 2 || values[0] != std::floor(values[0])) return false;
+  const double step = values[1] - values[0];
+  if (std::abs(step) != 1.0) return false;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] != values[i - 1] + step) return false;
+  }
+  return true;
+}
+
+// Returns an error for heights without units that are rather numbers of levels, or heights in km.
+absl::Status CheckHeightsWithoutUnits(const netcdf::NetcdfFile& file, const std::string& coordinate,
+                                      const std::vector<double>& heights_m,
+                                      const std::vector<double>& faces_m) {
+  constexpr double kShallow_m = 100.0;
+  if (AreNumbersOfLevels(heights_m)) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "%s: the coordinate %s has no units, and its values %g, %g, ... %g number the levels; "
+        "write heights and their units (m or km) to it, or add an array of heights",
+        file.Path(), coordinate, heights_m[0], heights_m[1], heights_m.back()));
+  }
+  if (faces_m.back() - faces_m.front() >= kShallow_m) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "%s: the coordinate %s has no units, and in m its layers would be only %g m deep in all; add "
+      "its units attribute (m or km)",
+      file.Path(), coordinate, faces_m.back() - faces_m.front()));
+}
+
+// Returns an error for heights that no weather has.
+absl::Status CheckAxisOfHeights(const netcdf::NetcdfFile& file, const CfDescription& coordinate,
+                                const std::vector<double>& faces_m) {
+  if (faces_m.back() > kHighestTop_m) {
+    return absl::InvalidArgumentError(absl::StrFormat(
+        "%s: the coordinate %s (units '%s') reaches up to %g km, far above the weather; correct "
+        "its units attribute",
+        file.Path(), coordinate.name, coordinate.units, faces_m.back() / kMetresPerKm));
+  }
+  if (faces_m.back() > 0.0) return absl::OkStatus();
+  const bool down = absl::AsciiStrToLower(coordinate.positive) == "down";
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "%s: the coordinate %s has %s, so its layers lie %g to %g m below sea level; %s", file.Path(),
+      coordinate.name, down ? "positive = 'down'" : "no value above 0", std::abs(faces_m.back()),
+      std::abs(faces_m.front()),
+      down ? "write 'up' if they are heights" : "write heights above sea level or the ground"));
+}
+
 absl::Status WrongLength(const netcdf::NetcdfFile& file, const CfDescription& coordinate,
                          const char* needed) {
   return absl::InvalidArgumentError(absl::StrCat(file.Path(), ": the coordinate ", coordinate.name,
@@ -352,13 +400,12 @@ absl::StatusOr<CfAxis> ReadHeightAxis(const netcdf::NetcdfFile& file,
                      " has one layer and no bounds, so its thickness is not known; add ",
                      described.name, ":bounds, or give at least two layers"));
   }
+  const std::vector<double> heights_m = written.centres;
   THUNDERHEAD_RETURN_IF_ERROR(TakeFaces(file, std::move(written), 0.0, axis));
-  if (sign < 0.0 && axis.faces.back() <= 0.0) {
-    return absl::InvalidArgumentError(absl::StrFormat(
-        "%s: the coordinate %s has positive = 'down', so its layers lie %g to %g m "
-        "below sea level; "
-        "write 'up' if they are heights",
-        file.Path(), described.name, std::abs(axis.faces.back()), std::abs(axis.faces.front())));
+  THUNDERHEAD_RETURN_IF_ERROR(CheckAxisOfHeights(file, described, axis.faces));
+  if (HasNoUnits(described.units)) {
+    THUNDERHEAD_RETURN_IF_ERROR(
+        CheckHeightsWithoutUnits(file, described.name, heights_m, axis.faces));
   }
   return axis;
 }

@@ -12,6 +12,9 @@
 
 namespace thunderhead::storm_files {
 
+// The top of a storm's layers is at most at this height.
+inline constexpr double kHighestTop_m = 200'000.0;
+
 // The quantity along an axis.
 enum class CfAxisUnit {
   kMetres,
@@ -42,7 +45,8 @@ absl::StatusOr<CfAxis> ReadHorizontalAxis(const netcdf::NetcdfFile& file,
                                           double single_cell);
 
 // Returns an axis of heights in metres, from a coordinate in a unit of length. A single layer needs
-// bounds, because its thickness is not known otherwise.
+// bounds, because its thickness is not known otherwise. Heights that no storm has are an error, and
+// so are numbers without units that number the levels.
 absl::StatusOr<CfAxis> ReadHeightAxis(const netcdf::NetcdfFile& file, const CfDimension& dimension);
 
 // Returns the faces of the cells around two or more ascending `centres`. Faces are evenly spaced if

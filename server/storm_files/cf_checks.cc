@@ -38,6 +38,16 @@ absl::StatusOr<CfVariable> ArrangeOnCells(const netcdf::NetcdfFile& file,
       metadata.fields.front().variable.name, " does; put all on one grid"));
 }
 
+bool LiesOnAllAxes(const netcdf::NetcdfFile& file, const std::string& variable,
+                   const CfMetadata& metadata) {
+  const auto arranged = Arrange(file, variable, metadata.dimensions);
+  if (arranged.ok()) return OnAllAxes(*arranged);
+  const auto names = file.Dimensions(variable);
+  return names.ok() && std::ranges::all_of(metadata.dimensions.axes, [&](const CfDimension& axis) {
+           return std::ranges::find(*names, axis.name) != names->end();
+         });
+}
+
 bool HasFewerAxes(const netcdf::NetcdfFile& file, const std::string& variable,
                   const CfMetadata& metadata) {
   const auto arranged = Arrange(file, variable, metadata.dimensions);

@@ -30,6 +30,10 @@ bool OnCells(const CfVariable& variable);
 absl::StatusOr<CfVariable> ArrangeOnCells(const netcdf::NetcdfFile& file,
                                           const std::string& variable, const CfMetadata& metadata);
 
+// Returns whether a variable lies on x, y and z. It may also have other dimensions, such as bins.
+bool LiesOnAllAxes(const netcdf::NetcdfFile& file, const std::string& variable,
+                   const CfMetadata& metadata);
+
 // Returns whether a variable lacks an axis, like a column total or a profile.
 bool HasFewerAxes(const netcdf::NetcdfFile& file, const std::string& variable,
                   const CfMetadata& metadata);

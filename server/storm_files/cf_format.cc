@@ -19,13 +19,11 @@
 namespace thunderhead::storm_files {
 namespace {
 
-// Returns StormFile::run: a text with the names of the variables and their layers, which is the
-// same for all files of one run.
+// Returns StormFile::run: a text that describes the layers, which is the same for all files of one
+// run. Fields are not part of it, because some files of a run may lack one.
 std::string RunOf(const CfMetadata& metadata) {
-  std::string run;
-  for (const CfField& field : metadata.fields) absl::StrAppend(&run, field.variable.name, " ");
   const CfHeights& heights = metadata.heights;
-  absl::StrAppend(&run, heights.name, " ", metadata.order.cells[2]);
+  std::string run = absl::StrCat(heights.name, " ", metadata.order.cells[2]);
   if (!heights.faces_m.empty()) {
     const double depth_m = heights.faces_m.back() - heights.faces_m.front();
     absl::StrAppend(&run, " ", heights.faces_m.front(), " ",

@@ -14,6 +14,7 @@
 #include "storm_files/cell_methods.h"
 #include "storm_files/cf_formula.h"
 #include "storm_files/cf_height_array.h"
+#include "storm_files/cf_isobaric.h"
 #include "storm_files/cf_origin.h"
 #include "storm_files/units.h"
 
@@ -38,7 +39,8 @@ std::optional<std::string> WhyNoHeight(const netcdf::NetcdfFile& file, const std
   const bool plain_height =
       HasNoUnits(described.units) && standard.empty() &&
       OneOf(lower, {"z", "zh", "zc", "zt", "zm", "zu_3d", "altitude", "alt"}) &&
-      !absl::StrContains(long_name, "level") && !absl::StrContains(long_name, "eta");
+      !absl::StrContains(long_name, "level") && !absl::StrContains(long_name, "eta") &&
+      !absl::StrContains(long_name, "index");
   if (plain_height) return std::nullopt;
   if (CountsLevels(described)) {
     return absl::StrCat("has ",
@@ -47,6 +49,32 @@ std::optional<std::string> WhyNoHeight(const netcdf::NetcdfFile& file, const std
                         ", so it holds numbers of levels (or eta), not heights");
   }
   return std::nullopt;  // another unit, which ReadHeightAxis reports
+}
+
+// Returns where models write the heights of levels that are only numbered, or of pressures. It is a
+// text in parentheses, or empty.
+std::string WhereHeightsAre(const netcdf::NetcdfFile& file, const std::string& name) {
+  const CfDescription described = DescribeCf(file, name);
+  const std::string& standard = described.standard_name;
+  if (ConversionOf(described.units, "Pa").has_value()) {
+    return " (pressure levels need the geopotential height of each level, such as zg in m, or the "
+           "temperature with the height and the pressure of the ground: surface_altitude and "
+           "surface_air_pressure)";
+  }
+  if (!CountsLevels(described) || absl::StrContains(standard, "sigma") ||
+      absl::StrContains(standard, "atmosphere_")) {
+    return "";
+  }
+  const char* const hhl =
+      "COSMO and ICON write them to HHL or z_ifc, often in a separate file: merge it";
+  if (absl::StrContains(standard, "model_level")) {
+    return absl::StrCat(" (the Unified Model writes level_height, sigma and surface_altitude; ",
+                        hhl, ")");
+  }
+  const std::string lower = absl::AsciiStrToLower(name);
+  const bool numbers = absl::StrContains(lower, "height") || absl::StrContains(lower, "lev") ||
+                       absl::StrContains(lower, "generalv");
+  return numbers ? absl::StrCat(" (", hhl, ")") : "";
 }
 
 // Adds the height of the origin (origin_z), from which PALM's heights count, unless the coordinate
@@ -141,6 +169,9 @@ absl::StatusOr<CfHeights> ReadCfHeights(const netcdf::NetcdfFile& file,
   THUNDERHEAD_ASSIGN_OR_RETURN(std::optional<CfHeights> formula,
                                ReadFormulaHeights(file, dimensions, terrain, assumptions));
   if (formula.has_value()) return *std::move(formula);
+  THUNDERHEAD_ASSIGN_OR_RETURN(formula,
+                               ReadIsobaricHeights(file, dimensions, terrain, assumptions));
+  if (formula.has_value()) return *std::move(formula);
   const CfDimension& z = dimensions.axes[2];
   const bool has_heights = !z.coordinate.empty() && !WhyNoHeight(file, z.coordinate).has_value();
   if (!has_heights && !array.unread.ok()) return array.unread;
@@ -152,16 +183,8 @@ absl::StatusOr<CfHeights> ReadCfHeights(const netcdf::NetcdfFile& file,
               "add it, for example with ncks -A -v zgrid)"
             : "has no coordinate variable, so the heights are not known");
   }
-  // COSMO and ICON number their levels and keep the heights in HHL, often in another file.
   if (const auto why = WhyNoHeight(file, z.coordinate); why.has_value()) {
-    const std::string lower = absl::AsciiStrToLower(z.coordinate);
-    const bool numbers = absl::StrContains(lower, "height") || absl::StrContains(lower, "lev") ||
-                         absl::StrContains(lower, "generalv");
-    return NoCfHeights(file, z.coordinate,
-                       numbers ? absl::StrCat(*why,
-                                              " (COSMO and ICON write them to HHL or z_ifc, "
-                                              "often in a separate file: merge it)")
-                               : *why);
+    return NoCfHeights(file, z.coordinate, absl::StrCat(*why, WhereHeightsAre(file, z.coordinate)));
   }
   THUNDERHEAD_ASSIGN_OR_RETURN(formula, ReadCm1Heights(file, dimensions, terrain, assumptions));
   if (formula.has_value()) return *std::move(formula);

@@ -27,7 +27,13 @@ enum class CfHeightKind {
   kFaces,        // an array of heights of the faces
   kLinear,       // a + the sum of b * surface, of one or two surfaces
   kPressure,     // pressure a + b * surface pressure, and heights by the hydrostatic equation
+  kIsobaric,     // levels of constant pressure, and heights by the hydrostatic equation
 };
+
+// Returns whether the heights follow from the temperature of the air.
+constexpr bool FollowFromAir(CfHeightKind kind) {
+  return kind == CfHeightKind::kPressure || kind == CfHeightKind::kIsobaric;
+}
 
 // A term b * surface of the height of a face.
 struct CfSurfaceTerm {
@@ -51,8 +57,9 @@ struct CfHeights {
   std::vector<double> a;                // in m or Pa
   std::vector<CfSurfaceTerm> surfaces;  // only for kLinear: heights of the ground, or parts of them
   std::vector<double> b;                // the term b of kPressure, at the same faces as `a`
-  std::optional<CfColumnValue> surface_pressure;  // only for kPressure
-  // The terms of kPressure at the layers' middles, upwards.
+  std::optional<CfColumnValue> surface_pressure;  // only for kPressure and kIsobaric
+  // The terms of kPressure at the layers' middles, upwards. For kIsobaric, a_middle has the
+  // pressures of the levels in Pa, and b_middle is empty.
   std::vector<double> a_middle;
   std::vector<double> b_middle;
 };

@@ -15,6 +15,7 @@
 #include "storm_files/cf_cells.h"
 #include "storm_files/cf_checks.h"
 #include "storm_files/cf_models.h"
+#include "storm_files/cf_other_water.h"
 #include "storm_files/cf_times.h"
 #include "storm_files/units.h"
 
@@ -62,21 +63,46 @@ bool HoldsAnyOf(const std::vector<CfField>& fields, MixedWater mixed) {
   });
 }
 
+// Returns the only field of cloud ice, if the fields have cloud ice and no cloud water.
+const CfField* IceWithoutCloud(const std::vector<CfField>& fields) {
+  const CfField* ice = nullptr;
+  for (const CfField& field : fields) {
+    if (field.quantity.hydrometeor == physics::Hydrometeor::kCloud) return nullptr;
+    if (field.quantity.hydrometeor == physics::Hydrometeor::kIce) ice = &field;
+  }
+  return ice;
+}
+
 // Adds the hydrometeors that share a variable, unless the file also has one of them alone.
 void AddMixtures(const std::vector<CfField>& mixtures, CfMetadata* metadata) {
-  const std::vector<CfField> alone = metadata->fields;
+  std::vector<CfField>& fields = metadata->fields;
   for (const CfField& mixture : mixtures) {
-    if (HoldsAnyOf(alone, mixture.quantity.mixed)) {
+    const std::string& name = mixture.variable.name;
+    const CfField* const ice =
+        mixture.quantity.liquid_next_to_ice ? IceWithoutCloud(fields) : nullptr;
+    if (ice != nullptr) {
+      metadata->assumptions.push_back(absl::StrCat(name, " is taken as cloud water alone, because ",
+                                                   ice->variable.name, " is the cloud ice."));
+      CfField cloud = mixture;
+      cloud.quantity.hydrometeor = physics::Hydrometeor::kCloud;
+      cloud.quantity.mixed = MixedWater::kNone;
+      fields.push_back(std::move(cloud));
+      continue;
+    }
+    if (HoldsAnyOf(fields, mixture.quantity.mixed)) {
       metadata->assumptions.push_back(
-          absl::StrCat(mixture.variable.name,
-                       " is left out, because the file also has the hydrometeors in it."));
+          absl::StrCat(name, " is left out, because the file also has the hydrometeors in it."));
       continue;
     }
     for (const physics::Hydrometeor hydrometeor : HydrometeorsIn(mixture.quantity.mixed)) {
-      metadata->fields.push_back(mixture);
-      metadata->fields.back().quantity.hydrometeor = hydrometeor;
+      fields.push_back(mixture);
+      fields.back().quantity.hydrometeor = hydrometeor;
     }
   }
+}
+
+bool IsStratiform(const netcdf::NetcdfFile& file, const std::string& variable) {
+  return absl::StrContains(file.TextOrEmpty(variable, "standard_name"), "stratiform");
 }
 
 // Leaves out variances and the like of hydrometeors whose amounts the file also has.
@@ -94,6 +120,17 @@ void LeaveOutSpreads(const netcdf::NetcdfFile& file, std::vector<CfDescription>&
                                        "that its values are no amounts."));
     return true;
   });
+}
+
+// Adds an assumption for each variable on the fields' axes that holds water and is not shown.
+void NameOtherWater(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& variables,
+                    CfMetadata* metadata) {
+  for (const CfDescription& variable : variables) {
+    const std::optional<std::string> why = WhyWaterIsNotShown(variable);
+    if (!why.has_value() || !LiesOnAllAxes(file, variable.name, *metadata)) continue;
+    metadata->assumptions.push_back(
+        absl::StrCat(variable.name, " is left out, because ", *why, "."));
+  }
 }
 
 // Finds the hydrometeors, or the extinction alone if there is one, because it includes all of them.
@@ -134,12 +171,18 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
              (field.quantity.quantity == volume::Quantity::kExtinction) ==
                  (quantity.quantity == volume::Quantity::kExtinction);
     };
+    CfField found{std::move(arranged), quantity};
     if (const auto first = std::ranges::find_if(fields, same); first != fields.end()) {
-      metadata->assumptions.push_back(absl::StrCat(variable.name, " is left out, because ",
-                                                   first->variable.name, " says the same."));
+      // Stratiform cloud is only a part of the cloud.
+      if (IsStratiform(file, first->variable.name) && !IsStratiform(file, variable.name)) {
+        std::swap(*first, found);
+      }
+      metadata->assumptions.push_back(
+          absl::StrCat(found.variable.name, " is left out, because ", first->variable.name,
+                       " is shown as ", std::string(physics::NameOf(quantity.hydrometeor)), "."));
       continue;
     }
-    fields.push_back({std::move(arranged), quantity});
+    fields.push_back(std::move(found));
   }
   THUNDERHEAD_RETURN_IF_ERROR(CheckScaleFactors(file, used, metadata->assumptions));
   THUNDERHEAD_RETURN_IF_ERROR(CheckCellMethods(file, used, metadata->assumptions));
@@ -150,11 +193,29 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, const std::vector<CfDesc
   if (extinction != fields.end() && fields.size() > 1) {
     metadata->assumptions.push_back("Only the extinction is used, not the hydrometeors.");
     fields = {CfField(*extinction)};
+  } else if (extinction == fields.end()) {
+    NameOtherWater(file, variables, metadata);
   }
   std::ranges::stable_sort(fields, {}, [](const CfField& field) {
     return physics::IndexOf(field.quantity.hydrometeor);
   });
   return absl::OkStatus();
+}
+
+// Returns the error for a file without fields. It names a variable with water that is not shown.
+absl::Status NoFields(const netcdf::NetcdfFile& file, const std::vector<CfDescription>& variables) {
+  std::string other;
+  for (const CfDescription& variable : variables) {
+    const std::optional<std::string> why = WhyWaterIsNotShown(variable);
+    const auto shape = file.Shape(variable.name);
+    if (!why.has_value() || !shape.ok() || shape->size() < 3) continue;
+    other = absl::StrCat(" (", variable.name, " is none, because ", *why, ")");
+    break;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(file.Path(), ": no variable on x, y and z is a hydrometeor", other,
+                   "; add one with its standard name, e.g. "
+                   "mass_concentration_of_cloud_liquid_water_in_air, or 'extinction' (m-1)"));
 }
 
 // Places the cells of an unstructured grid, in one row.
@@ -336,8 +397,11 @@ absl::StatusOr<std::string> GroupWithFields(const netcdf::NetcdfFile& file) {
 bool LooksLikeCf(const netcdf::NetcdfFile& file) {
   const auto group = GroupWithFields(file);
   if (!group.ok() || !group->empty()) return true;
-  return std::ranges::any_of(Describe(file), [](const CfDescription& variable) {
-    return QuantityOf(variable).has_value();
+  return std::ranges::any_of(Describe(file), [&](const CfDescription& variable) {
+    if (QuantityOf(variable).has_value()) return true;
+    // The error about such a file names the water that is not shown.
+    const auto shape = file.Shape(variable.name);
+    return shape.ok() && shape->size() >= 3 && IsStandardNameOfWater(variable.standard_name);
   });
 }
 
@@ -351,13 +415,7 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root,
                                netcdf::NetcdfFile::Open(root.Path(), metadata.group));
   const std::vector<CfDescription> variables = Describe(file);
   THUNDERHEAD_RETURN_IF_ERROR(FindFields(file, variables, &metadata));
-  if (metadata.fields.empty()) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(file.Path(),
-                     ": no variable on x, y and z is a hydrometeor (by standard name, e.g. "
-                     "mass_concentration_of_cloud_liquid_water_in_air) or 'extinction' (m-1); "
-                     "add one"));
-  }
+  if (metadata.fields.empty()) return NoFields(file, variables);
   THUNDERHEAD_RETURN_IF_ERROR(ReadColumns(file, &metadata));
   metadata.terrain = FindTerrain(file, metadata.dimensions, metadata.assumptions);
   if (heights_file != nullptr) {

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "storm_files/cf_cells.h"
 #include "storm_files/cf_checks.h"
 
@@ -41,14 +44,18 @@ bool Shows(const netcdf::NetcdfFile& file, const Signs& signs) {
   });
 }
 
+bool IsRatio(const CfField& field) {
+  return field.quantity.quantity == volume::Quantity::kMixingRatio;
+}
+
+bool IsIcon(const netcdf::NetcdfFile& file) {
+  return file.TextAttribute("", "uuidOfHGrid").has_value() ||
+         file.NumberAttribute("", "number_of_grid_used").has_value();
+}
+
 // ICON's mixing ratios are per kg of the whole air: dry air, vapour and condensate together.
-void ApplyIcon(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
-  const bool icon = file.TextAttribute("", "uuidOfHGrid").has_value() ||
-                    file.NumberAttribute("", "number_of_grid_used").has_value();
-  const bool per_kg = std::ranges::any_of(metadata.fields, [](const CfField& field) {
-    return field.quantity.quantity == volume::Quantity::kMixingRatio;
-  });
-  if (!icon || !per_kg) return;
+void ApplyIcon(CfMetadata& metadata) {
+  if (std::ranges::none_of(metadata.fields, IsRatio)) return;
   for (CfField& field : metadata.fields) field.quantity.of_moist_air = true;
   for (CfAirField& field : metadata.air) {
     if (field.air.variable == AirVariable::kVapour) field.air.of_moist_air = true;
@@ -71,10 +78,50 @@ void ApplyMpas(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
 void ApplyCam(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
   for (CfField& field : metadata.fields) {
     const std::string& name = field.variable.name;
-    if (!IsCamName(name) || field.quantity.quantity != volume::Quantity::kMixingRatio) continue;
+    if (!IsCamName(name) || !IsRatio(field)) continue;
     field.quantity.of_moist_air = file.TextOrEmpty(name, "mixing_ratio") != "dry";
     metadata.assumptions.push_back(absl::StrCat(
         name, " is per kg of ", field.quantity.of_moist_air ? "moist" : "dry", " air, as in CAM."));
+  }
+}
+
+// States of which air the mixing ratios are, and what says so. CAM's are stated by ApplyCam.
+void StateAirOfRatios(CfMetadata& metadata) {
+  std::map<std::pair<bool, std::string>, std::vector<std::string>> names;  // by air and attribute
+  for (const CfField& field : metadata.fields) {
+    const std::string& name = field.variable.name;
+    if (!IsRatio(field) || IsCamName(name)) continue;
+    auto& same = names[{field.quantity.of_moist_air, std::string(field.quantity.of_air_by)}];
+    if (std::ranges::find(same, name) == same.end()) same.push_back(name);
+  }
+  for (const auto& [air, same] : names) {
+    const auto& [moist, by] = air;
+    const bool one = same.size() == 1;
+    metadata.assumptions.push_back(absl::StrCat(
+        absl::StrJoin(same, ", "),
+        by.empty() ? (one ? " is taken to be" : " are taken to be") : (one ? " is" : " are"),
+        " per kg of ", moist ? "the whole air (dry air, vapour and condensate)" : "dry air", ", ",
+        by.empty() ? "because the file does not say which air is meant"
+                   : absl::StrCat("by the ", by),
+        "."));
+  }
+}
+
+// States that the air is taken as dry, if the file has no humidity. MPAS writes the density of dry
+// air, which needs none.
+void StateDryAir(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
+  const bool needs_air =
+      std::ranges::any_of(metadata.fields, IsRatio) || FollowFromAir(metadata.heights.kind);
+  if (!needs_air || Has(metadata, AirVariable::kVapour)) return;
+  const auto density =
+      std::ranges::find(metadata.air, AirVariable::kDensity,
+                        [](const CfAirField& field) { return field.air.variable; });
+  if (density == metadata.air.end()) {
+    metadata.assumptions.push_back("The air is taken as dry, because the file has no humidity.");
+  } else if (!IsMpas(file)) {
+    metadata.assumptions.push_back(absl::StrCat("The density ", density->variable.name,
+                                                " is taken as that of dry air, because the file "
+                                                "has no humidity."));
   }
 }
 
@@ -93,9 +140,14 @@ std::string AdviceOnUnits(const netcdf::NetcdfFile& file) {
 }
 
 void ApplyModel(const netcdf::NetcdfFile& file, CfMetadata& metadata) {
-  ApplyIcon(file, metadata);
+  if (IsIcon(file)) {
+    ApplyIcon(metadata);
+  } else {
+    StateAirOfRatios(metadata);
+  }
   ApplyMpas(file, metadata);
   ApplyCam(file, metadata);
+  StateDryAir(file, metadata);
 }
 
 }  // namespace thunderhead::storm_files

@@ -112,6 +112,13 @@ constexpr std::array kMixtures = {
     NamedMixture{"qp", "precipitating water", MixedWater::kPrecipitation},
 };
 
+// Substances like kSubstances that are several hydrometeors.
+constexpr std::array kMixedSubstances = {
+    NamedMixture{"cloud_condensed_water", "", MixedWater::kCloud},
+    NamedMixture{"stratiform_cloud_condensed_water", "", MixedWater::kCloud},
+    NamedMixture{"precipitation", "", MixedWater::kPrecipitation},
+};
+
 template <std::size_t count>
 std::optional<Hydrometeor> Find(const std::array<Named, count>& table, std::string_view name) {
   const auto at = std::ranges::find(table, name, &Named::name);
@@ -131,6 +138,7 @@ bool IsOneOf(std::string_view text, std::initializer_list<std::string_view> list
 std::optional<CfQuantity> FromStandardName(const std::string& standard_name) {
   absl::string_view substance = standard_name;
   CfQuantity quantity;
+  quantity.of_air_by = "standard name";
   if (absl::ConsumePrefix(&substance, "mass_fraction_of_")) {
     quantity.of_moist_air = true;
     absl::ConsumeSuffix(&substance, "_in_air");
@@ -143,20 +151,27 @@ std::optional<CfQuantity> FromStandardName(const std::string& standard_name) {
   } else if (!absl::ConsumeSuffix(&substance, "_mixing_ratio")) {
     return std::nullopt;
   }
-  const auto hydrometeor = Find(kSubstances, {substance.data(), substance.size()});
-  if (!hydrometeor.has_value()) return std::nullopt;
-  quantity.hydrometeor = *hydrometeor;
+  const std::string_view name(substance.data(), substance.size());
+  if (const auto hydrometeor = Find(kSubstances, name); hydrometeor.has_value()) {
+    quantity.hydrometeor = *hydrometeor;
+    return quantity;
+  }
+  const auto mixture = std::ranges::find(kMixedSubstances, name, &NamedMixture::name);
+  if (mixture == kMixedSubstances.end()) return std::nullopt;
+  quantity.mixed = mixture->mixed;
+  quantity.liquid_next_to_ice = mixture->mixed == MixedWater::kCloud;
   return quantity;
 }
 
-// Returns the quantity of a variable without a standard name.
+// Returns the quantity of a variable whose standard name is not that of an amount of water.
 std::optional<CfQuantity> FromName(const CfDescription& variable) {
   const std::string name = absl::AsciiStrToLower(variable.name);
   const std::string long_name = absl::AsciiStrToLower(variable.long_name);
   CfQuantity quantity;
   // DALES and ECMWF write specific contents, and say so here.
-  quantity.of_moist_air =
-      Says(long_name, "mass fraction") || Says(long_name, "specific") || IsCamName(variable.name);
+  const bool is_specific = Says(long_name, "mass fraction") || Says(long_name, "specific");
+  quantity.of_moist_air = is_specific || IsCamName(variable.name);
+  if (is_specific) quantity.of_air_by = "long name";
   for (const Named& each : kVariables) {
     if (each.name != name || !Says(long_name, each.long_name)) continue;
     quantity.hydrometeor = each.hydrometeor;
@@ -167,7 +182,10 @@ std::optional<CfQuantity> FromName(const CfDescription& variable) {
     quantity.mixed = each.mixed;
     return quantity;
   }
-  return std::nullopt;
+  // Some programs use the standard name as the name, and write no attribute.
+  std::optional<CfQuantity> by_standard_name = FromStandardName(name);
+  if (by_standard_name.has_value()) by_standard_name->of_air_by = "name";
+  return by_standard_name;
 }
 
 // Returns whether a variable holds something else than its name says: the liquid water potential
@@ -235,17 +253,20 @@ std::optional<AirVariable> AirByName(const CfDescription& variable) {
     return AirVariable::kDensity;
   }
   if (standard == "air_pressure" ||
-      (plain && IsOneOf(name, {"p", "prs", "pres", "pressure", "pabst"}))) {
+      (plain && IsOneOf(name, {"p", "prs", "pres", "pressure", "pabst", "air_pressure"}))) {
     return AirVariable::kPressure;
   }
-  if (standard == "air_temperature" || (plain && IsOneOf(name, {"t", "ta", "temp", "tabs"}))) {
+  if (standard == "air_temperature" ||
+      (plain && IsOneOf(name, {"t", "ta", "temp", "tabs", "air_temperature"}))) {
     return AirVariable::kTemperature;
   }
-  if (standard == "air_potential_temperature" || (plain && IsOneOf(name, {"th", "theta", "tht"}))) {
+  if (standard == "air_potential_temperature" ||
+      (plain && IsOneOf(name, {"th", "theta", "tht", "air_potential_temperature"}))) {
     return AirVariable::kPotentialTemperature;
   }
   if (IsOneOf(standard, {"specific_humidity", "humidity_mixing_ratio"}) ||
-      (plain && IsOneOf(name, {"qv", "qvapor", "q", "hus", "rvt", "q_vapour"}))) {
+      (plain && IsOneOf(name, {"qv", "qvapor", "q", "hus", "rvt", "q_vapour", "specific_humidity",
+                               "humidity_mixing_ratio"}))) {
     return AirVariable::kVapour;
   }
   return std::nullopt;
@@ -302,10 +323,10 @@ std::optional<CfQuantity> QuantityOf(const CfDescription& variable) {
       absl::StartsWith(variable.standard_name, "volume_extinction_coefficient_in_air")) {
     quantity.emplace();
     quantity->quantity = volume::Quantity::kExtinction;
-  } else if (!HasPlainName(variable)) {
-    quantity = FromStandardName(variable.standard_name);
   } else {
-    quantity = FromName(variable);
+    // A standard name may also be the name, so the standard name is compared first.
+    quantity = FromStandardName(variable.standard_name);
+    if (!quantity.has_value() && HasPlainName(variable)) quantity = FromName(variable);
   }
   if (quantity.has_value()) ApplyUnits(variable.units, &*quantity);
   return quantity;
@@ -317,8 +338,8 @@ std::optional<CfAir> AirVariableOf(const CfDescription& variable) {
   CfAir air;
   air.variable = *kind;
   air.of_moist_air = variable.standard_name == "specific_humidity" ||
-                     (HasPlainName(variable) &&
-                      IsOneOf(absl::AsciiStrToLower(variable.name), {"q", "hus", "qv_s"}));
+                     (HasPlainName(variable) && IsOneOf(absl::AsciiStrToLower(variable.name),
+                                                        {"q", "hus", "qv_s", "specific_humidity"}));
   const auto use = [&](std::string_view unit) {
     if (HasNoUnits(variable.units)) return true;
     const std::optional<UnitConversion> conversion = ConversionOf(variable.units, unit);

@@ -31,8 +31,13 @@ struct CfQuantity {
   volume::Quantity quantity = volume::Quantity::kMixingRatio;
   double scale = 1.0;
   bool of_moist_air = false;  // true for a mixing ratio per mass of moist air instead of dry air
-  bool known_units = true;    // false if the name is recognised but the units cannot be converted
+  // The attribute that says of which air the mixing ratio is, for users; empty if none says so.
+  std::string_view of_air_by;
+  bool known_units = true;  // false if the name is recognised but the units cannot be converted
   MixedWater mixed = MixedWater::kNone;  // the hydrometeors that share the variable
+  // True for condensed cloud water, which models also call the liquid alone. It is cloud water if
+  // the file has cloud ice, too.
+  bool liquid_next_to_ice = false;
 };
 
 // Returns whether CAM, the atmosphere of CESM, gives this name to a hydrometeor.

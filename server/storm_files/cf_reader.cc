@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "netcdf/netcdf_file.h"
 #include "storm_files/grib_air.h"
@@ -38,8 +39,8 @@ class CfSource final : public LayerSource {
     domain_.even = places.even;
     domain_.on_terrain = heights.kind != CfHeightKind::kAxis &&
                          (heights.kind != CfHeightKind::kAboveGround || heights.faces_m[0] == 0.0);
-    domain_.fixed_heights = heights.kind != CfHeightKind::kPressure &&
-                            (!heights.array.has_value() || heights.array->time < 0);
+    domain_.fixed_heights =
+        !FollowFromAir(heights.kind) && (!heights.array.has_value() || heights.array->time < 0);
     domain_.heights_from = heights.name;
     domain_.ground_from =
         metadata_.terrain.has_value() ? metadata_.terrain->variable.name : std::string("origin_z");
@@ -69,8 +70,10 @@ class CfSource final : public LayerSource {
   absl::StatusOr<std::vector<float>> ReadMotion(const CfWindField& field) const;
   absl::StatusOr<std::vector<float>> ReadWind(WindVariable wind) const;
   absl::StatusOr<std::vector<float>> ReadAir(const CfAirField& field) const;
+  absl::StatusOr<std::vector<float>> Faces_m();
   absl::StatusOr<std::vector<float>> FacesOfArray(const std::vector<float>& terrain_m) const;
   absl::StatusOr<std::vector<float>> HydrostaticFaces(const std::vector<float>& terrain_m);
+  absl::StatusOr<std::vector<float>> IsobaricFaces(const std::vector<float>& terrain_m);
   absl::StatusOr<std::vector<float>> LinearFaces() const;
   absl::Status AddReference(std::vector<float>& pressure_Pa);
 
@@ -147,6 +150,28 @@ absl::StatusOr<std::vector<float>> CfSource::HydrostaticFaces(const std::vector<
       face_pressure_Pa, VirtualTemperature_K(Temperature(state), state.vapour_kg_per_kg), ground_m);
 }
 
+// Computes the faces around levels of constant pressure.
+absl::StatusOr<std::vector<float>> CfSource::IsobaricFaces(const std::vector<float>& terrain_m) {
+  const std::vector<double>& pressure_Pa = metadata_.heights.a_middle;
+  const std::size_t columns = domain_.Columns();
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> surface_Pa,
+                               ReadColumns(*metadata_.heights.surface_pressure));
+  THUNDERHEAD_ASSIGN_OR_RETURN(const LayerState state, Air());
+  std::vector<float> virtual_K = VirtualTemperature_K(Temperature(state), state.vapour_kg_per_kg);
+  // Files often lack values below the ground. The level above then gives the temperature between
+  // it and the ground.
+  for (std::size_t i = virtual_K.size() - columns; i-- > 0;) {
+    const bool is_below = pressure_Pa[i / columns] > surface_Pa[i % columns];
+    if (is_below && std::isnan(virtual_K[i])) virtual_K[i] = virtual_K[i + columns];
+  }
+  std::vector<float> heights_m(virtual_K.size(), std::nanf(""));
+  const std::vector<bool> has_height(pressure_Pa.size(), false);
+  FillHeights(pressure_Pa, virtual_K, has_height, surface_Pa, terrain_m, heights_m);
+  std::vector<float> faces_m = InterfacesBetween(heights_m, terrain_m, domain_.cells.z, columns);
+  CutAtGround(pressure_Pa, heights_m, surface_Pa, terrain_m, faces_m);
+  return faces_m;
+}
+
 // Returns the faces of layers whose heights are linear in one or two surfaces.
 absl::StatusOr<std::vector<float>> CfSource::LinearFaces() const {
   const CfHeights& heights = metadata_.heights;
@@ -164,7 +189,28 @@ absl::StatusOr<std::vector<float>> CfSource::LinearFaces() const {
   return heights_m;
 }
 
+// Returns the faces of the layers. It is an error if most columns reach far above the weather,
+// because the heights then are in another unit. A single impossible height is missing later.
 absl::StatusOr<std::vector<float>> CfSource::InterfaceHeights_m() {
+  THUNDERHEAD_ASSIGN_OR_RETURN(std::vector<float> faces_m, Faces_m());
+  // Computed heights follow from the air and not from a unit of length.
+  if (FollowFromAir(metadata_.heights.kind)) return faces_m;
+  const std::size_t columns = domain_.Columns();
+  std::size_t too_high = 0;
+  float highest_m = 0.0F;
+  for (std::size_t i = faces_m.size() - columns; i < faces_m.size(); ++i) {
+    if (!(faces_m[i] > kHighestTop_m)) continue;
+    ++too_high;
+    highest_m = std::max(highest_m, faces_m[i]);
+  }
+  if (2 * too_high <= columns) return faces_m;
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "%s: the heights %s of record %d reach up to %g km, far above the weather; correct their "
+      "units attribute",
+      metadata_.path, metadata_.heights.name, domain_.record, highest_m / 1000.0F));
+}
+
+absl::StatusOr<std::vector<float>> CfSource::Faces_m() {
   const CfHeights& heights = metadata_.heights;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> terrain_m, Terrain_m());
   const std::size_t columns = domain_.Columns();
@@ -179,6 +225,8 @@ absl::StatusOr<std::vector<float>> CfSource::InterfaceHeights_m() {
       return FacesOfArray(terrain_m);
     case CfHeightKind::kPressure:
       return HydrostaticFaces(terrain_m);
+    case CfHeightKind::kIsobaric:
+      return IsobaricFaces(terrain_m);
     case CfHeightKind::kAxis:
       for (const double face_m : heights.faces_m) {
         heights_m.insert(heights_m.end(), columns, static_cast<float>(face_m));

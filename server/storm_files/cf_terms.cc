@@ -54,17 +54,6 @@ bool HasLength(const netcdf::NetcdfFile& file, const std::string& name, std::siz
   return shape.ok() && *shape == std::vector<std::size_t>{length};
 }
 
-// Returns the variable with the pressure at the surface, or an empty text.
-std::string SurfacePressure(const netcdf::NetcdfFile& file) {
-  for (const std::string& name : file.Variables()) {
-    if (file.TextOrEmpty(name, "standard_name") == "surface_air_pressure") return name;
-  }
-  for (const char* name : {"PS", "ps", "aps", "sp"}) {
-    if (file.HasVariable(name)) return name;
-  }
-  return "";
-}
-
 // Returns the hybrid sigma pressure coordinate whose terms have the names of CAM and ECHAM.
 std::optional<CfParametric> FindByNames(const netcdf::NetcdfFile& file, const CfDimension& z) {
   if (!HasLength(file, "hyam", z.length) || !HasLength(file, "hybm", z.length)) return std::nullopt;
@@ -75,9 +64,30 @@ std::optional<CfParametric> FindByNames(const netcdf::NetcdfFile& file, const Cf
                      {{is_pressure ? "ap" : "a", "hyam"},
                       {"b", "hybm"},
                       {"p0", file.HasVariable("p0") ? "p0" : "P0"},
-                      {"ps", SurfacePressure(file)}},
+                      {"ps", CfSurfacePressure(file)}},
                      {}};
   return found;
+}
+
+bool LiesAlong(const netcdf::NetcdfFile& file, const std::string& name, const CfDimension& z) {
+  const auto on = file.Dimensions(name);
+  return on.ok() && *on == std::vector<std::string>{z.name};
+}
+
+// Returns the hybrid height coordinate whose terms have the names that iris gives to those of the
+// Unified Model.
+std::optional<CfParametric> FindUnifiedModel(const netcdf::NetcdfFile& file, const CfDimension& z) {
+  const std::string height_units = file.TextOrEmpty("level_height", "units");
+  const std::string sigma_units = file.TextOrEmpty("sigma", "units");
+  if (!LiesAlong(file, "level_height", z) || !LiesAlong(file, "sigma", z) ||
+      !ConversionOf(height_units, "m").has_value() ||
+      !(HasNoUnits(sigma_units) || ConversionOf(sigma_units, "1").has_value())) {
+    return std::nullopt;
+  }
+  return CfParametric{"level_height",
+                      "atmosphere_hybrid_height_coordinate",
+                      {{"a", "level_height"}, {"b", "sigma"}, {"orog", "surface_altitude"}},
+                      {}};
 }
 
 // Adds the faces that CAM and ECHAM write, if the coordinate has their names and no others.
@@ -120,6 +130,16 @@ absl::Status OrderByNumbers(const netcdf::NetcdfFile& file, const std::string& n
 
 }  // namespace
 
+std::string CfSurfacePressure(const netcdf::NetcdfFile& file) {
+  for (const std::string& name : file.Variables()) {
+    if (file.TextOrEmpty(name, "standard_name") == "surface_air_pressure") return name;
+  }
+  for (const char* name : {"PS", "ps", "aps", "sp"}) {
+    if (file.HasVariable(name)) return name;
+  }
+  return "";
+}
+
 std::string CfTerm(const CfTerms& terms, const std::string& name) {
   const auto found = terms.find(name);
   return found == terms.end() ? "" : found->second;
@@ -130,6 +150,7 @@ std::optional<CfParametric> FindCfParametric(const netcdf::NetcdfFile& file,
   const CfDimension& z = dimensions.axes[2];
   std::optional<CfParametric> found = FindByAttribute(file, z);
   if (!found.has_value()) found = FindByNames(file, z);
+  if (!found.has_value()) found = FindUnifiedModel(file, z);
   if (!found.has_value()) return std::nullopt;
   // CDO writes the standard name without "atmosphere", and others write the terms alone.
   const bool has_pressure_terms = found->terms.contains("b") && found->terms.contains("ps");

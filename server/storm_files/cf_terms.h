@@ -32,9 +32,13 @@ struct CfTermValues {
 };
 
 // Returns the parametric coordinate of the layers by its formula_terms, or by the names that CAM
-// and ECHAM give to the terms (hyam, hybm). Returns nothing if the file has none.
+// and ECHAM (hyam, hybm) or iris (level_height, sigma) give to the terms. Returns nothing if the
+// file has none.
 std::optional<CfParametric> FindCfParametric(const netcdf::NetcdfFile& file,
                                              const CfDimensions& dimensions);
+
+// Returns the variable with the pressure at the surface, or an empty text.
+std::string CfSurfacePressure(const netcdf::NetcdfFile& file);
 
 // Returns the variable of a term, or an empty text.
 std::string CfTerm(const CfTerms& terms, const std::string& name);

@@ -1,6 +1,7 @@
 #include "storm_store/runs_of_files.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -44,6 +45,17 @@ bool ContinueOneAnother(const std::vector<storm_files::StormFile>& files) {
     total += file.times.size();
   }
   return distinct.size() * 2 > total;
+}
+
+// Returns the files in groups that have the same fields.
+std::vector<std::vector<storm_files::StormFile>> ByFields(
+    std::vector<storm_files::StormFile> files) {
+  std::map<std::vector<physics::Hydrometeor>, std::vector<storm_files::StormFile>> groups;
+  for (storm_files::StormFile& file : files) groups[file.fields].push_back(std::move(file));
+  std::vector<std::vector<storm_files::StormFile>> list;
+  list.reserve(groups.size());
+  for (auto& [fields, group] : groups) list.push_back(std::move(group));
+  return list;
 }
 
 // Each member of an ensemble is a separate storm.
@@ -133,7 +145,15 @@ std::vector<std::vector<storm_files::StormFile>> FilesOfRuns(
   }
   std::vector<std::vector<storm_files::StormFile>> runs;
   runs.reserve(by_key.size());
-  for (auto& [key, run] : by_key) runs.push_back(std::move(run));
+  for (auto& [key, run] : by_key) {
+    // Files with the same times but other fields, such as a series for each hydrometeor, are
+    // separate runs. A file that only lacks a field is a part of its run.
+    if (ContinueOneAnother(run)) {
+      runs.push_back(std::move(run));
+    } else {
+      std::ranges::move(ByFields(std::move(run)), std::back_inserter(runs));
+    }
+  }
   return runs;
 }
 

@@ -164,7 +164,10 @@ absl::Status IsPartOfTime(const std::string& path, const fs::path& at,
   if (!search.describe_together) return absl::InvalidArgumentError(advice);
   const absl::Status alone = search.describe_together({at.string()}).status();
   return absl::InvalidArgumentError(
-      alone.ok() ? advice : absl::StrCat(advice, ". Alone it lacks this: ", alone.message()));
+      alone.ok()
+          ? advice
+          : absl::StrCat(alone.message(), ". If the file is one of several files of a time, ",
+                         "give the folder with all of them"));
 }
 
 // Appends the storms of one file, or the one that the path names.

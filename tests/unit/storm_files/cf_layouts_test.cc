@@ -171,6 +171,7 @@ TEST_F(CfLayouts, LayersBelowTheGroundAreEmpty) {
   file.coordinates[2] = {"z", {1000.0, 900.0, 800.0, 700.0}, {{"units", "hPa"}}, {}};
   file.variables[0].value = [](const Index&) { return 1e-4; };
   ExpectError(file, "holds pressures");
+  ExpectError(file, "pressure levels need the geopotential height of each level");
   file.variables.push_back(Terrain({"y", "x"}));
   file.variables.back().value = [](const Index& at) { return at.at("x") < 3 ? 0.0 : 1000.0; };
   file.variables.push_back(Values("zg", {"z", "y", "x"}, "m", [](const Index& at) {
@@ -180,6 +181,43 @@ TEST_F(CfLayouts, LayersBelowTheGroundAreEmpty) {
   ASSERT_TRUE(fields.ok()) << fields.status();
   EXPECT_NEAR((*fields)->fields[0].statistics.maximum_water_path_kg_per_m2, 0.2, 1e-6);
   EXPECT_NEAR((*fields)->fields[0].statistics.mean_water_path_kg_per_m2, 0.15, 1e-6);
+}
+
+// In air of 287 K at rest, heights rise by R T / g ln(p / p_above) from level to level.
+TEST_F(CfLayouts, HeightsOfPressureLevelsFollowFromTheGround) {
+  constexpr double kScale_m = 287.06 * 287.0 / 9.80665;
+  SyntheticCf file = Cloud();
+  // The pressure of the ground is that at 500 m, if it is 1000 hPa at sea level.
+  const double ground_Pa = 1e5 * std::exp(-500.0 / kScale_m);
+  for (const bool upwards : {true, false}) {
+    file = Cloud();
+    std::vector<double> levels_hPa = {1000.0, 900.0, 800.0, 700.0};
+    if (!upwards) std::ranges::reverse(levels_hPa);
+    file.coordinates[2] = {"z", levels_hPa, {{"units", "hPa"}}, {}};
+    const auto level = [upwards](const Index& at) { return upwards ? at.at("z") : 3 - at.at("z"); };
+    file.variables[0].value = [level](const Index& at) { return level(at) == 1 ? 1e-4 : 0.0; };
+    file.variables.push_back(Terrain({"y", "x"}));
+    file.variables.back().value = [](const Index&) { return 500.0; };
+    file.variables.push_back(
+        Values("ps", {"y", "x"}, "hPa", [=](const Index&) { return ground_Pa / 100.0; }));
+    ExpectError(file, "lacks air_temperature");
+    // The level below the ground has no temperature.
+    file.variables.push_back(Values("t", {"z", "y", "x"}, "K", [level](const Index& at) {
+      return level(at) == 0 ? std::nan("") : 287.0;
+    }));
+    const auto fields = Read(file);
+    ASSERT_TRUE(fields.ok()) << fields.status();
+    // The layer of 900 hPa reaches from the ground half-way up to 800 hPa.
+    const double top_m = 0.5 * kScale_m * (std::log(1000.0 / 900.0) + std::log(1000.0 / 800.0));
+    EXPECT_NEAR((*fields)->fields[0].statistics.maximum_water_path_kg_per_m2,
+                1e-4 * (top_m - 500.0), 1e-4);
+    EXPECT_NEAR((*fields)->grid.low_corner_m.z, 500.0, 1.0);
+    EXPECT_THAT(info_.assumptions, Contains(HasSubstr("The heights of the levels z follow from "
+                                                      "temperature and humidity")));
+  }
+  // Without the pressure of the ground, the error says what is needed.
+  std::erase_if(file.variables, [](const CfContent& variable) { return variable.name == "ps"; });
+  ExpectError(file, "surface_altitude and surface_air_pressure");
 }
 
 // The Unified Model's layers: z = a + b * orography.
@@ -213,6 +251,51 @@ TEST_F(CfLayouts, HybridHeightsFollowFromTheirFormula) {
   EXPECT_GT((*high_fields)->grid.low_corner_m.z, 4900.0);
   file.variables.erase(file.variables.begin() + 1);
   ExpectError(file, "needs the formula term orog (orog)");
+}
+
+// iris writes the Unified Model's terms also without formula_terms.
+TEST_F(CfLayouts, HybridHeightsFollowFromTheNamesOfIris) {
+  SyntheticCf file = Cloud(2);
+  file.coordinates[2] = {
+      "z", {1.0, 2.0}, {{"units", "1"}, {"standard_name", "model_level_number"}}, {}};
+  ExpectError(file, "the Unified Model writes level_height, sigma and surface_altitude");
+  file.variables.push_back(Values("level_height", {"z"}, "m", [](const Index& at) {
+    return at.at("z") == 0 ? 500.0 : 1500.0;
+  }));
+  file.variables.push_back(
+      Values("sigma", {"z"}, "1", [](const Index& at) { return at.at("z") == 0 ? 0.75 : 0.25; }));
+  ExpectError(file, "needs the formula term orog (surface_altitude)");
+  file.variables.push_back(Terrain({"y", "x"}));
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  // The same as with formula_terms, above.
+  EXPECT_NEAR((*fields)->fields[0].statistics.maximum_water_path_kg_per_m2, 1e-4 * 1000.0, 1e-6);
+  EXPECT_NEAR((*fields)->fields[0].statistics.mean_water_path_kg_per_m2,
+              1e-4 * (1000.0 - 0.5 * 265.0), 1e-6);
+  EXPECT_THAT(info_.assumptions, Contains(HasSubstr("follow from level_height and the terrain")));
+  // Without units, the terms could be anything.
+  for (CfContent& variable : file.variables) {
+    if (variable.name == "level_height") variable.attributes.erase("units");
+  }
+  ExpectError(file, "holds numbers of levels");
+}
+
+// The error begins with its cause. A file of numbered levels may need another file with heights.
+TEST_F(CfLayouts, TheCauseOfARefusalComesFirst) {
+  SyntheticCf file = Cloud(2);
+  file.coordinates[2] = {
+      "lev", {0.9, 0.8}, {{"units", "1"}, {"standard_name", "atmosphere_sigma_coordinate"}}, {}};
+  file.variables[0].dimensions = {"lev", "y", "x"};
+  file.variables[0].value = [](const Index&) { return 1e-4; };
+  const auto fields = Read(file);
+  ASSERT_FALSE(fields.ok());
+  const std::string message(fields.status().message());
+  EXPECT_THAT(message, ::testing::StartsWith(
+                           path_ + ": the vertical coordinate lev holds values of "
+                                   "atmosphere_sigma_coordinate without usable formula_terms"));
+  EXPECT_THAT(message, ::testing::Not(HasSubstr("COSMO")));
+  EXPECT_THAT(message, ::testing::EndsWith("If the file is one of several files of a time, give "
+                                           "the folder with all of them"));
 }
 
 // In air of 280 K at rest, a layer is R T / g ln(p_below / p_above) thick.

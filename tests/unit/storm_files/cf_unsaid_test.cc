@@ -112,6 +112,55 @@ TEST_F(CfUnsaid, NumbersOfColumnsAreNoPlaces) {
   }
 }
 
+// Returns the file with these values and attributes on its height axis.
+SyntheticCf WithHeights(const std::vector<double>& values, Texts attributes) {
+  SyntheticCf file = Water(values.size());
+  file.coordinates[2].values = values;
+  file.coordinates[2].attributes = std::move(attributes);
+  file.coordinates[2].faces = {};
+  return file;
+}
+
+TEST_F(CfUnsaid, NumbersOfLayersAreNoHeights) {
+  for (const double first : {0.0, 1.0, 7.0}) {
+    std::vector<double> numbers;
+    for (int i = 0; i < 200; ++i) numbers.push_back(first + i);
+    ExpectError(WithHeights(numbers, {}), "the coordinate z has no units, and its values");
+    std::ranges::reverse(numbers);
+    ExpectError(WithHeights(numbers, {}), "number the levels");
+  }
+  // With units, or with other values, they are heights.
+  EXPECT_NE(MustRead(WithHeights({1.0, 2.0, 3.0}, {{"units", "m"}})), nullptr);
+  EXPECT_NE(MustRead(WithHeights({25.0, 75.0, 125.0}, {})), nullptr);
+  EXPECT_THAT(info_.assumptions, Contains("z has no units; it is taken to be in m."));
+  // Heights in km, or every second level.
+  for (const std::vector<double>& values :
+       {std::vector{0.25, 0.75, 1.25}, std::vector{1.0, 3.0, 5.0}}) {
+    ExpectError(WithHeights(values, {}),
+                "the coordinate z has no units, and in m its layers would be only");
+  }
+  ExpectError(WithHeights({100.0, 200.0, 300.0}, {{"long_name", "index"}}),
+              "holds numbers of levels");
+}
+
+TEST_F(CfUnsaid, HeightsFarAboveTheWeatherAreRefused) {
+  const std::vector<double> heights = {250.0, 750.0, 1250.0};
+  EXPECT_NE(MustRead(WithHeights(heights, {{"units", "m"}})), nullptr);
+  ExpectError(WithHeights(heights, {{"units", "km"}}),
+              "the coordinate z (units 'km') reaches up to 1500 km, far above the weather");
+  ExpectError(WithHeights({-1250.0, -750.0, -250.0}, {{"units", "m"}}),
+              "the coordinate z has no value above 0, so its layers lie 0 to 1500 m below sea");
+  // The same holds for an array of heights.
+  SyntheticCf file = WithHeights({1.0, 2.0, 3.0}, {{"units", "1"}});
+  file.variables.push_back({"zg",
+                            {"z", "y", "x"},
+                            {{"units", "m"}, {"standard_name", "geopotential_height"}},
+                            [heights](const Index& at) { return heights[at.at("z")]; }});
+  EXPECT_NE(MustRead(file), nullptr);
+  file.variables.back().attributes["units"] = "km";
+  ExpectError(file, "the heights zg of record 0 reach up to 1500 km, far above the weather");
+}
+
 // If rows run from north to south although their numbers rise, the reader reverses their order.
 TEST_F(CfUnsaid, NumbersOfRowsDoNotSayWhereNorthIs) {
   SyntheticCf file = Water();
