@@ -14,6 +14,7 @@
 #include "storm_files/cf_air.h"
 #include "storm_files/cf_cells.h"
 #include "storm_files/cf_checks.h"
+#include "storm_files/cf_members.h"
 #include "storm_files/cf_models.h"
 #include "storm_files/cf_times.h"
 #include "storm_files/units.h"
@@ -357,6 +358,9 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root,
                      ": no variable on x, y and z is a hydrometeor (by standard name, e.g. "
                      "mass_concentration_of_cloud_liquid_water_in_air) or 'extinction' (m-1); "
                      "add one"));
+  }
+  if (const CfDimensions& on = metadata.dimensions; !on.member.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(metadata.members, MemberNames(file, on.member, on.members));
   }
   THUNDERHEAD_RETURN_IF_ERROR(ReadColumns(file, &metadata));
   metadata.terrain = FindTerrain(file, metadata.dimensions, metadata.assumptions);

@@ -77,6 +77,7 @@ std::optional<CfVariable> FindPlaceVariable(const netcdf::NetcdfFile& file,
     const auto variable = Arrange(file, name, on);
     if (!known || !variable.ok()) continue;
     if (variable->places[0] < 0 || variable->places[1] < 0 || variable->places[2] >= 0) continue;
+    if (variable->member >= 0) continue;  // all members have the same columns
     if (variable->more != std::array<int, 3>{0, 0, 0}) continue;
     const bool is_listed = std::ranges::find(listed, name) != listed.end();
     if (!found.has_value() || is_listed) found = *variable;
