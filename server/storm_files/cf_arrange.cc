@@ -9,6 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "absl/strings/str_split.h"
 #include "base/status.h"
+#include "storm_files/cf_members.h"
 #include "storm_files/units.h"
 
 namespace thunderhead::storm_files {
@@ -187,6 +188,11 @@ absl::StatusOr<CfDimensions> FindDimensions(const netcdf::NetcdfFile& file,
   }
   for (const std::string& name : unknown) {
     if (length_of(name) == 1) continue;
+    if (found.member.empty() && IsMemberDimension(file, name)) {
+      found.member = name;
+      found.members = length_of(name);
+      continue;
+    }
     return ExtraDimension(file, field, name, length_of(name), !(has[0] && has[1] && has[2]));
   }
   if (has[0] && has[1] && has[2]) return found;
@@ -208,6 +214,10 @@ absl::StatusOr<CfVariable> Arrange(const netcdf::NetcdfFile& file, const std::st
     const auto place = static_cast<int>(i);
     if (!on.time.empty() && names[i] == on.time) {
       arranged.time = place;
+      continue;
+    }
+    if (!on.member.empty() && names[i] == on.member) {
+      arranged.member = place;
       continue;
     }
     const auto axis =
@@ -255,6 +265,7 @@ absl::StatusOr<std::vector<float>> ReadOnAxes(const netcdf::NetcdfFile& file,
     start[static_cast<std::size_t>(variable.places[2])] = variable.first_level;
   }
   if (variable.time >= 0) start[static_cast<std::size_t>(variable.time)] = record;
+  if (variable.member >= 0) start[static_cast<std::size_t>(variable.member)] = order.member;
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> read,
                                file.ReadPart(variable.name, start, count));
   // Strides of x, y and z in the array that was read. A reversed axis is traversed from its end.

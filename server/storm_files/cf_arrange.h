@@ -20,6 +20,7 @@ struct CfVariable {
   // Its values are then the same all along that axis.
   std::array<int, 3> places = {-1, -1, -1};  // x, y, z
   int time = -1;
+  int member = -1;  // the same for the members of an ensemble
   int dimensions = 0;
   // 1 along an axis on which the variable has a value for each face between cells instead of each
   // cell.
@@ -41,6 +42,8 @@ struct CfDimension {
 struct CfDimensions {
   std::array<CfDimension, 3> axes;  // x, y, z
   std::string time;                 // empty if the fields have no time
+  std::string member;               // of an ensemble's members; empty if there are none
+  std::size_t members = 1;          // the length of that dimension
   // True if the columns are the cells of an unstructured grid, along one dimension. That dimension
   // is then both x and y, and y has the length 1.
   bool unstructured = false;
@@ -55,14 +58,15 @@ absl::StatusOr<CfDimensions> FindDimensions(const netcdf::NetcdfFile& file,
 absl::StatusOr<CfVariable> Arrange(const netcdf::NetcdfFile& file, const std::string& variable,
                                    const CfDimensions& on);
 
-// The number of cells and the direction of the fields' axes.
+// The number of cells and the direction of the fields' axes, and the member that is read.
 struct CfOrder {
   std::array<std::size_t, 3> cells = {1, 1, 1};
   std::array<bool, 3> reversed = {false, false, false};  // the axis runs west, south or down
+  std::size_t member = 0;                                // the index along CfDimensions::member
 };
 
-// Reads one record of a variable. In the result x runs fastest (eastwards), then y (northwards),
-// then z (upwards). Axes on which the variable has values on faces are longer by 1.
+// Reads one record of a variable, of one member. In the result x runs fastest (eastwards), then y
+// (northwards), then z (upwards). Axes on which the variable has values on faces are longer by 1.
 absl::StatusOr<std::vector<float>> ReadOnAxes(const netcdf::NetcdfFile& file,
                                               const CfVariable& variable, const CfOrder& order,
                                               std::size_t record);

@@ -18,7 +18,7 @@ inline constexpr double kHighestTop_m = 200'000.0;
 // The quantity along an axis.
 enum class CfAxisUnit {
   kMetres,
-  kDegrees,  // longitude, latitude, or an angle of a rotated grid
+  kDegrees,  // any angle: of the Earth, of a rotated grid or of a satellite (cf_angles.h)
   kNone,     // the axis has no coordinate that is a place; its faces are 0, 1, 2, ...
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -82,7 +83,7 @@ class CfFormat final : public StormFormat {
   absl::StatusOr<StormFile> Describe(const UnknownFile& unknown) const override {
     THUNDERHEAD_RETURN_IF_ERROR(unknown.Netcdf().status());
     absl::StatusOr<CfMetadata> metadata = ReadCfMetadata(*unknown.Netcdf());
-    if (metadata.ok()) return Described(*std::move(metadata));
+    if (metadata.ok()) return MembersOf(*std::move(metadata));
     if (std::optional<StormFile> part = PartOfCf(*unknown.Netcdf())) return *std::move(part);
     return metadata.status();
   }
@@ -108,10 +109,25 @@ class CfFormat final : public StormFormat {
           absl::StrCat(files.front().Path(), ": has heights but no fields; give it with a time"));
     }
     THUNDERHEAD_ASSIGN_OR_RETURN(CfMetadata metadata, ReadCfMetadata(*fields, heights));
-    return Described(std::move(metadata));
+    return MembersOf(std::move(metadata));
   }
 
  private:
+  // Describes the file's storms, one for each member of an ensemble.
+  static StormFile MembersOf(CfMetadata metadata) {
+    if (metadata.members.empty()) return Described(std::move(metadata));
+    std::vector<StormFile> storms;
+    for (metadata.order.member = 0; metadata.order.member < metadata.members.size();
+         ++metadata.order.member) {
+      storms.push_back(Described(metadata));
+      storms.back().member = metadata.members[metadata.order.member];
+    }
+    StormFile first = std::move(storms.front());
+    first.others.assign(std::make_move_iterator(storms.begin() + 1),
+                        std::make_move_iterator(storms.end()));
+    return first;
+  }
+
   static StormFile Described(CfMetadata metadata) {
     StormFile file;
     file.path = metadata.path;

@@ -58,6 +58,7 @@ std::optional<CfDimension> LevelsOf(const netcdf::NetcdfFile& file, const std::s
   for (std::size_t i = 0; i < names->size(); ++i) {
     const std::string& name = (*names)[i];
     if (name == on.axes[0].name || name == on.axes[1].name || name == on.time) continue;
+    if (name == on.member) continue;
     if ((*shape)[i] == 1 && name != on.axes[2].name) continue;
     if (found.has_value()) return std::nullopt;
     found = CfDimension{name, file.HasVariable(name) ? name : "", (*shape)[i]};

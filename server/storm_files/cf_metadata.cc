@@ -14,6 +14,7 @@
 #include "storm_files/cf_air.h"
 #include "storm_files/cf_cells.h"
 #include "storm_files/cf_checks.h"
+#include "storm_files/cf_members.h"
 #include "storm_files/cf_models.h"
 #include "storm_files/cf_other_water.h"
 #include "storm_files/cf_times.h"
@@ -416,6 +417,9 @@ absl::StatusOr<CfMetadata> ReadCfMetadata(const netcdf::NetcdfFile& root,
   const std::vector<CfDescription> variables = Describe(file);
   THUNDERHEAD_RETURN_IF_ERROR(FindFields(file, variables, &metadata));
   if (metadata.fields.empty()) return NoFields(file, variables);
+  if (const CfDimensions& on = metadata.dimensions; !on.member.empty()) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(metadata.members, MemberNames(file, on.member, on.members));
+  }
   THUNDERHEAD_RETURN_IF_ERROR(ReadColumns(file, &metadata));
   metadata.terrain = FindTerrain(file, metadata.dimensions, metadata.assumptions);
   if (heights_file != nullptr) {

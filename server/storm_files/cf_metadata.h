@@ -49,6 +49,8 @@ struct CfMetadata {
   std::vector<std::shared_ptr<const CfPlaces>> moved;
   CfHeights heights;
   CfOrder order;
+  // The names of the ensemble's members; empty if the fields have none. `order` says which is read.
+  std::vector<std::string> members;
   std::vector<absl::Time> times;             // at least one; in year 1 if the file gives no dates
   std::optional<absl::Time> run_start;       // when the model run began, if the file says so
   Calendar calendar = Calendar::kGregorian;  // of the times

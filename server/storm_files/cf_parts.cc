@@ -1,11 +1,14 @@
 #include "storm_files/cf_parts.h"
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "storm_files/cf_arrange.h"
 #include "storm_files/cf_height_array.h"
+#include "storm_files/cf_members.h"
 #include "storm_files/cf_metadata.h"
 #include "storm_files/cf_times.h"
 #include "storm_files/units.h"
@@ -42,6 +45,22 @@ bool AreNumbered(const netcdf::NetcdfFile& file, const CfDimension& levels) {
   return levels.coordinate.empty() || CountsLevels(DescribeCf(file, levels.coordinate));
 }
 
+// Returns the part, or one for each member of an ensemble.
+std::optional<StormFile> WithMembers(const netcdf::NetcdfFile& file, const CfDimensions& dimensions,
+                                     StormFile part) {
+  if (dimensions.member.empty()) return part;
+  const auto names = MemberNames(file, dimensions.member, dimensions.members);
+  if (!names.ok()) return std::nullopt;
+  std::vector<StormFile> others;
+  for (std::size_t member = 1; member < names->size(); ++member) {
+    others.push_back(part);
+    others.back().member = (*names)[member];
+  }
+  part.member = names->front();
+  part.others = std::move(others);
+  return part;
+}
+
 }  // namespace
 
 bool HasOnlyHeights(const netcdf::NetcdfFile& file) {
@@ -67,7 +86,7 @@ std::optional<StormFile> PartOfCf(const netcdf::NetcdfFile& file) {
   if (!times.ok() || times->times.size() != 1) return std::nullopt;
   part.times = times->times;
   part.part = {ColumnsOf(file, field->second), false};
-  return part;
+  return WithMembers(file, field->second, std::move(part));
 }
 
 }  // namespace thunderhead::storm_files

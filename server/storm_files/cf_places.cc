@@ -7,7 +7,6 @@
 #include <numbers>
 #include <utility>
 
-#include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -15,6 +14,7 @@
 #include "base/status.h"
 #include "glm/trigonometric.hpp"
 #include "glm/vec2.hpp"
+#include "storm_files/cf_angles.h"
 #include "storm_files/cf_mapping.h"
 #include "storm_files/cf_origin.h"
 #include "storm_files/grid_mapping.h"
@@ -77,6 +77,7 @@ std::optional<CfVariable> FindPlaceVariable(const netcdf::NetcdfFile& file,
     const auto variable = Arrange(file, name, on);
     if (!known || !variable.ok()) continue;
     if (variable->places[0] < 0 || variable->places[1] < 0 || variable->places[2] >= 0) continue;
+    if (variable->member >= 0) continue;  // all members have the same columns
     if (variable->more != std::array<int, 3>{0, 0, 0}) continue;
     const bool is_listed = std::ranges::find(listed, name) != listed.end();
     if (!found.has_value() || is_listed) found = *variable;
@@ -164,42 +165,40 @@ absl::StatusOr<ColumnPlaces> PlacesInDegrees(const netcdf::NetcdfFile& file,
   return places;
 }
 
-// Returns whether the axes are latitudes and longitudes of the Earth. Those of a rotated pole are
-// named so, or the field's grid mapping says so.
-bool IsEarthDegrees(const netcdf::NetcdfFile& file, const std::string& field, const CfAxis& x,
-                    const CfAxis& y) {
-  const CfMapping mapping = MappingOf(file, field, x.coordinate);
-  const bool is_mapped_otherwise =
-      mapping.exists &&
-      absl::StartsWith(file.TextOrEmpty(mapping.name, "grid_mapping_name"), "rotated_");
-  const auto rotated = [&](const CfAxis& axis) {
-    const std::string name = absl::AsciiStrToLower(axis.coordinate);
-    return is_mapped_otherwise || name == "rlon" || name == "rlat" ||
-           absl::StartsWith(file.TextOrEmpty(axis.coordinate, "standard_name"), "grid_");
-  };
-  return x.unit == CfAxisUnit::kDegrees && y.unit == CfAxisUnit::kDegrees && !rotated(x) &&
-         !rotated(y);
-}
-
-// Places the columns by the field's grid mapping.
+// Reads the field's grid mapping. Axes of angles fit a rotated grid and scanning angles only, and
+// axes of lengths all other maps.
 absl::StatusOr<GridMapping> ReadMapping(const netcdf::NetcdfFile& file, const CfMapping& from,
                                         const CfAxis& x, const CfAxis& y) {
+  const bool in_degrees = x.unit == CfAxisUnit::kDegrees;
   MappedGrid grid;
-  if (x.unit == CfAxisUnit::kDegrees) {
+  if (in_degrees) {
     grid.middle = {x.Middle(), y.Middle()};
   } else {
     grid.unit_m = x.units_per_written;
   }
   auto mapping = ReadGridMapping(from.attributes, grid);
-  if (mapping.ok()) return mapping;
-  return BadMapping(file, from, mapping.status());
+  if (!mapping.ok()) return BadMapping(file, from, mapping.status());
+  const bool of_lengths = mapping->axes == GridAxes::kMetres;
+  const bool of_rotated_degrees = mapping->axes == GridAxes::kRotatedDegrees;
+  if (in_degrees ? !of_lengths : !of_rotated_degrees) return mapping;
+  return BadMapping(
+      file, from,
+      absl::InvalidArgumentError(absl::StrCat(
+          "needs coordinates ", in_degrees ? "in m or km" : "in degrees", ", and the units of ",
+          x.coordinate, " are '", file.TextOrEmpty(x.coordinate, "units"), "'; correct them")));
+}
+
+// Returns the number of a mapping's units of x and y in one unit of the axes.
+double UnitsOfMapping(const GridMapping& mapping, const CfAxis& axis) {
+  if (axis.unit == CfAxisUnit::kMetres) return 1.0 / axis.units_per_written;
+  return mapping.axes == GridAxes::kScanAngles ? std::numbers::pi / 180.0 : 1.0;
 }
 
 // Returns the columns of a grid that is even on a map.
 ColumnPlaces PlacesOnMap(const GridMapping& mapping, const CfAxis& x, const CfAxis& y) {
-  const double written = x.unit == CfAxisUnit::kDegrees ? 1.0 : x.units_per_written;
-  const glm::dvec2 low = glm::dvec2(x.faces.front(), y.faces.front()) / written;
-  const glm::dvec2 step = glm::dvec2(x.Spacing(), y.Spacing()) / written;
+  const double units = UnitsOfMapping(mapping, x);
+  const glm::dvec2 low = glm::dvec2(x.faces.front(), y.faces.front()) * units;
+  const glm::dvec2 step = glm::dvec2(x.Spacing(), y.Spacing()) * units;
   ColumnPlaces places;
   places.columns = {x.cells, y.cells};
   places.projection = mapping.projection;
@@ -266,8 +265,35 @@ ColumnPlaces PlacesOfArrays(const PlaceArrays& arrays) {
   return places;
 }
 
+// Compares columns that are placed by their axes with their longitudes and latitudes. Returns
+// whether they agree. `from` is the grid mapping of the axes, and `source` names what placed them.
+bool AgreesWithArrays(const ColumnPlaces& by_axes, const PlaceArrays& arrays, const CfMapping& from,
+                      const std::string& source, CfPlaces& places) {
+  // The arrays may be rounded to single precision.
+  constexpr double kRounding_m = 3.0;
+  const bool in_degrees = absl::StartsWith(by_axes.projection, "+proj=longlat");
+  const double unit_m = in_degrees ? kMetresPerDegree : 1.0;
+  const double allowed_m = kRounding_m + 0.1 * unit_m * std::min(by_axes.step.x, by_axes.step.y);
+  const auto apart_m = Disagreement_m(by_axes, arrays, 0.0);
+  if (apart_m.has_value() && *apart_m <= allowed_m) return true;
+  // CF does not say whether the longitudes of all columns count from the map's prime meridian.
+  const double meridian_deg = PrimeMeridianOf(from.attributes).value_or(0.0);
+  const auto shifted_m = Disagreement_m(by_axes, arrays, meridian_deg);
+  if (shifted_m.has_value() && *shifted_m <= allowed_m) {
+    places.assumptions.push_back(MeridianSentence(arrays.longitude, from, meridian_deg));
+    return true;
+  }
+  places.assumptions.push_back(
+      absl::StrCat("The places are those of the longitudes and latitudes; ", source,
+                   apart_m.has_value()
+                       ? absl::StrFormat(" put columns up to %.2f km from them.", 1e-3 * *apart_m)
+                       : " put columns beyond the map."));
+  return false;
+}
+
 // Returns the columns by the field's grid mapping, or nothing if it has none that can be used.
-// Without `arrays`, a mapping that cannot be used is an error.
+// Without `arrays`, a mapping that cannot be used is an error. If the mapping disagrees with
+// `arrays`, they are preferred, because they give the place of each column directly.
 absl::StatusOr<std::optional<ColumnPlaces>> PlacesByMapping(
     const netcdf::NetcdfFile& file, const std::string& field, const CfAxis& x, const CfAxis& y,
     const std::optional<PlaceArrays>& arrays, CfPlaces& places) {
@@ -283,27 +309,24 @@ absl::StatusOr<std::optional<ColumnPlaces>> PlacesByMapping(
                      name, " cannot be used."));
     return std::optional<ColumnPlaces>();
   }
+  if (mapping->axes == GridAxes::kDegrees) {  // of other coordinates than x and y
+    if (!arrays.has_value()) {
+      places.assumptions.push_back(absl::StrCat("The grid mapping ", name,
+                                                " is one of longitudes and latitudes, so it does "
+                                                "not place ",
+                                                x.coordinate, " and ", y.coordinate, "."));
+    }
+    return std::optional<ColumnPlaces>();
+  }
   const ColumnPlaces on_map = PlacesOnMap(*mapping, x, y);
+  const std::size_t said = places.assumptions.size();
   if (arrays.has_value()) {
-    // The arrays give the place of each column directly, so they are used if the mapping disagrees
-    // with them. They may be rounded to single precision.
-    constexpr double kRounding_m = 3.0;
-    const double allowed_m = kRounding_m + 0.1 * std::min(on_map.step.x, on_map.step.y);
-    const auto apart_m = Disagreement_m(on_map, *arrays, 0.0);
-    if (!apart_m.has_value() || *apart_m > allowed_m) {
-      // CF does not say whether the longitudes of all columns count from the map's prime meridian.
-      const double meridian_deg = PrimeMeridianOf(from.attributes).value_or(0.0);
-      const auto shifted_m = Disagreement_m(on_map, *arrays, meridian_deg);
-      if (shifted_m.has_value() && *shifted_m <= allowed_m) {
-        places.assumptions.push_back(MeridianSentence(arrays->longitude, from, meridian_deg));
-        return std::optional(on_map);
-      }
-      places.assumptions.push_back(absl::StrFormat(
-          "The places are those of the longitudes and latitudes; the grid mapping %s puts columns "
-          "up to %.2f km from them.",
-          name, 1e-3 * apart_m.value_or(0.0)));
+    const std::string source = absl::StrCat("the coordinates ", x.coordinate, " and ", y.coordinate,
+                                            " with the grid mapping ", name);
+    if (!AgreesWithArrays(on_map, *arrays, from, source, places)) {
       return std::optional<ColumnPlaces>();
     }
+    if (places.assumptions.size() > said) return std::optional(on_map);
   }
   for (const std::string& sentence : mapping->assumptions) places.assumptions.push_back(sentence);
   if (const double meridian_deg = PrimeMeridianOf(from.attributes).value_or(0.0);
@@ -313,6 +336,27 @@ absl::StatusOr<std::optional<ColumnPlaces>> PlacesByMapping(
   return std::optional(on_map);
 }
 
+// Returns the columns by axes of longitude and latitude, or nothing if `arrays` disagree with them.
+absl::StatusOr<std::optional<ColumnPlaces>> PlacesByAxes(const netcdf::NetcdfFile& file,
+                                                         const std::string& field, const CfAxis& x,
+                                                         const CfAxis& y,
+                                                         const std::optional<PlaceArrays>& arrays,
+                                                         CfPlaces& places) {
+  CfPlaces described;
+  THUNDERHEAD_ASSIGN_OR_RETURN(const ColumnPlaces columns,
+                               PlacesInDegrees(file, field, x, y, described));
+  if (arrays.has_value()) {
+    const std::string source =
+        absl::StrCat("the coordinates ", x.coordinate, " and ", y.coordinate);
+    const CfMapping from = MappingOf(file, field, x.coordinate);
+    if (!AgreesWithArrays(columns, *arrays, from, source, places)) {
+      return std::optional<ColumnPlaces>();
+    }
+  }
+  std::ranges::copy(described.assumptions, std::back_inserter(places.assumptions));
+  return std::optional(columns);
+}
+
 // Sets the distances between columns whose place on Earth is not known.
 absl::Status PlaceNowhere(const netcdf::NetcdfFile& file, const CfAxis& x, const CfAxis& y,
                           CfPlaces& places) {
@@ -320,13 +364,10 @@ absl::Status PlaceNowhere(const netcdf::NetcdfFile& file, const CfAxis& x, const
   places.dx_m = x.Spacing();
   places.dy_m = y.Spacing();
   if (x.unit == CfAxisUnit::kMetres) return absl::OkStatus();
-  // Degrees of a rotated grid are as long as those of the Earth.
+  THUNDERHEAD_RETURN_IF_ERROR(CheckAnglesHaveLength(file, x, y));
   places.dx_m *= kMetresPerDegree * std::cos(glm::radians(y.Middle()));
   places.dy_m *= kMetresPerDegree;
-  places.assumptions.push_back(absl::StrCat(
-      "The place is not known, because ", x.coordinate, " and ", y.coordinate,
-      " are those of a rotated grid, and the file has no grid mapping and no longitudes and "
-      "latitudes."));
+  places.assumptions.push_back(WhyAnglesAreNoPlace(file, x, y));
   return absl::OkStatus();
 }
 
@@ -410,31 +451,49 @@ absl::Status CheckSameUnits(const netcdf::NetcdfFile& file, const CfAxis& x, con
                    " are not in the same kind of unit; both need metres, or both degrees"));
 }
 
+// Returns the longitudes and latitudes of all columns. Sets the directions of axes without
+// coordinates. If the axes are longitudes and latitudes themselves (`on_earth`), arrays that cannot
+// be used are left out, and an assumption says so.
+absl::StatusOr<std::optional<PlaceArrays>> ArraysWithAxes(const netcdf::NetcdfFile& file,
+                                                          const std::string& field,
+                                                          const CfDimensions& dimensions,
+                                                          std::size_t record, bool on_earth,
+                                                          CfAxis& x, CfAxis& y, CfPlaces& places) {
+  // Arrays on a single row or column do not give its width.
+  if (on_earth && std::min(x.cells, y.cells) == 1) return std::optional<PlaceArrays>();
+  auto arrays = ReadPlaceArrays(file, field, dimensions, record, x, y);
+  if (!arrays.ok() && on_earth) {
+    places.assumptions.push_back(
+        absl::StrCat("The places are those of ", x.coordinate, " and ", y.coordinate,
+                     ", because the longitudes and latitudes of all columns cannot be used."));
+    return std::optional<PlaceArrays>();
+  }
+  if (arrays.ok() && arrays->has_value() && x.unit == CfAxisUnit::kNone) {
+    THUNDERHEAD_RETURN_IF_ERROR(OrientAxes(file, **arrays, x, y));
+    return ReadPlaceArrays(file, field, dimensions, record, x, y);
+  }
+  return arrays;
+}
+
 }  // namespace
 
 absl::StatusOr<CfPlaces> PlaceColumns(const netcdf::NetcdfFile& file, const std::string& field,
                                       const CfDimensions& dimensions, const CfPlacing& at,
                                       CfAxis& x, CfAxis& y) {
   CfPlaces places;
-  if (IsEarthDegrees(file, field, x, y)) {
-    THUNDERHEAD_ASSIGN_OR_RETURN(const ColumnPlaces columns,
-                                 PlacesInDegrees(file, field, x, y, places));
-    THUNDERHEAD_RETURN_IF_ERROR(MakeColumnsEven(file, columns, at, places));
-    NoteLostMapping(file, field, places);
-    return places;
-  }
   THUNDERHEAD_RETURN_IF_ERROR(CheckSameUnits(file, x, y));
-  THUNDERHEAD_ASSIGN_OR_RETURN(auto arrays,
-                               ReadPlaceArrays(file, field, dimensions, at.record, x, y));
-  if (arrays.has_value() && x.unit == CfAxisUnit::kNone) {
-    THUNDERHEAD_RETURN_IF_ERROR(OrientAxes(file, *arrays, x, y));
-    THUNDERHEAD_ASSIGN_OR_RETURN(arrays, ReadPlaceArrays(file, field, dimensions, at.record, x, y));
+  const bool on_earth = AreEarthAngles(file, field, x, y);
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      auto arrays, ArraysWithAxes(file, field, dimensions, at.record, on_earth, x, y, places));
+  if (arrays.has_value()) {
+    std::ranges::copy(arrays->meridian, std::back_inserter(places.assumptions));
   }
-  if (arrays.has_value()) places.assumptions = arrays->meridian;
   if (arrays.has_value() && arrays->has_time) {
     places.listed = std::make_shared<const ColumnPlaces>(PlacesOfArrays(*arrays));
   }
-  THUNDERHEAD_ASSIGN_OR_RETURN(auto columns, PlacesByMapping(file, field, x, y, arrays, places));
+  THUNDERHEAD_ASSIGN_OR_RETURN(auto columns,
+                               on_earth ? PlacesByAxes(file, field, x, y, arrays, places)
+                                        : PlacesByMapping(file, field, x, y, arrays, places));
   if (!arrays.has_value()) {
     if (auto local = PlacesByOrigin(file, x, y, columns, places); local.has_value()) {
       columns = std::move(local);

@@ -10,6 +10,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
@@ -53,6 +54,22 @@ const PROJ_FILE_API& NoFiles() {
       .rename_cbk = [](PJ_CONTEXT*, const char*, const char*, void*) { return 0; },
   };
   return files;
+}
+
+// Replaces a zone of UTM by its transverse Mercator projection, so that ProjectionText accepts it.
+void ExpandUtm(std::vector<std::string>& words) {
+  const auto kind = std::ranges::find(words, "+proj=utm");
+  if (kind == words.end()) return;
+  *kind = "+proj=tmerc +lat_0=0 +k_0=0.9996 +x_0=500000";
+  const bool is_south = std::erase(words, "+south") > 0;
+  words.push_back(is_south ? "+y_0=10000000" : "+y_0=0");
+  for (std::string& word : words) {
+    int zone = 0;
+    if (!absl::StartsWith(word, "+zone=") || !absl::SimpleAtoi(word.substr(6), &zone)) continue;
+    constexpr int kZoneWidth_deg = 6;
+    constexpr int kFirstMeridian_deg = -177;  // of zone 1
+    word = absl::StrCat("+lon_0=", kFirstMeridian_deg + kZoneWidth_deg * (zone - 1));
+  }
 }
 
 // Returns a context without files and network, whose errors are returned instead of printed.
@@ -269,6 +286,7 @@ absl::StatusOr<std::string> ProjectionOfWellKnownText(const std::string& text) {
     const auto named = PrimeMeridianNamed(std::string_view(word).substr(kMeridian.size()));
     if (named.has_value()) word = absl::StrFormat("+pm=%.12g", *named);
   }
+  ExpandUtm(words);
   std::string composed = absl::StrJoin(words, " ");
   THUNDERHEAD_RETURN_IF_ERROR(ProjectionText::Parse(composed).status());
   return composed;

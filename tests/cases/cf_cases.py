@@ -26,6 +26,11 @@ CHECKS = (
     ("57_bounds_and_corners", "inspect corners.nc", 0, ("middle  35.200 N -97.400 E",)),
     ("57_bounds_and_corners", "inspect layers.nc", 0, ("0.5844",)),
     ("62_lambert_cf", "inspect lambert.nc", 0, ("middle  35.200 N -97.400 E",)),
+    # The layers below the hill are empty. Without a hill the mean rain water path would be 1.422 kg/m2.
+    ("66_terrain_layout", "inspect control.nc", 0, ("1.308", "34.52"), ("1.422",)),
+    ("66_terrain_layout", "inspect xy.nc", 0, ("1.308", "34.52"), ("1.422",)),
+    ("66_terrain_layout", "inspect tyx.nc", 0, ("1.308", "34.52"), ("1.422",)),
+    ("66_terrain_layout", "inspect km.nc", 0, ("1.308", "34.52"), ("1.422",)),
     ("67_height_above_ground", "inspect height.nc --json", 0, ('"zM": 1500', "above the surface")),
     ("67_height_above_ground", "inspect altitude.nc --json", 0, ('"zM": 1500',)),
     ("69_times_not_rising", "inspect falling.nc", 0, ("2013-05-20T20:00:00Z", "2013-05-20T20:30:00Z", "do not rise")),

@@ -372,13 +372,13 @@ TEST_F(CfLayouts, BoundsTakePrecedenceOverCoordinates) {
 // After the test has followed the advice in the error message, the file must be readable.
 TEST_F(CfLayouts, AnotherDimensionIsRefusedWithARemedyThatWorks) {
   SyntheticCf file = Cloud();
-  SyntheticCf members = file;
-  members.variables[0].dimensions.insert(members.variables[0].dimensions.begin(), "member");
-  members.coordinates.push_back({"member", {0.0, 1.0, 2.0}, {}, {}});
-  ExpectError(members, "has a dimension member of 3 in addition to x, y, z and time");
-  ExpectError(members, "for example with ncks -d member,0 in.nc out.nc");
-  members.coordinates.back().values.resize(1);
-  EXPECT_TRUE(Read(members).ok()) << Read(members).status();
+  SyntheticCf scenarios = file;
+  scenarios.variables[0].dimensions.insert(scenarios.variables[0].dimensions.begin(), "scenario");
+  scenarios.coordinates.push_back({"scenario", {0.0, 1.0, 2.0}, {}, {}});
+  ExpectError(scenarios, "has a dimension scenario of 3 in addition to x, y, z and time");
+  ExpectError(scenarios, "for example with ncks -d scenario,0 in.nc out.nc");
+  scenarios.coordinates.back().values.resize(1);
+  EXPECT_TRUE(Read(scenarios).ok()) << Read(scenarios).status();
   // The additional dimension may also be one of x, y and z under an unknown name.
   file.coordinates[2].name = "storey";
   file.coordinates[2].attributes.erase("axis");

@@ -558,9 +558,9 @@ TEST_F(CfReader, SaysWhatAFileLacks) {
   ExpectError(Water("qc", {}, 1e-3), "has no units");
   ExpectError(Water("lwc", {{"units", "kg m-3"}}, 0.8), "more than air can hold");
   file = Small();
-  file.coordinates.push_back({"member", {1.0, 2.0}, {}, {}});
-  file.variables[0].dimensions = {"member", "z", "y", "x"};
-  ExpectError(file, "member");
+  file.coordinates.push_back({"scenario", {1.0, 2.0}, {}, {}});
+  file.variables[0].dimensions = {"scenario", "z", "y", "x"};
+  ExpectError(file, "scenario");
   file = Small();
   file.coordinates[2].name = "q";
   file.variables[0].dimensions[0] = "q";

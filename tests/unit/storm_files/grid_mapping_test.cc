@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "absl/strings/str_cat.h"
 #include "glm/geometric.hpp"
 #include "glm/gtc/constants.hpp"
 #include "glm/trigonometric.hpp"
@@ -255,6 +256,24 @@ TEST(GridMappingTest, TheFigureOfTheEarthIsReadOrAssumedAloud) {
       read({{"earth_radius", Numbers{6.37e6}}, {"longitude_of_prime_meridian", Numbers{2.5}}})
           .projection,
       HasSubstr("+pm=2.5"));
+}
+
+// Snyder's example of zone 18 (page 269), and its mirror image south of the equator. PROJ writes
+// such a system as a zone, and not as a transverse Mercator projection.
+TEST(GridMappingTest, WellKnownTextMayBeOfAUtmZone) {
+  const auto zone = [](const std::string& letter, const std::string& false_northing) {
+    return absl::StrCat(
+        R"(PROJCS["UTM zone 18)", letter,
+        R"(",GEOGCS["unknown",DATUM["unknown",SPHEROID["Clarke 1866",6378206.4,294.978698213898]],)"
+        R"(PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],)"
+        R"(PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],)"
+        R"(PARAMETER["central_meridian",-75],PARAMETER["scale_factor",0.9996],)"
+        R"(PARAMETER["false_easting",500000],PARAMETER["false_northing",)",
+        false_northing, R"(],UNIT["metre",1]])");
+  };
+  ExpectSame(PlaceOf(Read({{"crs_wkt", zone("N", "0")}}), {627106.5, 4484124.4}), {40.5, -73.5});
+  ExpectSame(PlaceOf(Read({{"crs_wkt", zone("S", "10000000")}}), {627106.5, 1e7 - 4484124.4}),
+             {-40.5, -73.5});
 }
 
 TEST(GridMappingTest, WellKnownTextCountsOnlyWithoutAName) {
