@@ -7,6 +7,7 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/strip.h"
+#include "storm_files/date_time.h"
 #include "storm_files/units.h"
 
 namespace thunderhead::storm_files {
@@ -401,7 +402,7 @@ std::optional<CfDirection> DirectionOf(const CfDescription& coordinate) {
     return CfDirection::kZ;
   }
   if (IsOneOf(standard, {"time", "forecast_period"}) ||
-      absl::StrContains(coordinate.units, " since ")) {
+      absl::StrContains(WithSince(coordinate.units), " since ")) {
     return CfDirection::kTime;
   }
   if (IsEastwards(coordinate.units)) return CfDirection::kX;

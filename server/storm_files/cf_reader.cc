@@ -10,6 +10,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "netcdf/netcdf_file.h"
 #include "storm_files/grib_air.h"
@@ -44,6 +45,15 @@ class CfSource final : public LayerSource {
     domain_.heights_from = heights.name;
     domain_.ground_from =
         metadata_.terrain.has_value() ? metadata_.terrain->variable.name : std::string("origin_z");
+    std::vector<std::string> air;
+    for (const CfAirField& from : metadata_.air) {
+      if (from.air.variable == AirVariable::kVapour) {
+        domain_.vapour_from = from.variable.name;
+      } else {
+        air.push_back(from.variable.name);
+      }
+    }
+    domain_.air_from = absl::StrJoin(air, ", ");
     for (const CfField& from : metadata_.fields) {
       LayerField& field = domain_.fields.emplace_back();
       field.hydrometeor = from.quantity.hydrometeor;

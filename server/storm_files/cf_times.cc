@@ -110,7 +110,8 @@ struct CountedFrom {
   std::optional<WrittenDate> origin;  // nothing if the units have no "since"
 };
 
-absl::StatusOr<CountedFrom> ParseUnits(const std::string& units) {
+absl::StatusOr<CountedFrom> ParseUnits(const std::string& written) {
+  const std::string units = WithSince(written);
   const std::string lower = absl::AsciiStrToLower(units);
   constexpr std::string_view kSince = " since ";
   const std::size_t since = lower.find(std::string(kSince));
@@ -170,7 +171,7 @@ int SuitsAsTime(const netcdf::NetcdfFile& file, const std::string& name) {
   if (standard_name == "time") return 4;
   if (!standard_name.empty()) return 0;
   if (name == "valid_time") return 3;
-  const std::string units = absl::AsciiStrToLower(file.TextOrEmpty(name, "units"));
+  const std::string units = absl::AsciiStrToLower(WithSince(file.TextOrEmpty(name, "units")));
   const bool counts = absl::StrContains(units, " since ") || absl::StartsWith(units, "day as ");
   if (!counts) return 0;
   const std::string lower = absl::AsciiStrToLower(name);
@@ -447,7 +448,7 @@ absl::StatusOr<CfTimes> ReadCfTimes(const netcdf::NetcdfFile& file, const std::s
     units.resize(units.size() - kSinceStart.size());
   }
   CfTimes read;
-  if (!absl::StrContains(absl::AsciiStrToLower(units), " since ") &&
+  if (!absl::StrContains(absl::AsciiStrToLower(WithSince(units)), " since ") &&
       !absl::StrContains(units, " as %")) {
     if (const std::string origin = OriginOf(file, *name); !origin.empty() && !units.empty()) {
       units = absl::StrCat(units, " since ", origin);

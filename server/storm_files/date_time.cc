@@ -182,9 +182,23 @@ absl::Time StartWithoutDate() {
   return absl::FromCivil(absl::CivilSecond(1, 1, 1), absl::UTCTimeZone());
 }
 
+std::string WithSince(std::string_view units) {
+  const std::string text(units);
+  const std::string lower = absl::AsciiStrToLower(text);
+  for (const char* const word : {" after ", " from ", " ref ", "@"}) {
+    const std::size_t at = lower.find(word);
+    if (at == std::string::npos) continue;
+    const std::string date(
+        absl::StripAsciiWhitespace(text.substr(at + std::string_view(word).size())));
+    if (!ParseWrittenDate(date).has_value()) continue;
+    return text.substr(0, at) + " since " + date;
+  }
+  return text;
+}
+
 std::optional<TimeUnits> ParseTimeUnits(std::string_view units) {
   constexpr absl::string_view kSince = " since ";
-  const std::string text = absl::AsciiStrToLower(absl::string_view(units.data(), units.size()));
+  const std::string text = absl::AsciiStrToLower(WithSince(units));
   const std::size_t since = text.find(std::string(kSince));
   const absl::string_view name =
       absl::StripAsciiWhitespace(absl::string_view(text).substr(0, since));

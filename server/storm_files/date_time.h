@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "absl/time/time.h"
@@ -31,6 +32,10 @@ std::optional<WrittenDate> ParseWrittenDate(std::string_view text);
 // Returns the start of a storm without a date. It counts as idealised and begins in year 1, as in
 // WRF.
 absl::Time StartWithoutDate();
+
+// Returns units such as "hours after 2013-05-20" with the word "since". UDUNITS knows after, from,
+// ref and @ as other words for it. A text without a date is returned as it is.
+std::string WithSince(std::string_view units);
 
 struct TimeUnits {
   double seconds = 1.0;              // seconds in one unit

@@ -87,6 +87,21 @@ volume::FieldStatistics AmountToConcentration(const LayerAir& air,
   return statistics;
 }
 
+double ShareWithoutAir(const LayerAir& air, const std::vector<float>& density_kg_per_m3,
+                       const std::vector<float>& amounts) {
+  double all = 0.0;
+  double without = 0.0;
+  for (std::size_t i = 0; i < amounts.size(); ++i) {
+    const float amount = amounts[i];
+    const double thickness_m = air.interface_height_m[i + air.columns] - air.interface_height_m[i];
+    // The negated comparison is also true for NaN.
+    if (!(thickness_m > 0.0) || !(amount > 0.0F && amount < kInfinity)) continue;
+    all += amount * thickness_m;
+    if (!(density_kg_per_m3[i] > 0.0F)) without += amount * thickness_m;
+  }
+  return all > 0.0 ? without / all : 0.0;
+}
+
 volume::CellBox FlushAndBound(const volume::RegularGrid& grid,
                               std::vector<float>& concentration_kg_per_m3) {
   volume::CellBox box{grid.cells, glm::ivec3(0)};

@@ -15,6 +15,11 @@ volume::FieldStatistics AmountToConcentration(const LayerAir& air,
                                               const std::vector<float>& density_kg_per_m3,
                                               std::vector<float>& values);
 
+// Returns the share of the amounts in layers above the ground that are in cells without a density,
+// because their air is missing or impossible. It is 0 if no such layer has an amount above 0.
+double ShareWithoutAir(const LayerAir& air, const std::vector<float>& density_kg_per_m3,
+                       const std::vector<float>& amounts);
+
 // Returns the smallest box of cells with condensate. Sets subnormal values to zero.
 volume::CellBox FlushAndBound(const volume::RegularGrid& grid,
                               std::vector<float>& concentration_kg_per_m3);

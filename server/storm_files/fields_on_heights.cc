@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "storm_files/field_scan.h"
 #include "storm_files/ground.h"
@@ -56,9 +57,11 @@ class TimeReader {
   void TakeTerrain(volume::HydrometeorFields& result);
   absl::Status ReadLand(volume::HydrometeorFields& result);
   absl::StatusOr<std::shared_future<void>> ReadAir();
+  absl::Status CheckVapour(const LayerState& state) const;
   absl::StatusOr<std::vector<float>> CondensateShare();
   absl::Status ReadFields(volume::HydrometeorFields& result);
   absl::Status CheckAir() const;
+  absl::Status CheckAirOf(const LayerField& from, const std::vector<float>& amounts) const;
   const std::vector<float>& DensityFor(const LayerField& field) const;
   absl::StatusOr<RemappedField> Remap(const LayerField& from, LayerAmounts amounts) const;
   volume::ParticleSizes OriginOf(const LayerField& from) const;
@@ -275,10 +278,23 @@ absl::StatusOr<std::vector<float>> TimeReader::CondensateShare() {
   return share;
 }
 
+// Returns an error if usable air has more vapour than air can hold, as it has if the file's values
+// are in g/kg.
+absl::Status TimeReader::CheckVapour(const LayerState& state) const {
+  const std::optional<float> vapour =
+      ImpossibleVapour(state, air_.interface_height_m, air_.columns);
+  if (!vapour.has_value()) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      domain_.path, ": ", domain_.vapour_from, " of record ", domain_.record, " gives ", *vapour,
+      " kg of vapour per kg of dry air, more than air can hold; if it is in g/kg or %, convert it "
+      "or set its units attribute"));
+}
+
 // Reads the state of the air, and computes its density on another thread.
 absl::StatusOr<std::shared_future<void>> TimeReader::ReadAir() {
   if (!NeedsAir()) return std::async(std::launch::deferred, [] {}).share();
   THUNDERHEAD_ASSIGN_OR_RETURN(LayerState state, source_.Air());
+  THUNDERHEAD_RETURN_IF_ERROR(CheckVapour(state));
   // A density in the file is taken as that of the whole air, so it is not increased by condensate.
   std::vector<float> condensate;
   if (NeedsWholeAir() && !state.air_density_kg_per_m3.empty()) {
@@ -317,6 +333,7 @@ absl::StatusOr<RemappedField> TimeReader::Remap(const LayerField& from, LayerAmo
   field.variable = from.variable;
   field.quantity = from.quantity;
   field.sizes = OriginOf(from);
+  THUNDERHEAD_RETURN_IF_ERROR(CheckAirOf(from, values));
   field.statistics = AmountToConcentration(air_, DensityFor(from), values);
   if (from.quantity != volume::Quantity::kExtinction && field.statistics.maximum > kMaxAmount) {
     return absl::InvalidArgumentError(
@@ -375,6 +392,25 @@ absl::Status TimeReader::CheckAir() const {
   return absl::DataLossError(absl::StrCat(
       domain_.path, ": pressure, temperature and humidity of record ", domain_.record,
       " give no usable air density in any cell; check their values and units (Pa, K, kg kg-1)"));
+}
+
+// Returns an error if a notable share of a field's `amounts` would be lost, because the air of its
+// cells is missing or impossible.
+absl::Status TimeReader::CheckAirOf(const LayerField& from,
+                                    const std::vector<float>& amounts) const {
+  constexpr double kNotable = 0.05;
+  constexpr double kPercent = 100.0;
+  const std::vector<float>& density = DensityFor(from);
+  if (density.empty()) return absl::OkStatus();
+  const double share = ShareWithoutAir(air_, density, amounts);
+  if (!(share > kNotable)) return absl::OkStatus();
+  THUNDERHEAD_RETURN_IF_ERROR(CheckAir());
+  std::string names = domain_.air_from;
+  if (!domain_.vapour_from.empty()) absl::StrAppend(&names, " and ", domain_.vapour_from);
+  return absl::InvalidArgumentError(absl::StrFormat(
+      "%s: %.0f %% of %s of record %d is in cells whose air is missing or impossible, and would be "
+      "lost; check the values and units of %s (air has from 100 to 400 K)",
+      domain_.path, kPercent * share, from.variable, domain_.record, names));
 }
 
 absl::Status TimeReader::ReadFields(volume::HydrometeorFields& result) {

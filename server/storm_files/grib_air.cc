@@ -137,10 +137,10 @@ std::vector<float> VirtualTemperature_K(const std::vector<float>& temperature_K,
 
 void SpecificHumidityToVapour(std::vector<float>& humidity) {
   for (float& value : humidity) {
-    // Packing can make values slightly negative, and a value of 1 or more is impossible.
-    if (value >= 1.0F) value = kNoValue;
+    // Packing can make values slightly negative. A value of 1 or more is impossible, and stays as
+    // it is, so that it is refused as the vapour of usable air (ImpossibleVapour).
     if (value < 0.0F) value = 0.0F;
-    value = value / (1.0F - value);
+    if (value < 1.0F) value = value / (1.0F - value);
   }
 }
 

@@ -142,10 +142,33 @@ std::string CentreName(int centre) {
   }
 }
 
-// NCEP's numbers of generating processes (its table A).
+// NCEP's numbers of generating processes (its table A, Office Note 388). NAM (84) and others that
+// are not here have models whose mixing ratios are not documented.
 constexpr int kHrrr = 83;
 constexpr int kRap = 105;
+constexpr int kWrfArw = 116;
+constexpr int kRrfs = 134;
+constexpr int kHafs = 135;
 constexpr std::array kGfs = {81, 82, 96, 107};
+
+// Returns the name of a model of NCEP, or an empty text if it is not known.
+std::string NcepModel(int process) {
+  if (std::ranges::find(kGfs, process) != kGfs.end()) return "GFS";
+  switch (process) {
+    case kHrrr:
+      return "HRRR";
+    case kRap:
+      return "RAP";
+    case kWrfArw:
+      return "WRF-ARW";
+    case kRrfs:
+      return "RRFS";
+    case kHafs:
+      return "HAFS";
+    default:
+      return "";
+  }
+}
 
 }  // namespace
 
@@ -227,12 +250,17 @@ GribModel ModelOf(const grib::Field& field) {
   const int process = field.process;
   GribModel model;
   model.name = CentreName(centre);
-  if ((centre == kNcep && (process == kHrrr || process == kRap)) || centre == kNoaaLaboratory) {
-    const char* const name = process == kRap ? "RAP" : "HRRR";
-    if (centre == kNcep) absl::StrAppend(&model.name, " ", name);
+  const std::string at_ncep = centre == kNcep ? NcepModel(process) : "";
+  if (!at_ncep.empty()) absl::StrAppend(&model.name, " ", at_ncep);
+  if (at_ncep == "HRRR" || at_ncep == "RAP" || centre == kNoaaLaboratory) {
     model.mixing_ratios_per = AirMass::kDry;
     model.why = "the WRF model, which HRRR and RAP use, writes them so";
     model.microphysics = physics::Microphysics::kThompson;
+    return model;
+  }
+  if (at_ncep == "WRF-ARW") {
+    model.mixing_ratios_per = AirMass::kDry;
+    model.why = "the WRF model writes them so";
     return model;
   }
   if (centre == kNcar) {
@@ -241,12 +269,9 @@ GribModel ModelOf(const grib::Field& field) {
     return model;
   }
   model.mixing_ratios_per = AirMass::kWhole;
-  if (centre == kNcep) {
-    if (std::ranges::find(kGfs, process) != kGfs.end()) {
-      absl::StrAppend(&model.name, " GFS");
-      model.splits_cloud = true;
-    }
-    model.why = "the FV3 model, which GFS and RRFS use, writes them so";
+  if (!at_ncep.empty()) {
+    model.splits_cloud = at_ncep == "GFS";
+    model.why = "the FV3 model, which GFS, RRFS and HAFS use, writes them so";
   } else if (HasDwdNames(centre)) {
     absl::StrAppend(&model.name, " ICON or COSMO");
     model.why = "the models ICON and COSMO write them so";

@@ -159,6 +159,8 @@ GribSource::GribSource(std::shared_ptr<const GribStorm> storm, std::size_t recor
   domain_.on_terrain =
       layers_.vertical == GribVertical::kHalfHeights || !layers_.surface_height.Empty();
   domain_.ground_from = layers_.surface_height.name;
+  domain_.air_from = layers_.temperature.name;
+  domain_.vapour_from = layers_.humidity.name;
   domain_.microphysics = contents.model.microphysics;
   for (const GribHydrometeor& hydrometeor : layers_.hydrometeors) {
     LayerField field;

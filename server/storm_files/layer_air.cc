@@ -109,6 +109,19 @@ std::vector<float> Temperature(const LayerState& state) {
   return temperature_K;
 }
 
+std::optional<float> ImpossibleVapour(const LayerState& state,
+                                      const std::vector<float>& interface_height_m,
+                                      std::size_t columns) {
+  std::optional<float> largest;
+  for (std::size_t i = 0; i < state.vapour_kg_per_kg.size(); ++i) {
+    const float vapour = state.vapour_kg_per_kg[i];
+    const bool rises = interface_height_m[i + columns] > interface_height_m[i];
+    if (!(vapour > largest.value_or(kHighestVapour_kg_per_kg)) || !rises) continue;
+    if (!std::isnan(DensityAt(state, i))) largest = vapour;
+  }
+  return largest;
+}
+
 std::vector<float> DryAirDensity(LayerState state, const std::vector<float>& interface_height_m,
                                  std::size_t columns) {
   std::vector<float>& density =

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 namespace thunderhead::storm_files {
@@ -44,6 +45,9 @@ struct LayerState {
   std::vector<float> air_density_kg_per_m3;
 };
 
+// The largest mass of vapour per mass of dry air that is accepted. Nature's largest is 0.04.
+inline constexpr float kHighestVapour_kg_per_kg = 0.1F;
+
 // Returns whether air can have this temperature: from 100 to 400 K. Returns false for NaN.
 bool IsAirTemperature(double temperature_K);
 
@@ -53,6 +57,12 @@ void LeaveOutImpossibleTemperatures(std::vector<float>& temperature_K);
 // Returns the temperature of every layer, or an empty array if the file has only the density. It
 // is NaN where it is missing or impossible (IsAirTemperature).
 std::vector<float> Temperature(const LayerState& state);
+
+// Returns the largest mass of vapour per mass of dry air in layers that have a usable density, if
+// it is above kHighestVapour_kg_per_kg. Returns nothing otherwise.
+std::optional<float> ImpossibleVapour(const LayerState& state,
+                                      const std::vector<float>& interface_height_m,
+                                      std::size_t columns);
 
 // Returns the density of dry air in every layer. Reuses the memory of `state`. The density of a
 // layer with missing or unordered interfaces, or with an impossible temperature, is NaN.

@@ -56,6 +56,8 @@ struct LayerDomain {
   bool fixed_heights = false;  // true if the heights are the same at all times
   std::string heights_from;    // the variables of the heights, for errors
   std::string ground_from;     // the variable of the ground's height, for errors; empty if none
+  std::string air_from;        // the variables of pressure and temperature or density, for errors
+  std::string vapour_from;     // the variable of the air's vapour, for errors; empty if none
   physics::Microphysics microphysics = physics::Microphysics::kUnknown;
   std::vector<LayerField> fields;  // in the order of physics::kHydrometeors
 

@@ -86,7 +86,42 @@ constexpr std::array kUnitSpellings = {
     UnitSpelling{"j/kg", "J/kg"},
     UnitSpelling{"m+2 s-2", "m2 s-2"},
     UnitSpelling{"kg kg^-1", "kg/kg"},
+    UnitSpelling{"Kg/Kg", "kg/kg"},
+    UnitSpelling{"Kg/kg", "kg/kg"},
+    UnitSpelling{"kg/Kg", "kg/kg"},
+    UnitSpelling{"Kg Kg-1", "kg/kg"},
+    UnitSpelling{"g/Kg", "g/kg"},
+    UnitSpelling{"g Kg-1", "g/kg"},
+    UnitSpelling{"Kg/m3", "kg/m3"},
+    UnitSpelling{"Kg m-3", "kg/m3"},
+    UnitSpelling{"Km", "km"},
+    UnitSpelling{"gpkm", "km"},
+    UnitSpelling{"-", "1"},
+    UnitSpelling{"degrees Celsius", "Celsius"},
+    UnitSpelling{"degree Celsius", "Celsius"},
+    UnitSpelling{"deg Celsius", "Celsius"},
+    UnitSpelling{"degrees Kelvin", "K"},
+    UnitSpelling{"degree Kelvin", "K"},
+    UnitSpelling{"degrees K", "K"},
+    UnitSpelling{"degrees north", "degrees_north"},
+    UnitSpelling{"degree north", "degrees_north"},
+    UnitSpelling{"degrees east", "degrees_east"},
+    UnitSpelling{"degree east", "degrees_east"},
 };
+
+// Returns whether a text has a grain as a unit. Models that write "gr" mean a gram, which is 15
+// times as much, so neither is assumed.
+bool HasGrain(std::string_view text) {
+  constexpr std::array<absl::string_view, 3> kGrains = {"gr", "grain", "grains"};
+  const auto is_letter = [](char c) { return absl::ascii_isalpha(static_cast<unsigned char>(c)); };
+  for (auto at = text.begin(); at != text.end();) {
+    const auto first = std::find_if(at, text.end(), is_letter);
+    at = std::find_if_not(first, text.end(), is_letter);
+    const std::string word = absl::AsciiStrToLower(std::string(first, at));
+    if (std::ranges::find(kGrains, word) != kGrains.end()) return true;
+  }
+  return false;
+}
 
 // Returns the unit of a text, or null. Exponents may be in brackets, as in "g.m^(-3)" and in MPAS's
 // "kg m^{-3}".
@@ -94,6 +129,7 @@ OwnedUnit ParseUnitSpelling(std::string_view units) {
   std::string text(absl::StripAsciiWhitespace(absl::string_view(units.data(), units.size())));
   if (text.empty() || text.size() > kLongestUnits) return {nullptr, ut_free};
   std::erase_if(text, [](char c) { return c == '{' || c == '}'; });
+  if (HasGrain(text)) return {nullptr, ut_free};
   const auto known =
       std::ranges::find(kUnitSpellings, std::string_view(text), &UnitSpelling::written);
   if (known != kUnitSpellings.end()) return ParseUnit(std::string(known->meant));

@@ -24,8 +24,8 @@ struct UnitConversion {
 
 // Returns the conversion from `from`, a text of a file, to `to`, a text of this program. Returns
 // nothing if `from` is empty or is no unit of the same dimension, or if its scale is 0, below 1e-30
-// or above 1e30 ("1e300 kg m-3"). An angle is not converted to a number, although both have no
-// dimension.
+// or above 1e30 ("1e300 kg m-3"). Returns nothing for grains ("gr/kg"), which can mean grams. An
+// angle is not converted to a number, although both have no dimension.
 std::optional<UnitConversion> ConversionOf(std::string_view from, std::string_view to);
 
 }  // namespace thunderhead::storm_files

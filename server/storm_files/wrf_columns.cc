@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 #include <vector>
 
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "base/status.h"
 #include "glm/common.hpp"
 #include "glm/geometric.hpp"
+#include "glm/trigonometric.hpp"
 #include "storm_files/model_columns.h"
+#include "storm_files/wrf_place.h"
 #include "volume/map_projection.h"
 
 namespace thunderhead::storm_files {
@@ -84,6 +89,56 @@ bool IsMeasurable(const ColumnPlaces& listed) {
          !(GreatCircle_m(place(0), place(last_row), kEarth_m) < kLeastLength_m);
 }
 
+// Returns the mean of a variable over all columns at the first time. It is NaN if the file has no
+// such variable, or if the mean is not above 0.
+absl::StatusOr<double> MeanOf(const netcdf::NetcdfFile& file, const std::string& variable,
+                              const glm::ivec2& columns) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> values,
+                               ReadColumns(file, variable, columns, 0));
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
+  const double mean = sum / static_cast<double>(values.size());
+  return mean > 0.0 && std::isfinite(mean) ? mean : std::nan("");
+}
+
+// Returns the scale of a conformal projection in PROJ's notation. It is measured along a meridian.
+std::optional<double> ScaleAt(const std::string& projection, const volume::EarthPlace& place) {
+  constexpr double kHalfStep_deg = 0.005;
+  const absl::StatusOr<volume::MapProjection> map = volume::MapProjection::Open(projection);
+  if (projection.empty() || !map.ok()) return std::nullopt;
+  volume::EarthPlace south = place;
+  volume::EarthPlace north = place;
+  south.latitude_deg = std::max(place.latitude_deg - kHalfStep_deg, -90.0);
+  north.latitude_deg = std::min(place.latitude_deg + kHalfStep_deg, 90.0);
+  const std::optional<glm::dvec2> low_m = map->WorldOf(south);
+  const std::optional<glm::dvec2> high_m = map->WorldOf(north);
+  if (!low_m.has_value() || !high_m.has_value()) return std::nullopt;
+  const double scale = glm::distance(*low_m, *high_m) / GreatCircle_m(south, north, kEarth_m);
+  return scale > 0.0 && std::isfinite(scale) ? std::optional(scale) : std::nullopt;
+}
+
+// Returns the map factors of the file's projection at a latitude. All of WRF's projections but the
+// grid of latitudes and longitudes are conformal, and their scale does not depend on longitude.
+std::optional<glm::dvec2> FactorsAt(const netcdf::NetcdfFile& file, double latitude_deg) {
+  constexpr double kLatitudesAndLongitudes = 6.0;
+  const auto number = [&](const char* name) { return file.NumberAttribute("", name); };
+  if (!(std::abs(latitude_deg) < 90.0)) return std::nullopt;
+  if (number("MAP_PROJ") == kLatitudesAndLongitudes) {
+    // If the pole is rotated, the latitude in the grid is not known.
+    if (number("POLE_LAT").value_or(90.0) != 90.0) return std::nullopt;
+    return glm::dvec2(1.0 / std::cos(glm::radians(latitude_deg)), 1.0);
+  }
+  const std::optional<double> scale =
+      ScaleAt(WrfProjectionOf(file), {latitude_deg, number("STAND_LON").value_or(0.0)});
+  return scale.has_value() ? std::optional(glm::dvec2(*scale)) : std::nullopt;
+}
+
+std::string FactorsAsText(const glm::dvec2& factors) {
+  const std::string x = absl::StrFormat("%.4g", factors.x);
+  const std::string y = absl::StrFormat("%.4g", factors.y);
+  return x == y ? absl::StrCat("map factor ", x)
+                : absl::StrCat("map factors ", x, " along x and ", y, " along y");
+}
+
 }  // namespace
 
 absl::StatusOr<std::optional<ColumnPlaces>> ReadWrfColumns(const netcdf::NetcdfFile& file,
@@ -107,14 +162,28 @@ absl::StatusOr<std::optional<ColumnPlaces>> ReadWrfColumns(const netcdf::NetcdfF
   return listed;
 }
 
-absl::StatusOr<double> ReadMeanMapFactor(const netcdf::NetcdfFile& file,
-                                         const glm::ivec2& columns) {
-  THUNDERHEAD_ASSIGN_OR_RETURN(const std::vector<float> factors,
-                               ReadColumns(file, "MAPFAC_M", columns, 0));
-  double sum = 0.0;
-  for (const float factor : factors) sum += factor;
-  const double mean = sum / static_cast<double>(std::max<std::size_t>(factors.size(), 1));
-  return mean > 0.0 && std::isfinite(mean) ? mean : 1.0;
+absl::StatusOr<std::optional<WrfMapFactors>> FindMapFactors(
+    const netcdf::NetcdfFile& file, const glm::ivec2& columns,
+    const std::optional<volume::EarthPlace>& middle) {
+  THUNDERHEAD_ASSIGN_OR_RETURN(const double for_all, MeanOf(file, "MAPFAC_M", columns));
+  glm::dvec2 means(for_all);
+  for (const int axis : {0, 1}) {
+    THUNDERHEAD_ASSIGN_OR_RETURN(const double mean,
+                                 MeanOf(file, axis == 0 ? "MAPFAC_MX" : "MAPFAC_MY", columns));
+    if (!std::isnan(mean)) means[axis] = mean;
+  }
+  if (!std::isnan(means.x) && !std::isnan(means.y)) {
+    return WrfMapFactors{means, absl::StrCat("the mean ", FactorsAsText(means))};
+  }
+  const std::optional<double> centre_deg = file.NumberAttribute("", "CEN_LAT");
+  if (!middle.has_value() && !centre_deg.has_value()) return std::nullopt;
+  const double latitude_deg = middle.has_value() ? middle->latitude_deg : *centre_deg;
+  const std::optional<glm::dvec2> factors = FactorsAt(file, latitude_deg);
+  if (!factors.has_value()) return std::nullopt;
+  return WrfMapFactors{
+      *factors, absl::StrFormat("the %s, which the projection has at %.4g degrees north (%s)",
+                                FactorsAsText(*factors), latitude_deg,
+                                middle.has_value() ? "the middle of the domain" : "CEN_LAT")};
 }
 
 }  // namespace thunderhead::storm_files

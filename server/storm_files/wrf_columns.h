@@ -8,6 +8,7 @@
 #include "absl/status/statusor.h"
 #include "netcdf/netcdf_file.h"
 #include "storm_files/even_columns.h"
+#include "volume/map_projection.h"
 
 namespace thunderhead::storm_files {
 
@@ -29,8 +30,18 @@ absl::StatusOr<std::optional<ColumnPlaces>> ReadWrfColumns(const netcdf::NetcdfF
                                                            const glm::ivec2& columns,
                                                            std::size_t record);
 
-// Returns the mean map factor (MAPFAC_M) of the columns at the first time: a length on the model's
-// map divided by the true length. Returns 1 if the file has none, or one that is not positive.
-absl::StatusOr<double> ReadMeanMapFactor(const netcdf::NetcdfFile& file, const glm::ivec2& columns);
+// Lengths on the model's map divided by true lengths.
+struct WrfMapFactors {
+  glm::dvec2 factors{1.0};  // along x and along y
+  std::string from;         // where they come from, for users: "the mean map factor 2"
+};
+
+// Returns the means of MAPFAC_MX and MAPFAC_MY over all columns at the first time, or that of
+// MAPFAC_M for an axis without one. If the file has no usable map factor, returns those of its
+// projection (MAP_PROJ) at the latitude of `middle` or, if that is unknown, at CEN_LAT. Returns
+// nothing if these are unknown, too.
+absl::StatusOr<std::optional<WrfMapFactors>> FindMapFactors(
+    const netcdf::NetcdfFile& file, const glm::ivec2& columns,
+    const std::optional<volume::EarthPlace>& middle);
 
 }  // namespace thunderhead::storm_files

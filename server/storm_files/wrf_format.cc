@@ -24,11 +24,14 @@ void DescribeColumns(const WrfMetadata& metadata, StormFile& file) {
   file.cells = metadata.cells;
   file.dx_m = metadata.dx_m;
   file.dy_m = metadata.dy_m;
+  // True distances change as a nest moves. Those on its map stay, so they identify the grid.
+  if (metadata.nominal_m != metadata.on_map_m || metadata.even != nullptr) {
+    file.grid = absl::StrCat(metadata.cells.x, " x ", metadata.cells.y, " columns, DX ",
+                             metadata.on_map_m.x, ", DY ", metadata.on_map_m.y);
+  }
   if (metadata.even == nullptr) return;
   const EvenColumns& even = *metadata.even;
   const glm::dvec2& nominal_m = metadata.nominal_m;
-  file.grid = absl::StrCat(metadata.cells.x, " x ", metadata.cells.y, " columns, DX ", nominal_m.x,
-                           ", DY ", nominal_m.y);
   if (even.Resampled()) {
     file.cells = {even.columns.x, even.columns.y, metadata.cells.z};
     file.dx_m = even.dx_m;

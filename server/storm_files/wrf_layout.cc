@@ -99,13 +99,13 @@ std::string NameOfTime(const netcdf::NetcdfFile& file) {
 
 bool HasUnits(const netcdf::NetcdfFile& file, const std::string& variable, const WrfUnit& unit) {
   std::string spelling = file.TextOrEmpty(variable, "units");
-  // WRF's Registry has a dash for numbers without a unit, "# kg(-1)" and "W m{-2}".
+  // WRF's Registry has "# kg(-1)" and "W m{-2}".
   std::erase_if(spelling,
                 [](char c) { return std::string_view("#(){}").find(c) != std::string_view::npos; });
   const auto text = absl::StripAsciiWhitespace(spelling);
   if (text.empty()) return true;
   const std::optional<UnitConversion> conversion =
-      ConversionOf(text == "-" ? "1" : std::string_view(text.data(), text.size()), unit.name);
+      ConversionOf(std::string_view(text.data(), text.size()), unit.name);
   constexpr double kRounding = 1e-9;
   return conversion.has_value() && std::abs(conversion->scale - 1.0) < kRounding &&
          conversion->offset == 0.0;

@@ -20,6 +20,7 @@
 #include "base/status.h"
 #include "glm/common.hpp"
 #include "spdlog/spdlog.h"
+#include "storm_files/true_scale.h"
 #include "storm_files/wrf_relatives.h"
 #include "storm_files/wrf_times.h"
 
@@ -233,6 +234,21 @@ absl::Status FindMoreIce(const netcdf::NetcdfFile& file, WrfMetadata& metadata) 
   return absl::OkStatus();
 }
 
+// Adds an assumption if all water is liquid, and the file does not say which scheme wrote it. The
+// variables of some schemes hold both phases (PhaseSplitOf).
+void NoteOnlyLiquid(const netcdf::NetcdfFile& file, const std::vector<std::string>& variables,
+                    WrfMetadata& metadata) {
+  const bool known = file.NumberAttribute("", "MP_PHYSICS").value_or(0.0) > 0.0;
+  const bool liquid = std::ranges::all_of(metadata.fields, [](Hydrometeor hydrometeor) {
+    return hydrometeor == Hydrometeor::kCloud || hydrometeor == Hydrometeor::kRain;
+  });
+  if (known || !liquid || metadata.fields.empty()) return;
+  metadata.assumptions.push_back(absl::StrCat(
+      "Water in ", absl::StrJoin(variables, " and "), " is taken as liquid at all temperatures, ",
+      "because the file has no variable of ice and does not name its scheme (MP_PHYSICS). If it is "
+      "from WSM3 or Kessler's scheme, set MP_PHYSICS to 3 or 1."));
+}
+
 // Finds the hydrometeors. A variable that holds both phases gives two fields, unless the file has
 // the frozen phase itself.
 absl::Status FindFields(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
@@ -268,6 +284,7 @@ absl::Status FindFields(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
       metadata.fields.push_back(hydrometeor);
     }
   }
+  NoteOnlyLiquid(file, found, metadata);
   if (!metadata.fields.empty()) return absl::OkStatus();
   return absl::InvalidArgumentError(absl::StrCat(
       file.Path(), ": has none of the variables ",
@@ -383,33 +400,47 @@ absl::Status ReadProjections(const netcdf::NetcdfFile& file, WrfMetadata& metada
   return absl::OkStatus();
 }
 
-// Converts DX and DY, which are lengths on the model's map, to true distances by the mean map
-// factor. It is used if the places of the columns are not known.
-absl::Status DivideByMapFactor(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
-  // A factor this close to 1 changes no distance noticeably.
+// Converts DX and DY, which are lengths on the model's map, to true distances by the map factors.
+// They are used if the places of the columns are not known.
+absl::Status DivideByMapFactors(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
+  // Factors this close to 1 change no distance noticeably.
   constexpr double kUnnoticed = 1e-3;
-  if (metadata.place.idealised) return absl::OkStatus();
-  THUNDERHEAD_ASSIGN_OR_RETURN(const double factor,
-                               ReadMeanMapFactor(file, glm::ivec2(metadata.cells)));
-  if (std::abs(factor - 1.0) < kUnnoticed) return absl::OkStatus();
-  metadata.nominal_m /= factor;
+  WrfPlace& place = metadata.place;
+  if (place.idealised || std::min(metadata.dx_m, metadata.dy_m) == 0.0) return absl::OkStatus();
+  THUNDERHEAD_ASSIGN_OR_RETURN(
+      const std::optional<WrfMapFactors> found,
+      FindMapFactors(file, glm::ivec2(metadata.cells), metadata.place.middle));
+  if (!found.has_value()) {
+    metadata.assumptions.emplace_back(
+        "The distances between columns are DX and DY, which are lengths on the model's map. True "
+        "distances can differ, and the file has neither usable XLAT and XLONG nor MAPFAC_M, nor a "
+        "projection with CEN_LAT.");
+    return absl::OkStatus();
+  }
+  const glm::dvec2 off = glm::abs(found->factors - 1.0);
+  if (std::max(off.x, off.y) < kUnnoticed) return absl::OkStatus();
+  metadata.nominal_m /= found->factors;
   metadata.dx_m = metadata.nominal_m.x;
   metadata.dy_m = metadata.nominal_m.y;
-  metadata.assumptions.push_back(absl::StrFormat(
-      "The distances between columns are DX and DY divided by the mean map factor %.4g.", factor));
+  if (!place.projection.empty()) {
+    place.projection = WithTrueScaleAt(place.projection, *place.middle, place.middle->latitude_deg);
+  }
+  metadata.assumptions.push_back(
+      absl::StrCat("The distances between columns are DX and DY divided by ", found->from, "."));
   return absl::OkStatus();
 }
 
 // Measures the true distances between columns, and finds columns that are even.
 absl::Status MeasureColumns(const netcdf::NetcdfFile& file, WrfMetadata& metadata) {
-  metadata.nominal_m = {metadata.dx_m, metadata.dy_m};
+  metadata.nominal_m = metadata.on_map_m = {metadata.dx_m, metadata.dy_m};
   WrfPlace& place = metadata.place;
-  if (!place.middle.has_value() || place.latitude.empty()) return DivideByMapFactor(file, metadata);
+  if (!place.middle.has_value() || place.latitude.empty())
+    return DivideByMapFactors(file, metadata);
   metadata.columns = {place.latitude, place.longitude, place.projection};
   const glm::ivec2 columns(metadata.cells);
   THUNDERHEAD_ASSIGN_OR_RETURN(const std::optional<ColumnPlaces> places,
                                ReadWrfColumns(file, metadata.columns, columns, 0));
-  if (!places.has_value()) return DivideByMapFactor(file, metadata);
+  if (!places.has_value()) return DivideByMapFactors(file, metadata);
   absl::StatusOr<EvenColumns> even = MakeEven(*places);
   if (!even.ok()) return base::Annotate(even.status(), file.Path());
   metadata.places = *places;

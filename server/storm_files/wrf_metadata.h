@@ -60,7 +60,10 @@ struct WrfMetadata {
   // DX and DY if the columns have no place on Earth.
   double dx_m = 0.0;
   double dy_m = 0.0;
-  glm::dvec2 nominal_m{0.0};  // the attributes DX and DY, which are lengths on the model's map
+  glm::dvec2 on_map_m{0.0};  // the attributes DX and DY, which are lengths on the model's map
+  // The attributes DX and DY. If the places of the columns are not known, they are divided by the
+  // map factors.
+  glm::dvec2 nominal_m{0.0};
   WrfColumnNames columns;
   ColumnPlaces places;                       // at the first record
   std::shared_ptr<const EvenColumns> even;   // at the first record; null without a place on Earth

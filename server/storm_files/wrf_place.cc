@@ -142,30 +142,6 @@ absl::StatusOr<std::vector<volume::EarthPlace>> ReadMiddles(const netcdf::Netcdf
   return middles;
 }
 
-// Returns the projection of the grid as PROJ writes it, on WRF's sphere. Returns an empty text if
-// the projection is missing, or if the grid is in degrees instead of metres.
-std::string ProjectionOf(const netcdf::NetcdfFile& file) {
-  const auto number = [&](const char* name) { return file.NumberAttribute("", name); };
-  const std::optional<double> first_deg = number("TRUELAT1");
-  const std::optional<double> middle_deg = number("STAND_LON");
-  if (!first_deg.has_value() || !middle_deg.has_value()) return "";
-  constexpr char kSphere[] = " +x_0=0 +y_0=0 +R=6370000 +units=m +no_defs";
-  switch (static_cast<int>(number("MAP_PROJ").value_or(0.0))) {
-    case 1:
-      return absl::StrFormat("+proj=lcc +lat_1=%.10g +lat_2=%.10g +lat_0=%.10g +lon_0=%.10g%s",
-                             *first_deg, number("TRUELAT2").value_or(*first_deg),
-                             number("MOAD_CEN_LAT").value_or(*first_deg), *middle_deg, kSphere);
-    case 2:
-      return absl::StrFormat("+proj=stere +lat_0=%d +lat_ts=%.10g +lon_0=%.10g%s",
-                             *first_deg < 0.0 ? -90 : 90, *first_deg, *middle_deg, kSphere);
-    case 3:
-      return absl::StrFormat("+proj=merc +lat_ts=%.10g +lon_0=%.10g%s", *first_deg, *middle_deg,
-                             kSphere);
-    default:
-      return "";
-  }
-}
-
 // Returns the middle by the attributes CEN_LAT and CEN_LON. Nests may move, and attributes of the
 // whole domain are wrong for a part of it, so both give nothing.
 std::optional<volume::EarthPlace> PlaceOfAttributes(const netcdf::NetcdfFile& file,
@@ -185,7 +161,7 @@ void TakePlace(const netcdf::NetcdfFile& file, const volume::EarthPlace& middle,
   place.idealised = middle.latitude_deg == 0.0 && middle.longitude_deg == 0.0;
   if (place.idealised) return;
   place.middle = middle;
-  place.projection = ProjectionOf(file);
+  place.projection = WrfProjectionOf(file);
 }
 
 }  // namespace
@@ -241,6 +217,28 @@ absl::StatusOr<WrfPlace> ReadWrfPlace(const netcdf::NetcdfFile& file, const WrfL
         "map projection.");
   }
   return place;
+}
+
+std::string WrfProjectionOf(const netcdf::NetcdfFile& file) {
+  const auto number = [&](const char* name) { return file.NumberAttribute("", name); };
+  const std::optional<double> first_deg = number("TRUELAT1");
+  const std::optional<double> middle_deg = number("STAND_LON");
+  if (!first_deg.has_value() || !middle_deg.has_value()) return "";
+  constexpr char kSphere[] = " +x_0=0 +y_0=0 +R=6370000 +units=m +no_defs";
+  switch (static_cast<int>(number("MAP_PROJ").value_or(0.0))) {
+    case 1:
+      return absl::StrFormat("+proj=lcc +lat_1=%.10g +lat_2=%.10g +lat_0=%.10g +lon_0=%.10g%s",
+                             *first_deg, number("TRUELAT2").value_or(*first_deg),
+                             number("MOAD_CEN_LAT").value_or(*first_deg), *middle_deg, kSphere);
+    case 2:
+      return absl::StrFormat("+proj=stere +lat_0=%d +lat_ts=%.10g +lon_0=%.10g%s",
+                             *first_deg < 0.0 ? -90 : 90, *first_deg, *middle_deg, kSphere);
+    case 3:
+      return absl::StrFormat("+proj=merc +lat_ts=%.10g +lon_0=%.10g%s", *first_deg, *middle_deg,
+                             kSphere);
+    default:
+      return "";
+  }
 }
 
 int DomainOf(const netcdf::NetcdfFile& file) {

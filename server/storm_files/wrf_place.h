@@ -29,6 +29,10 @@ struct WrfPlace {
 // Returns INVALID_ARGUMENT if XLAT or XLONG do not have one value for each column.
 absl::StatusOr<WrfPlace> ReadWrfPlace(const netcdf::NetcdfFile& file, const WrfLayout& layout);
 
+// Returns the projection of the grid as PROJ writes it, on WRF's sphere. Returns an empty text if
+// the attributes do not give it, or if the grid is in degrees instead of metres.
+std::string WrfProjectionOf(const netcdf::NetcdfFile& file);
+
 // Returns GRID_ID, the number of the nested domain, counted from 1.
 int DomainOf(const netcdf::NetcdfFile& file);
 

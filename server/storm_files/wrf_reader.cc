@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "base/status.h"
 #include "netcdf/netcdf_file.h"
 #include "storm_files/even_columns.h"
@@ -39,6 +40,8 @@ class WrfSource final : public LayerSource {
     domain_.on_terrain = !metadata_.heights.middles.per_level;
     domain_.heights_from = HeightsFrom();
     domain_.ground_from = "HGT";
+    domain_.air_from = AirFrom();
+    domain_.vapour_from = metadata_.air.has_vapour ? "QVAPOR" : "";
     domain_.microphysics = metadata_.microphysics;
     for (const physics::Hydrometeor hydrometeor : metadata_.fields) {
       LayerField& field = domain_.fields.emplace_back();
@@ -61,6 +64,7 @@ class WrfSource final : public LayerSource {
   std::size_t Cells() const { return static_cast<std::size_t>(domain_.cells.z) * Columns(); }
   std::size_t Columns() const { return domain_.Columns(); }
   std::string HeightsFrom() const;
+  std::string AirFrom() const;
   absl::Status ReadVariable(const std::string& variable, std::size_t values_expected,
                             Changes changes, std::vector<float>& values,
                             netcdf::HugeValue huge = netcdf::HugeValue::kRefused);
@@ -82,6 +86,18 @@ std::string WrfSource::HeightsFrom() const {
   const WrfHeights& heights = metadata_.heights;
   return heights.perturbation.empty() ? heights.middles.variable
                                       : absl::StrCat(heights.perturbation, " + ", heights.base);
+}
+
+std::string WrfSource::AirFrom() const {
+  const WrfAir& air = metadata_.air;
+  std::vector<std::string> names;
+  for (const WrfTerm& term : air.pressure) names.push_back(term.variable);
+  const std::string pressure = absl::StrJoin(names, " + ");
+  const std::string& temperature = air.temperature.variable;
+  return absl::StrCat(pressure, " (Pa) and ", temperature,
+                      air.potential && air.temperature.offset != 0.0
+                          ? " (K, the potential temperature minus 300 K)"
+                          : " (K)");
 }
 
 absl::Status WrfSource::ReadVariable(const std::string& variable, std::size_t values_expected,
@@ -168,6 +184,9 @@ void WrfSource::DryPotentialTemperature(LayerState& state) const {
   if (!metadata_.air.moist || state.vapour_kg_per_kg.empty()) return;
   for (std::size_t i = 0; i < state.vapour_kg_per_kg.size(); ++i) {
     const float vapour = std::max(state.vapour_kg_per_kg[i], 0.0F);
+    // Impossible vapour must not make the temperature impossible, because it is the cause of the
+    // error that the user gets.
+    if (vapour > kHighestVapour_kg_per_kg) continue;
     state.potential_temperature_K[i] /= 1.0F + kVapourToDryGas * vapour;
   }
 }

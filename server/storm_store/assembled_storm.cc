@@ -173,7 +173,8 @@ void CountTimes(CataloguedStorm& storm) {
     const absl::Time start =
         storm.info.run_start.has_value() ? file.run_start.value_or(first) : first;
     const absl::Time valid = ValidTimeOf(storm, time);
-    storm.info.times[time].elapsed_s = absl::ToDoubleSeconds(valid - first);
+    storm.info.times[time].elapsed_s =
+        absl::ToDoubleSeconds(storm_files::DurationIn(file.calendar, first, valid));
     storm.info.times[time].lead_s =
         absl::ToDoubleSeconds(storm_files::DurationIn(file.calendar, start, valid));
   }

@@ -83,6 +83,19 @@ void NoteFewerLayers(std::vector<storm_files::StormFile>& files) {
   }
 }
 
+// Adds an assumption to files of one run that have most of their times in common.
+void NoteSameTimes(std::vector<storm_files::StormFile>& run) {
+  if (run.size() < 2) return;
+  const std::string more =
+      run.size() > 2 ? absl::StrCat(" and ", run.size() - 2, " more files have ") : " has ";
+  for (std::size_t i = 0; i < run.size(); ++i) {
+    const fs::path other = run[i == 0 ? 1 : 0].path;
+    run[i].assumptions.push_back(absl::StrCat(
+        other.filename().string(), more, "most or all of the same times on the same ",
+        "grid, so each file is a separate storm. If they are copies, remove all but ", "one."));
+  }
+}
+
 // Nested domains of one run are often in one folder, so their names get the domain's number.
 void NameDomains(const std::vector<std::size_t>& series, std::vector<NamedFiles>& storms) {
   std::set<std::string> names;
@@ -124,6 +137,7 @@ std::vector<NamedFiles> GroupRuns(const fs::path& folder,
       storms.push_back({name, std::move(run)});
       continue;
     }
+    NoteSameTimes(run);
     for (storm_files::StormFile& file : run) {
       // If a time is spread over several files, the storm is named after the folder.
       const std::string name = file.parts.empty() ? NameOfFile(file.path) : NameOfFolder(folder);

@@ -215,6 +215,8 @@ TEST_F(GribStormTest, LeavesOutImpossibleTemperatures) {
   Layout layout;
   layout.edit = [](Message& message) {
     if (Is(message, 0, 0, 2)) message.values = {2000.0F};
+    // The level has no water, so none is lost.
+    if (Is(message, 1, 22, 2) || Is(message, 1, 24, 2)) message.values = {0.0F};
     return true;
   };
   const auto file = Describe(layout);
@@ -229,6 +231,46 @@ TEST_F(GribStormTest, LeavesOutImpossibleTemperatures) {
                 return true;
               }),
               HasSubstr("of record 0 give no usable air density"));
+  EXPECT_THAT(ErrorWith([](Message& message) {
+                if (Is(message, 0, 0, 2)) message.values = {2000.0F};
+                return true;
+              }),
+              HasSubstr("% of CLMR of record 0 is in cells whose air is missing or impossible"));
+}
+
+// Humidity in g/kg. All of it is above 1 kg/kg if it is read as GRIB's unit.
+TEST_F(GribStormTest, RefusesMoreVapourThanAirCanHold) {
+  for (const int number : {0, 2}) {
+    EXPECT_THAT(ErrorWith([number](Message& message) {
+                  if (message.category == 1 && message.number == 0) {
+                    message.number = number;
+                    message.values = {10.0F};
+                  }
+                  return true;
+                }),
+                HasSubstr("of record 0 gives 10 kg of vapour per kg of dry air, more than air"));
+  }
+}
+
+// NCEP's numbers of processes name the model, and so the air to which mixing ratios refer.
+TEST_F(GribStormTest, TheProcessTellsTheAirOfMixingRatios) {
+  struct Case {
+    int process;
+    std::string about;
+    std::string assumption;
+  };
+  for (const Case& each :
+       {Case{83, "NCEP HRRR", "kg per kg of dry air, because the WRF model, which HRRR"},
+        Case{116, "NCEP WRF-ARW", "kg per kg of dry air, because the WRF model writes them so"},
+        Case{96, "NCEP GFS", "of the whole air (dry air, vapour and condensate), because the FV3 model"},
+        Case{134, "NCEP RRFS", "of the whole air (dry air, vapour and condensate), because the FV3 model"},
+        Case{84, "NCEP",
+             "because the parameter's definition says so, and the model is not known"}}) {
+    const auto file = Describe({.process = each.process});
+    ASSERT_TRUE(file.ok()) << file.status();
+    EXPECT_EQ(file->about, each.about);
+    EXPECT_THAT(file->assumptions, ::testing::Contains(HasSubstr(each.assumption)));
+  }
 }
 
 TEST_F(GribStormTest, RefusesLatitudesBeyondThePoles) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "storm_files/cf_times.h"
+#include "storm_files/date_time.h"
 
 namespace thunderhead::storm_files {
 namespace {
@@ -64,6 +65,19 @@ TEST(CfTimes, FarTimesAreRefused) {
   EXPECT_FALSE(DecodeCfTimes({1e300}, "days since 2013-05-20", "").ok());
   EXPECT_FALSE(DecodeCfTimes({-1.0}, "day as %Y%m%d.%f", "").ok());
   EXPECT_FALSE(DecodeCfTimes({1e12}, "day as %Y%m%d.%f", "").ok());
+}
+
+// The words are those of UDUNITS for "since".
+TEST(CfTimes, OtherWordsForSinceAreRead) {
+  for (const char* units : {"hours since 2013-05-20 12:00", "hours after 2013-05-20 12:00",
+                            "Hours FROM 2013-05-20 12:00", "hours ref 2013-05-20 12:00",
+                            "hours @ 2013-05-20 12:00", "hours@2013-05-20 12:00"}) {
+    const auto times = DecodeCfTimes({8.0}, units, "");
+    ASSERT_TRUE(times.ok()) << times.status();
+    EXPECT_EQ(absl::FormatTime((*times)[0], absl::UTCTimeZone()), "2013-05-20T20:00:00+00:00");
+  }
+  EXPECT_EQ(WithSince("m from the ground"), "m from the ground");
+  EXPECT_FALSE(DecodeCfTimes({8.0}, "hours after the start", "").ok());
 }
 
 }  // namespace

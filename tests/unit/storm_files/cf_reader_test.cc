@@ -709,6 +709,15 @@ TEST(CfNames, UnitsAreReadInTheirSpellings) {
         {"atm", "Pa", 101325.0, 0.0},
         {"degC", "K", 1.0, 273.15},
         {"radian", "degree", 57.29577951308232, 0.0},
+        {"g/Kg", "1", 1e-3, 0.0},
+        {"Kg/Kg", "1", 1.0, 0.0},
+        {"-", "1", 1.0, 0.0},
+        {"Km", "m", 1000.0, 0.0},
+        {"gpkm", "m", 1000.0, 0.0},
+        {"grams/kg", "1", 1e-3, 0.0},
+        {"degrees Celsius", "K", 1.0, 273.15},
+        {"degrees north", "degree_north", 1.0, 0.0},
+        {"degrees east", "degree_east", 1.0, 0.0},
         {"weeks", "s", 604800.0, 0.0}}) {
     const std::optional<UnitConversion> conversion = ConversionOf(from, to);
     ASSERT_TRUE(conversion.has_value()) << from;
@@ -721,6 +730,10 @@ TEST(CfNames, UnitsAreReadInTheirSpellings) {
                                  {"hPa", "m"},
                                  {"s", "Hz"},
                                  {"(not text)", "m"},
+                                 {"gr/kg", "1"},
+                                 {"gr m-3", "kg m-3"},
+                                 {"grains/kg", "1"},
+                                 {"Gr kg-1", "1"},
                                  {"kg kg-2", "1"}}) {
     EXPECT_FALSE(ConversionOf(from, to).has_value()) << from;
   }

@@ -391,6 +391,7 @@ TEST_F(CfUnsaid, LeadTimesCountDaysOfTheFilesCalendar) {
     EXPECT_EQ(info_.times[1].valid_time, last) << calendar;
     EXPECT_EQ(info_.times[0].lead_s, kDay_s) << calendar;
     EXPECT_EQ(info_.times[1].lead_s, 2.0 * kDay_s) << calendar;
+    EXPECT_EQ(info_.times[1].elapsed_s, kDay_s) << calendar;
   }
   // From 28 February to 1 March there are three days in a calendar of 30 days a month.
   SyntheticCf file = Forecast("360_day");
@@ -399,6 +400,7 @@ TEST_F(CfUnsaid, LeadTimesCountDaysOfTheFilesCalendar) {
   EXPECT_EQ(info_.times[0].valid_time, "2000-03-01T00:00:00Z");
   EXPECT_EQ(info_.times[0].lead_s, 3.0 * kDay_s);
   EXPECT_EQ(info_.times[1].lead_s, 33.0 * kDay_s);
+  EXPECT_EQ(info_.times[1].elapsed_s, 30.0 * kDay_s);
   // A reference time without a calendar counts in that of the times.
   file = Forecast("noleap");
   file.variables.back().attributes.erase("calendar");
@@ -411,6 +413,19 @@ TEST_F(CfUnsaid, LeadTimesCountDaysOfTheFilesCalendar) {
   EXPECT_NE(MustRead(file), nullptr);
   EXPECT_FALSE(info_.run_start.has_value());
   EXPECT_THAT(info_.assumptions, Contains(HasSubstr("The start of the run is not known")));
+}
+
+// In 2012 the common calendar has a 29 February, and noleap has none.
+TEST_F(CfUnsaid, ElapsedTimesCountDaysOfTheFilesCalendar) {
+  for (const auto& [calendar, days] : {std::pair{"noleap", 1.0}, std::pair{"standard", 2.0}}) {
+    SyntheticCf file = Forecast(calendar);
+    file.coordinates.back().attributes["units"] = "days since 2012-02-28";
+    file.coordinates.back().values = {0.0, days};
+    EXPECT_NE(MustRead(file), nullptr);
+    ASSERT_EQ(info_.times.size(), 2U);
+    EXPECT_EQ(info_.times[1].valid_time, "2012-03-01T00:00:00Z");
+    EXPECT_EQ(info_.times[1].elapsed_s, 86'400.0 * days) << calendar;
+  }
 }
 
 // Without a time, the valid time is the reference time and the period in the file's calendar.

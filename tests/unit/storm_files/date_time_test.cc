@@ -93,6 +93,7 @@ TEST(ParseTimeUnits, ReadsTheUnitsOfCf) {
                         Case{"hr since 2013-05-20 18:00:0.0", 3600.0, evening},
                         Case{"h since 2013-05-20 18:00", 3600.0, evening},
                         Case{"days  since  2013-05-20 18:00", 86400.0, evening},
+                        Case{"hours after 2013-05-20 18:00", 3600.0, evening},
                         Case{"d since 1970-01-01", 86400.0, absl::UnixEpoch()}}) {
     const std::optional<TimeUnits> units = ParseTimeUnits(c.units);
     ASSERT_TRUE(units.has_value()) << c.units;
@@ -122,7 +123,7 @@ TEST(ParseTimeUnits, ReadsNothingElse) {
                            "m since 2013-05-20",
                            "10 minutes since 2013-05-20",
                            "day as %Y%m%d.%f",
-                           "seconds from 2013-05-20",
+                           "seconds till 2013-05-20",
                            "seconds since",
                            "seconds since ",
                            "seconds since then",

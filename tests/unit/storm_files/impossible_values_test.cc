@@ -5,6 +5,7 @@
 #include <netcdf.h>
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <utility>
@@ -92,12 +93,18 @@ TEST_F(ImpossibleCfValues, APackingMustNotMakeAmountsNegative) {
   EXPECT_FLOAT_EQ((*fields)->fields[0].statistics.maximum, 0.5e-3F);
 }
 
-// Cells with an impossible temperature are missing. The others keep their density.
+// Cells with an impossible temperature are missing. The others keep their density. Here the missing
+// cells have 3 % of the water, so the file is not refused.
 TEST_F(ImpossibleCfValues, AirHasFrom100To400Kelvin) {
-  const auto fields = Read(InAir([](const Index& at) {
+  SyntheticCf file = InAir([](const Index& at) {
     constexpr std::array kKelvin = {280.0, 2000.0, 401.0, 99.0, 400.0, 100.0};
     return kKelvin[at.at("x")];
-  }));
+  });
+  file.variables[0].value = [](const Index& at) {
+    const bool impossible = at.at("x") > 0 && at.at("x") < 4;
+    return at.at("z") > 0 ? 0.0 : impossible ? 3e-5 : 1e-3;
+  };
+  const auto fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
   const volume::HydrometeorField& field = (*fields)->fields[0];
   EXPECT_EQ(field.statistics.missing_cells, 3 * 4 * 4);
@@ -108,6 +115,57 @@ TEST_F(ImpossibleCfValues, AirHasFrom100To400Kelvin) {
   for (const int x : {1, 2, 3}) EXPECT_EQ(at(x), 0.0F) << x;
   EXPECT_NEAR(at(4), 1e-3 * 90'000.0 / (kGas * 400.0), 1e-6);
   EXPECT_NEAR(at(5), 1e-3 * 90'000.0 / (kGas * 100.0), 1e-5);
+}
+
+// Lost water is only refused if it is more than a twentieth of a field. Cells without water may
+// have no air, as under the ground.
+TEST_F(ImpossibleCfValues, AirThatWouldLoseWaterIsRefused) {
+  const auto kelvin = [](const Index& at) { return at.at("x") == 1 ? std::nan("") : 280.0; };
+  ExpectError(InAir(kelvin),
+              "17 % of qc of record 0 is in cells whose air is missing or "
+              "impossible, and would be lost; check the values and units of p, ta");
+  SyntheticCf file = InAir(kelvin);
+  file.variables[0].value = [](const Index& at) {
+    return at.at("z") > 0 || at.at("x") == 1 ? 0.0 : 1e-3;
+  };
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->fields[0].statistics.missing_cells, 4 * 4);
+}
+
+// Values in g/kg that are labelled kg/kg would make the air, and so its water, 10 times too thin.
+TEST_F(ImpossibleCfValues, AirHasLittleVapour) {
+  for (const char* name : {"humidity_mixing_ratio", "specific_humidity"}) {
+    const auto with_vapour = [&](double kg_per_kg, const std::string& units) {
+      SyntheticCf file = InAir([](const Index&) { return 280.0; });
+      file.variables.push_back(OfOneValue("hum", {"z", "y", "x"},
+                                          {{"units", units}, {"standard_name", name}}, kg_per_kg));
+      return file;
+    };
+    ExpectError(with_vapour(10.0, "kg kg-1"),
+                "hum of record 0 gives 10 kg of vapour per kg of dry air, more than air can hold");
+    ExpectError(with_vapour(0.15, "kg kg-1"), "more than air can hold");
+    for (const auto& [value, units] : {std::pair{10.0, "g kg-1"}, std::pair{0.01, "kg kg-1"}}) {
+      const auto fields = Read(with_vapour(value, units));
+      ASSERT_TRUE(fields.ok()) << fields.status();
+      EXPECT_NEAR((*fields)->fields[0].concentration_kg_per_m3[0],
+                  1e-3 * 90'000.0 / (287.0 * 280.0 * 1.01608), 3e-6)
+          << name;
+    }
+  }
+}
+
+// A file may have no humidity where it has no air.
+TEST_F(ImpossibleCfValues, VapourWithoutAirDoesNotCount) {
+  SyntheticCf file = InAir([](const Index& at) { return at.at("x") == 1 ? 9999.0 : 280.0; });
+  file.variables[0].value = [](const Index& at) { return at.at("x") == 1 ? 0.0 : 1e-3; };
+  file.variables.push_back({"hum",
+                            {"z", "y", "x"},
+                            {{"units", "kg kg-1"}, {"standard_name", "humidity_mixing_ratio"}},
+                            [](const Index& at) { return at.at("x") == 1 ? 9999.0 : 0.01; }});
+  const auto fields = Read(file);
+  ASSERT_TRUE(fields.ok()) << fields.status();
+  EXPECT_EQ((*fields)->fields[0].statistics.missing_cells, 4 * 4);
 }
 
 TEST_F(ImpossibleCfValues, AFileOfImpossibleTemperaturesIsRefused) {
@@ -155,14 +213,43 @@ TEST_F(ImpossibleCfValues, PlacesOfColumnsEndAtThePoles) {
 TEST_F(ImpossibleWrfValues, AirHasFrom100To400Kelvin) {
   SyntheticWrf file = Cloud();
   file.potential_temperature_at_K = [](const testing::WrfCell& cell) {
-    return cell.level == 1 ? 5000.0 : 310.0;
+    return cell.level == 1 && cell.x == 0 ? 5000.0 : 310.0;
   };
   const auto fields = Read(file);
   ASSERT_TRUE(fields.ok()) << fields.status();
-  EXPECT_EQ(fields->fields[0].statistics.missing_cells, 4 * 3);
+  EXPECT_EQ(fields->fields[0].statistics.missing_cells, 3);
   EXPECT_NEAR(ColumnPath(*fields, 0, 0, 0), 7 * 500.0 * 1e-3 * kDryDensity_kg_per_m3, 1e-3);
   file.potential_temperature_at_K = [](const testing::WrfCell&) { return 5000.0; };
   EXPECT_THAT(Message(file), HasSubstr("give no usable air density"));
+}
+
+// A T that is the whole potential temperature becomes 300 K too high. At 800 hPa it is then too hot
+// for air, but not above 400 hPa.
+TEST_F(ImpossibleWrfValues, ATemperatureWith300KTooManyIsRefused) {
+  SyntheticWrf file = Cloud();
+  file.potential_temperature_K = 610.0;
+  file.stored_values.clear();
+  for (int x = 0; x < file.nx; ++x) {
+    for (int y = 0; y < file.ny; ++y)
+      file.stored_values.push_back({"T", {x, y, 7, 0}, 310.0 - 300.0});
+  }
+  EXPECT_THAT(
+      Message(file),
+      HasSubstr("88 % of QCLOUD of record 0 is in cells whose air is missing or impossible, "
+                "and would be lost; check the values and units of P + PB (Pa) and T (K, "
+                "the potential temperature minus 300 K) and QVAPOR"));
+}
+
+TEST_F(ImpossibleWrfValues, AirHasLittleVapour) {
+  SyntheticWrf file = Cloud();
+  file.vapour_kg_per_kg = 16.0;
+  EXPECT_THAT(Message(file),
+              HasSubstr("QVAPOR of record 0 gives 16 kg of vapour per kg of dry air"));
+  // The potential temperature of moist air depends on the vapour.
+  file.numbers["USE_THETA_M"] = 1.0;
+  file.texts["T"]["description"] = "perturbation moist potential temperature";
+  EXPECT_THAT(Message(file),
+              HasSubstr("QVAPOR of record 0 gives 16 kg of vapour per kg of dry air"));
 }
 
 TEST_F(ImpossibleWrfValues, APackingMustNotMakeAmountsNegative) {

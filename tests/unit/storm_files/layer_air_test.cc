@@ -48,6 +48,20 @@ TEST(DryAirDensity, TakesVapourThatUndershootsAsZero) {
             DryAirDensity({{80'000}, {310}, {0.0F}}, {0, 100}, 1)[0]);
 }
 
+TEST(ImpossibleVapour, IsOnlyLookedForInUsableAir) {
+  const LayerState state{{80'000, 80'000, kMissingAir, 80'000}, {310, 310, 310, 5000}, {}};
+  const auto largest = [&](const std::vector<float>& vapour, float second_top_m) {
+    LayerState with_vapour = state;
+    with_vapour.vapour_kg_per_kg = vapour;
+    return ImpossibleVapour(with_vapour, {0, 0, 0, 0, 100, second_top_m, 100, 100}, 4);
+  };
+  EXPECT_EQ(largest({0.1F, 0.04F, 9.0F, 9.0F}, 100.0F), std::nullopt);
+  EXPECT_EQ(largest({12.0F, 16.0F, 90.0F, 90.0F}, 100.0F), 16.0F);
+  EXPECT_EQ(largest({12.0F, 16.0F, 90.0F, 90.0F}, 0.0F), 12.0F) << "the second layer is buried";
+  EXPECT_EQ(largest({0.01F, kMissingAir, 0.0F, 0.0F}, 100.0F), std::nullopt);
+  EXPECT_EQ(largest({}, 100.0F), std::nullopt);
+}
+
 TEST(GeopotentialToHeight, DividesTheSumByGravity) {
   std::vector<float> values = {981, kMissingAir, 9.81e8F};
   GeopotentialToHeight({9810, 0, 0}, values);

@@ -6,6 +6,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "glm/geometric.hpp"
 #include "storm_files/storm_format.h"
@@ -36,6 +39,7 @@ SyntheticWrf Nest() {
   file.dx_m = file.dy_m = 10'000.0;
   file.times = {"2013-05-20_20:00:00", "2013-05-20_21:00:00"};
   file.map_projection = 3;
+  file.microphysics = 2;  // a scheme whose QCLOUD is liquid
   file.numbers = {{"TRUELAT1", 0.0}, {"STAND_LON", -89.0}};
   const auto place = [](const WrfCell& cell) {
     return testing::FromMercator(
@@ -198,12 +202,11 @@ TEST_F(WrfColumns, PlacesGiveTheDistanceInsteadOfDx) {
 TEST_F(WrfColumns, IdealisedRunsAndShortDomainsKeepDx) {
   SyntheticWrf idealised = Nest();
   idealised.map_projection = 0;
-  SyntheticWrf of_one_row = Nest();
-  of_one_row.ny = 1;
   SyntheticWrf short_domain = Nest();
   short_domain.columns.clear();
   short_domain.dx_m = short_domain.dy_m = 10.0;
-  for (const SyntheticWrf& wrf : {idealised, of_one_row, short_domain}) {
+  short_domain.numbers["TRUELAT1"] = short_domain.latitude_deg;
+  for (const SyntheticWrf& wrf : {idealised, short_domain}) {
     const StormFile file = Describe(wrf);
     EXPECT_EQ(file.dx_m, wrf.dx_m);
     EXPECT_EQ(file.dy_m, wrf.dy_m);
@@ -221,6 +224,133 @@ TEST_F(WrfColumns, TheMapFactorGivesTheDistancesOfShortDomains) {
   EXPECT_NEAR(file.dx_m, 5.0, 1e-5);
   EXPECT_NEAR(file.dy_m, 5.0, 1e-5);
   EXPECT_THAT(file.assumptions, ::testing::Contains(HasSubstr("mean map factor 2")));
+}
+
+// Returns a file of 10 km on the map of MAP_PROJ `projection` with CEN_LAT `latitude_deg`, without
+// the places of its columns. It is the whole outermost domain.
+SyntheticWrf WithoutPlaces(int projection, double latitude_deg,
+                           const std::map<std::string, double>& numbers) {
+  SyntheticWrf wrf = Nest();
+  wrf.columns.clear();
+  wrf.times.resize(1);
+  wrf.map_projection = projection;
+  wrf.numbers = {{"STAND_LON", -97.0},
+                 {"CEN_LAT", latitude_deg},
+                 {"CEN_LON", -97.0},
+                 {"WEST-EAST_GRID_DIMENSION", 49.0},
+                 {"SOUTH-NORTH_GRID_DIMENSION", 41.0}};
+  for (const auto& [name, value] : numbers) wrf.numbers[name] = value;
+  wrf.omitted = {"XLAT", "XLONG"};
+  return wrf;
+}
+
+// The scales are those of Snyder 1987, equations 7-5, 15-4 and 21-33, on a sphere.
+TEST_F(WrfColumns, TheProjectionGivesTheDistancesWithoutPlaces) {
+  const testing::LambertFormulas lambert(30.0, 60.0, -97.0);
+  struct Case {
+    SyntheticWrf wrf;
+    double scale_x;
+    double scale_y;
+    std::string projection;
+  };
+  const double polar = (1.0 + std::sin(glm::radians(60.0))) / (1.0 + std::sin(glm::radians(80.0)));
+  const std::vector<Case> cases = {
+      {WithoutPlaces(3, 60.0, {{"TRUELAT1", 0.0}}), 2.0, 2.0, "+proj=merc +lat_ts=60 "},
+      {WithoutPlaces(3, -60.0, {{"TRUELAT1", 0.0}}), 2.0, 2.0, "+proj=merc +lat_ts=-60 "},
+      {WithoutPlaces(2, 80.0, {{"TRUELAT1", 60.0}}), polar, polar,
+       "+proj=stere +lat_0=90 +lat_ts=80 "},
+      {WithoutPlaces(2, -80.0, {{"TRUELAT1", -60.0}}), polar, polar,
+       "+proj=stere +lat_0=-90 +lat_ts=-80 "},
+      {WithoutPlaces(1, 45.0, {{"TRUELAT1", 30.0}, {"TRUELAT2", 60.0}}), lambert.Scale(45.0),
+       lambert.Scale(45.0), "+proj=lcc "},
+      {WithoutPlaces(6, 60.0, {{"POLE_LAT", 90.0}}), 2.0, 1.0, ""},
+  };
+  for (const Case& each : cases) {
+    const StormFile file = Describe(each.wrf);
+    const std::string about = each.projection + std::to_string(*file.latitude_deg);
+    EXPECT_NEAR(file.dx_m, 10'000.0 / each.scale_x, 0.5) << about;
+    EXPECT_NEAR(file.dy_m, 10'000.0 / each.scale_y, 0.5) << about;
+    EXPECT_THAT(file.projection, ::testing::StartsWith(each.projection)) << about;
+    EXPECT_THAT(file.assumptions,
+                ::testing::Contains(HasSubstr("degrees north (the middle of the domain)")))
+        << about;
+    // Lengths on the storm's map are true in its middle.
+    if (each.projection.empty()) continue;
+    const EarthPlace middle{*file.latitude_deg, *file.longitude_deg};
+    const auto map = volume::MapProjection::Of(file.projection, middle);
+    ASSERT_TRUE(map.ok()) << map.status();
+    EXPECT_NEAR(Distance_m(*map->PlaceOf({0.0, 1000.0}), middle), 1000.0, 2.0) << about;
+  }
+}
+
+TEST_F(WrfColumns, AFileWithoutPlacesOrScaleSaysSo) {
+  // A part of a domain has no place on Earth, but a latitude.
+  SyntheticWrf part = WithoutPlaces(3, 60.0, {{"TRUELAT1", 0.0}});
+  part.numbers.erase("WEST-EAST_GRID_DIMENSION");
+  StormFile file = Describe(part);
+  EXPECT_FALSE(file.latitude_deg.has_value());
+  EXPECT_NEAR(file.dx_m, 5000.0, 0.1);
+  EXPECT_THAT(file.assumptions,
+              ::testing::Contains("The distances between columns are DX and DY divided by the map "
+                                  "factor 2, which the projection has at 60 degrees north "
+                                  "(CEN_LAT)."));
+  // Units that are no degrees leave only CEN_LAT, too.
+  SyntheticWrf in_metres = part;
+  in_metres.omitted = {};
+  in_metres.units = {{"XLAT", "m"}};
+  EXPECT_NEAR(Describe(in_metres).dx_m, 5000.0, 0.1);
+  // Nothing gives the scale.
+  SyntheticWrf unknown = part;
+  unknown.numbers.erase("CEN_LAT");
+  SyntheticWrf rotated = WithoutPlaces(6, 60.0, {{"POLE_LAT", 40.0}});
+  for (const SyntheticWrf& wrf : {unknown, rotated}) {
+    file = Describe(wrf);
+    EXPECT_EQ(file.dx_m, 10'000.0);
+    EXPECT_THAT(file.assumptions, ::testing::Contains(HasSubstr("True distances can differ")));
+  }
+}
+
+TEST_F(WrfColumns, EachAxisHasItsOwnMapFactor) {
+  SyntheticWrf wrf = WithoutPlaces(6, 60.0, {});
+  wrf.columns["MAPFAC_MX"] = [](const WrfCell&) { return 2.0; };
+  wrf.columns["MAPFAC_MY"] = [](const WrfCell&) { return 1.25; };
+  StormFile file = Describe(wrf);
+  EXPECT_NEAR(file.dx_m, 5000.0, 1e-3);
+  EXPECT_NEAR(file.dy_m, 8000.0, 1e-3);
+  EXPECT_THAT(file.assumptions,
+              ::testing::Contains(HasSubstr("the mean map factors 2 along x and 1.25 along y.")));
+  // A map factor that is missing somewhere is not used, and the projection gives it.
+  wrf.columns["MAPFAC_MX"] = [](const WrfCell& cell) { return cell.x == 0 ? std::nan("") : 3.0; };
+  file = Describe(wrf);
+  EXPECT_NEAR(file.dx_m, 5000.0, 0.5);
+  EXPECT_NEAR(file.dy_m, 10'000.0, 0.5);
+}
+
+// The latitude of a nest changes its distances, but not its grid.
+TEST_F(WrfColumns, ARunWhoseScaleChangesIsOneStorm) {
+  SyntheticWrf first = WithoutPlaces(3, 60.0, {{"TRUELAT1", 0.0}});
+  first.domain = 2;
+  SyntheticWrf later = first;
+  later.times = {"2013-05-20_21:00:00"};
+  later.numbers["CEN_LAT"] = 61.0;
+  std::filesystem::create_directory(folder_.File("nest"));
+  testing::WriteWrf(first, folder_.File("nest/wrfout_a"));
+  testing::WriteWrf(later, folder_.File("nest/wrfout_b"));
+  const auto storms = storm_store::FindStorms({folder_.File("nest")}, StormFormats::BuiltIn(), {});
+  ASSERT_TRUE(storms.ok()) << storms.status();
+  EXPECT_EQ(storms->size(), 1U);
+}
+
+// A file of one row gives no distance along y, so both are those of the projection. The middle of
+// the row is at 21.82 degrees north, where the scale is 1 / cos(21.82 deg) = 1.0772.
+TEST_F(WrfColumns, TheProjectionGivesTheDistancesOfOneRow) {
+  SyntheticWrf of_one_row = Nest();
+  of_one_row.ny = 1;
+  const StormFile file = Describe(of_one_row);
+  EXPECT_EQ(file.cells, glm::ivec3(48, 1, 3));
+  EXPECT_NEAR(file.dx_m, 10'000.0 * std::cos(glm::radians(*file.latitude_deg)), 0.1);
+  EXPECT_NEAR(file.dx_m, 9283.0, 20.0);
+  EXPECT_EQ(file.dy_m, file.dx_m);
 }
 
 // DX is a length on the map, so it is not the distance if the places cannot give it.

@@ -56,6 +56,7 @@ class WrfKindTest : public ::testing::Test {
   // A file with cloud of 1 g/kg from the ground to 4 km.
   static testing::SyntheticWrf Cloud() {
     testing::SyntheticWrf file;
+    file.microphysics = 2;  // a scheme whose QCLOUD is liquid
     file.mixing_ratios["QCLOUD"] = [](const testing::WrfCell&) { return 1e-3; };
     return file;
   }

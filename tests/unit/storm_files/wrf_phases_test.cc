@@ -91,6 +91,21 @@ TEST_F(WrfPhasesTest, TheSplitIsReported) {
   EXPECT_TRUE(described->assumptions.empty());
 }
 
+// The scheme may have one variable for both phases, so the file does not say that its water is
+// liquid.
+TEST_F(WrfPhasesTest, WaterOfAnUnknownSchemeIsSaidToBeLiquid) {
+  SyntheticWrf file = At(250.0, 0);
+  auto described = Describe(file);
+  ASSERT_TRUE(described.ok()) << described.status();
+  EXPECT_THAT(Assumptions(*described),
+              HasSubstr("Water in QCLOUD and QRAIN is taken as liquid at all temperatures"));
+  EXPECT_THAT(Largest(file), ElementsAre(1e-3F, 2e-3F));
+  file.mixing_ratios["QSNOW"] = [](const WrfCell&) { return 5e-4; };
+  described = Describe(file);
+  ASSERT_TRUE(described.ok()) << described.status();
+  EXPECT_THAT(described->assumptions, ::testing::IsEmpty());
+}
+
 TEST_F(WrfPhasesTest, AFrozenPhaseOfTheFileIsKept) {
   SyntheticWrf file = At(250.0, kWsm3);
   file.mixing_ratios["QICE"] = [](const WrfCell&) { return 5e-4; };

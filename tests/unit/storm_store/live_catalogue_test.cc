@@ -57,6 +57,7 @@ class LiveFolder : public ::testing::Test {
   // ratio `cloud`.
   std::string WrfBytes(const std::vector<int>& hours, double cloud = 1e-3) {
     SyntheticWrf file;
+    file.microphysics = 2;  // a scheme whose QCLOUD is liquid
     file.top_m = top_m_;
     for (file.times.clear(); const int hour : hours) {
       file.times.push_back(absl::StrFormat("2013-05-20_%02d:00:00", hour));
@@ -538,6 +539,7 @@ TEST_F(LiveFolder, ATimeThatAFileHasTwiceIsReported) {
 TEST_F(LiveFolder, AFieldThatOneFileLacksLeavesTheSeriesWhole) {
   for (const int hour : {0, 1, 2}) PutOld(File(hour), WrfBytes({hour}));
   SyntheticWrf other;
+  other.microphysics = 2;
   other.top_m = top_m_;
   other.times = {"2013-05-20_01:00:00"};
   for (const char* name : {"QCLOUD", "QRAIN"}) {

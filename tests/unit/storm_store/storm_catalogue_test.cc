@@ -89,7 +89,17 @@ TEST_F(StormCatalogue, KeepsTheLaterFileOfATimeThatIsThereTwice) {
 TEST_F(StormCatalogue, TakesRunsOfTheSameTimesAsStormsOfTheirOwn) {
   Write("member 1.nc", {"18", "19"});
   Write("member 2.nc", {"18", "19"});
-  EXPECT_THAT(Ids(Find()), ElementsAre("member-1", "member-2"));
+  const std::vector<CataloguedStorm> storms = Find();
+  ASSERT_THAT(Ids(storms), ElementsAre("member-1", "member-2"));
+  // A copy under another name is such a file, so both storms say so.
+  EXPECT_THAT(storms[0].info.assumptions,
+              ::testing::Contains(::testing::StartsWith("member 2.nc has most or all of the same "
+                                                        "times on the same grid")));
+  EXPECT_THAT(storms[1].info.assumptions,
+              ::testing::Contains(::testing::StartsWith("member 1.nc has most or all")));
+  Write("member 3.nc", {"18", "19"});
+  EXPECT_THAT(Find()[2].info.assumptions,
+              ::testing::Contains(::testing::StartsWith("member 1.nc and 1 more files have most")));
 }
 
 TEST_F(StormCatalogue, TellsRunsApartByGridDomainAndStart) {
