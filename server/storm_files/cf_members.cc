@@ -57,6 +57,7 @@ absl::StatusOr<std::vector<std::string>> MemberNames(const netcdf::NetcdfFile& f
   std::vector<int> numbers = WrittenNumbers(file, MemberCoordinate(file, dimension), count);
   while (numbers.size() < count) numbers.push_back(static_cast<int>(numbers.size()));
   std::vector<std::string> names;
+  names.reserve(numbers.size());
   for (const int number : numbers) names.push_back(GribMemberOf(number));
   return names;
 }

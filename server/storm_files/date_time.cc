@@ -183,7 +183,7 @@ absl::Time StartWithoutDate() {
 }
 
 std::string WithSince(std::string_view units) {
-  const std::string text(units);
+  std::string text(units);
   const std::string lower = absl::AsciiStrToLower(text);
   for (const char* const word : {" after ", " from ", " ref ", "@"}) {
     const std::size_t at = lower.find(word);

@@ -388,7 +388,7 @@ absl::StatusOr<std::vector<CataloguedStorm>> FindStorms(const std::vector<std::s
     const std::size_t before = named.size();
     if (listed[path].hangs) {
       for (const NamedFiles& storm : (*search.found)[paths[path]]) {
-        named.push_back({storm.name, storm.files});
+        named.push_back({{storm.name, storm.files}});
       }
     } else {
       const absl::Status searched = Search(paths[path], listed[path], searches[path], named);

@@ -262,8 +262,10 @@ TEST_F(GribStormTest, TheProcessTellsTheAirOfMixingRatios) {
   for (const Case& each :
        {Case{83, "NCEP HRRR", "kg per kg of dry air, because the WRF model, which HRRR"},
         Case{116, "NCEP WRF-ARW", "kg per kg of dry air, because the WRF model writes them so"},
-        Case{96, "NCEP GFS", "of the whole air (dry air, vapour and condensate), because the FV3 model"},
-        Case{134, "NCEP RRFS", "of the whole air (dry air, vapour and condensate), because the FV3 model"},
+        Case{96, "NCEP GFS",
+             "of the whole air (dry air, vapour and condensate), because the FV3 model"},
+        Case{134, "NCEP RRFS",
+             "of the whole air (dry air, vapour and condensate), because the FV3 model"},
         Case{84, "NCEP",
              "because the parameter's definition says so, and the model is not known"}}) {
     const auto file = Describe({.process = each.process});
