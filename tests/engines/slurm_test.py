@@ -136,7 +136,12 @@ PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
         return False
 
     def runs(self, process: int) -> bool:
-        return pathlib.Path(f"/proc/{process}").exists()
+        """Returns whether the process exists and has not ended. The parent of an ended process may collect it much later."""
+        try:
+            status = pathlib.Path(f"/proc/{process}/status").read_text()
+        except OSError:
+            return False
+        return "\nState:\tZ" not in status
 
     def test_an_array_with_a_killed_and_a_requeued_task_makes_every_product_once(self) -> None:
         self.products.mkdir()
