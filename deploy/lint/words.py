@@ -23,8 +23,8 @@ COMMENTS = {
     **dict.fromkeys([".py", ".cmake", ".sh", ".yaml", ".yml", ".toml", ".cfg", ".conf", ".service"], "#"),
     **dict.fromkeys(["CMakeLists.txt", "Dockerfile", "dev"], "#"),
 }
-# Texts that other people or programs wrote.
-LEFT_OUT = re.compile(r"^(LICENSE|docs/lab/|docs/gallery/|samples/|data/)")
+# Texts that other people or programs wrote, and the laboratory notes, which stay as they were written.
+LEFT_OUT = re.compile(r"^(LICENSE|docs/lab/|samples/|data/)")
 BEGINNINGS = re.compile(r"^(Of|Whose|Where) ")
 
 
