@@ -27,6 +27,8 @@ export class FakeService {
   // The id of a storm that the server cannot describe; empty for none.
   undescribed = "";
   // If true, sessions and their ends are not saved.
+  // True while no session can be opened, because the data folders hold no storm.
+  empty = false;
   diskFull = false;
   #count = 0;
   #later = 0;
@@ -85,6 +87,7 @@ export class FakeService {
       },
       probeRay: (request) => fakeProbe(request),
       createSession: ({ scene }) => {
+        if (this.empty) throw new ConnectError("the server has no storms", Code.NotFound);
         this.#count += 1;
         const session = new FakeSession(
           `presenter-${this.#count}-${process.pid}`,

@@ -329,6 +329,17 @@ describe("the page in a session", () => {
     expect(page.state.scene.value).toMatchObject({ timeIndex: 1, sky: { turbidity: 4 } });
   });
 
+  it("says that the server has no storms, until it has one", async () => {
+    service.empty = true;
+    const { page } = await visit();
+    const texts = () => page.state.notices.value.map(({ text }) => text);
+    expect(texts()).toEqual(["the server has no storms"]);
+    service.empty = false;
+    await pass(30_000);
+    expect(page.state.session.me.value).toBeDefined();
+    expect(texts()).toEqual([]);
+  });
+
   it("shows the server's scene again where an edit is refused", async () => {
     const { page } = await visit();
     page.state.edit((scene) => ({

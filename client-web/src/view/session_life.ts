@@ -34,6 +34,7 @@ import type { StormsOnServer } from "./storms_on_server";
 import type { Viewpoint } from "./viewpoint";
 
 // Subject and text of the notice that the server could not save the session.
+const NO_STORMS = "no-storms";
 const NOT_SAVED = "not-saved";
 const NOT_SAVED_TEXT =
   "This session is not saved: it ends with the server, unless the server can save it later.";
@@ -156,7 +157,10 @@ export class SessionLife implements SessionListener {
   }
 
   openingRefused(message: string): void {
-    this.#parts.notes.problem("refused", message);
+    // If no storm was chosen, the server has none yet. The message is removed once a session opens.
+    // Otherwise it stays, because the page then opens a session with another storm.
+    const chosen = this.#parts.state.scene.peek().stormId !== "";
+    this.#parts.notes.problem(chosen ? "refused" : NO_STORMS, message);
     this.#parts.state.adoptScene(create(SceneSchema));
   }
 
@@ -167,6 +171,7 @@ export class SessionLife implements SessionListener {
     this.#parts.keys.keep(opened.viewerKey, opened.presenterKey);
     this.#parts.state.session.viewerKey.value = opened.viewerKey;
     this.#sync.opened(opened.completed, opened.revision);
+    this.#parts.state.dismiss(NO_STORMS);
     this.#parts.writeAddress();
     if (opened.durable === false) this.#parts.notes.problem(NOT_SAVED, NOT_SAVED_TEXT);
     else this.#parts.state.dismiss(NOT_SAVED);
