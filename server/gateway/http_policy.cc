@@ -69,7 +69,8 @@ HttpPolicy::HttpPolicy(bool loopback, std::vector<std::string> allowed_hosts,
 std::optional<std::string> FindAmbiguity(const http::request_header<>& request) {
   for (const http::field field :
        {http::field::host, http::field::origin, http::field::content_length,
-        http::field::content_type, http::field::content_encoding, http::field::authorization}) {
+        http::field::content_type, http::field::content_encoding, http::field::authorization,
+        http::field::range, http::field::if_range}) {
     if (request.count(field) > 1) {
       return absl::StrCat("A request must have one ", std::string(View(http::to_string(field))),
                           " header, not several.\n");

@@ -85,12 +85,14 @@ TEST_F(SmugglingTest, MalformedChunksAreRefusedWithTheReason) {
   }
 }
 
-TEST_F(SmugglingTest, RepeatedHostAndOriginAreRefused) {
+TEST_F(SmugglingTest, RepeatedHeadersWithOneValueAreRefused) {
   const std::string get = "GET /healthz HTTP/1.1\r\n";
   ExpectRefused(get + kHost + "Host: evil.example\r\n\r\n");
   ExpectRefused(get + kHost + kHost + "\r\n");
   ExpectRefused(get + kHost + "Origin: http://localhost\r\nOrigin: http://evil.example\r\n\r\n");
   ExpectRefused(get + kHost + "Authorization: Bearer a\r\nAuthorization: Bearer b\r\n\r\n");
+  ExpectRefused(get + kHost + "Range: bytes=0-1\r\nRange: bytes=2-3\r\n\r\n");
+  ExpectRefused(get + kHost + "If-Range: \"a\"\r\nIf-Range: \"b\"\r\n\r\n");
   ExpectRefused(kPost + kHost + kType + kType + "Content-Length: 5\r\n\r\n" + Frame(""));
 }
 
