@@ -90,7 +90,7 @@ TOYS = {
         after("scene.proto", "  Ground ground = 13;\n",
               "  // The irradiance of the moon.\n  optional float moonlight = 14 [(number) = {minimum: 0, maximum: 2, "
               "default_value: 0.25, unit: \"1\"}];\n"),
-        after("scene/scene.h", "renderers receive a scene with it resolved\n", "  double moonlight = 0.25;\n"),
+        after("scene/scene.h", "  Accuracy accuracy;\n", "  double moonlight = 0.25;\n"),
         after("scene_messages.cc", "  scene.accuracy = ToAccuracy(message.accuracy());\n",
               "  scene.moonlight = message.moonlight();\n"),
         after("scene_parts.cc", "constexpr std::array kParts = {\n",
