@@ -160,7 +160,7 @@ TOYS = {
               "                                      v1::CountStormsResponse* response);\n"),
         Edit("thunderhead_service.cc", "using Calls = ", "using Calls = Generated::WithCallbackMethod_CountStorms<"),
         Edit("thunderhead_service.cc", "Generated::Service>", "Generated::Service>>"),
-        after("thunderhead_service.cc", "entrance_(door, calls) {}\n",
+        after("thunderhead_service.cc", "entrance_(access_control, calls) {}\n",
               "\n  grpc::ServerUnaryReactor* CountStorms(grpc::CallbackServerContext* context,\n"
               "                                        const v1::CountStormsRequest* request,\n"
               "                                        v1::CountStormsResponse* response) override {\n"
