@@ -10,6 +10,7 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_replace.h"
 #include "base/status.h"
+#include "base/utf8.h"
 
 namespace thunderhead::pipeline {
 namespace {
@@ -53,6 +54,22 @@ std::string Formatted(std::string_view format, absl::Time time) {
   const std::string four =
       absl::StrReplaceAll(absl::string_view(format.data(), format.size()), {{"%Y", "%E4Y"}});
   return absl::FormatTime(four, time, absl::UTCTimeZone());
+}
+
+bool IsControl(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte < 0x20 || byte == 0x7f;
+}
+
+// Returns INVALID_ARGUMENT if the text of a field would choose the folder of the product, or would
+// forge lines where the name is printed.
+absl::Status CheckText(std::string_view field, std::string_view text) {
+  const bool fits = text != "." && text != ".." && text.find('/') == std::string_view::npos &&
+                    std::ranges::none_of(text, IsControl);
+  if (fits) return absl::OkStatus();
+  return absl::InvalidArgumentError(absl::StrCat(
+      "{", absl::string_view(field.data(), field.size()), "} is '", base::Printable(text),
+      "', which cannot be part of a file name; leave the field out, or rename what it names"));
 }
 
 std::string Described(const ProductKey& key) {
@@ -126,10 +143,10 @@ absl::StatusOr<std::string> ProductName::For(const ProductKey& key) const {
     }
     if (part.field.empty()) {
       absl::StrAppend(&name, part.format);
-    } else if (part.field == "storm") {
-      absl::StrAppend(&name, key.storm);
-    } else if (part.field == "view") {
-      absl::StrAppend(&name, key.view);
+    } else if (part.field == "storm" || part.field == "view") {
+      const std::string& text = part.field == "storm" ? key.storm : key.view;
+      THUNDERHEAD_RETURN_IF_ERROR(CheckText(part.field, text));
+      absl::StrAppend(&name, text);
     } else if (part.field == "time") {
       absl::StrAppendFormat(&name, "%0*d", part.width, key.time_index);
     } else if (part.field == "run" || part.field == "valid") {

@@ -45,7 +45,8 @@ class ProductName {
   static absl::StatusOr<ProductName> Parse(std::string_view flag, std::string_view text);
 
   // Returns the product's name. INVALID_ARGUMENT if the name needs the start of the run, which is
-  // unknown.
+  // unknown. Also INVALID_ARGUMENT if the text of a field contains a slash or a control character,
+  // or is "." or "..". The storm's id may come from a server or from the name of a file.
   absl::StatusOr<std::string> For(const ProductKey& key) const;
 
   // Returns true if the names contain a field, such as "view".

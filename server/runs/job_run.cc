@@ -15,8 +15,10 @@
 #include "absl/time/time.h"
 #include "base/file_stamp.h"
 #include "base/status.h"
+#include "base/stopwatch.h"
 #include "base/utc_time.h"
 #include "pipeline/sha256.h"
+#include "runs/server_answers.h"
 #include "runs/server_outage.h"
 
 namespace thunderhead::runs {
@@ -32,6 +34,13 @@ constexpr std::size_t kPicturesPerJob = 100;
 constexpr int kJobsAtATime = 2;
 // The pause before a call is tried again after the connection to the server was lost.
 constexpr seconds kServerPause{1};
+// A server that lists more jobs than this for the products of one run is broken. The others are
+// left for the server to delete.
+constexpr int kMaxFoundJobs = 200;
+// The largest picture has 8192 x 8192 pixels.
+constexpr std::uint64_t kMaxResultBytes = std::uint64_t{2} << 30;
+// The number of times that a picture whose bytes do not fit its hash is fetched.
+constexpr int kMaxFetches = 3;
 
 absl::Status RunInterrupted() { return absl::CancelledError("interrupted"); }
 
@@ -47,14 +56,6 @@ void PauseForServer(const std::stop_token& stop) {
   std::condition_variable_any stopped;
   std::unique_lock lock(mutex);
   stopped.wait_for(lock, stop, kServerPause, [] { return false; });
-}
-
-absl::Status StatusOf(const v1::RenderJobProblem& problem) {
-  const auto code = static_cast<absl::StatusCode>(problem.code());
-  const bool bad_file =
-      problem.reason() == "STORM_UNREADABLE" &&
-      (code == absl::StatusCode::kInvalidArgument || code == absl::StatusCode::kFailedPrecondition);
-  return absl::Status(bad_file ? absl::StatusCode::kDataLoss : code, problem.message());
 }
 
 v1::RenderJobPicture RequestOf(const PictureRunOptions& options, const PlannedPicture& picture) {
@@ -96,6 +97,7 @@ pipeline::InputFile InputOf(const std::string& server, const std::string& storm,
 struct JobShare {
   std::string job_id;
   std::map<std::uint32_t, PlannedPicture*> pictures;
+  std::map<std::uint32_t, int> misfits;  // how often the bytes of a picture did not fit its hash
 };
 
 class JobRun {
@@ -111,10 +113,13 @@ class JobRun {
 
  private:
   absl::Status Create(JobShare& share);
-  absl::Status Watch(JobShare& share, const std::stop_token& stop);
+  // Returns when the job has ended, or when the stream breaks. Ends the outage if the stream has
+  // worked for longer than an outage may last.
+  absl::Status Watch(JobShare& share, ServerOutage& outage, const std::stop_token& stop);
   absl::Status Take(JobShare& share, const PictureState& state, const std::stop_token& stop);
-  absl::Status Fetch(const JobShare& share, const PictureState& state, PlannedPicture& picture,
+  absl::Status Fetch(JobShare& share, const PictureState& state, PlannedPicture& picture,
                      const std::stop_token& stop);
+  // Returns DATA_LOSS if the server sends more bytes than it announced or than any picture has.
   absl::StatusOr<v1::FetchRenderResultResponse> FetchWhole(const std::string& job_id,
                                                            const PictureState& state,
                                                            const std::stop_token& stop,
@@ -138,12 +143,13 @@ absl::StatusOr<std::vector<JobShare>> JobRun::SharesOf(
   list.set_label(label_);
   v1::ListRenderJobsResponse jobs;
   THUNDERHEAD_RETURN_IF_ERROR(server_.Call(server_.Jobs(), &JobStub::ListRenderJobs, list, &jobs));
-  for (const v1::RenderJob& job : jobs.jobs()) {
+  for (int i = 0; i < std::min(jobs.jobs_size(), kMaxFoundJobs); ++i) {
+    const v1::RenderJob& job = jobs.jobs(i);
     v1::GetRenderJobRequest get;
     get.set_job_id(job.id());
     v1::GetRenderJobResponse got;
     if (!server_.Call(server_.Jobs(), &JobStub::GetRenderJob, get, &got).ok()) continue;
-    JobShare share{job.id(), {}};
+    JobShare share{job.id(), {}, {}};
     for (const PictureState& state : got.pictures()) {
       const bool comes = state.state() == PictureState::STATE_WAITING ||
                          state.state() == PictureState::STATE_DRAWING ||
@@ -208,25 +214,38 @@ absl::StatusOr<v1::FetchRenderResultResponse> JobRun::FetchWhole(const std::stri
   const auto reader = server_.Jobs().FetchRenderResult(&context, request);
   v1::FetchRenderResultResponse about;
   v1::FetchRenderResultResponse part;
-  while (reader->Read(&part)) {
-    absl::StrAppend(bytes, part.chunk());
-    part.clear_chunk();
-    if (part.has_picture()) about = std::move(part);
+  bool fits = true;
+  while (fits && reader->Read(&part)) {
+    const std::string chunk = std::move(*part.mutable_chunk());
+    const bool first = !about.has_picture();
+    if (first) about = std::move(part);
+    fits = about.has_picture() && about.total_bytes() <= kMaxResultBytes &&
+           chunk.size() <= about.total_bytes() - bytes->size() && (first || !chunk.empty());
+    if (fits) absl::StrAppend(bytes, chunk);
   }
+  if (!fits) context.TryCancel();
   const grpc::Status end = reader->Finish();
   if (stop.stop_requested()) return RunInterrupted();
+  if (!fits) {
+    return absl::DataLossError(absl::StrCat("the server sent more or other bytes than the ",
+                                            about.total_bytes(),
+                                            " bytes that it announced; look at the server's log"));
+  }
   THUNDERHEAD_RETURN_IF_ERROR(server_.StatusOf(end));
   return about;
 }
 
-absl::Status JobRun::Fetch(const JobShare& share, const PictureState& state,
-                           PlannedPicture& picture, const std::stop_token& stop) {
+absl::Status JobRun::Fetch(JobShare& share, const PictureState& state, PlannedPicture& picture,
+                           const std::stop_token& stop) {
   std::string bytes;
   THUNDERHEAD_ASSIGN_OR_RETURN(v1::FetchRenderResultResponse about,
                                FetchWhole(share.job_id, state, stop, &bytes));
   if (pipeline::Sha256(bytes) != state.sha256()) {
-    return absl::UnavailableError(
-        absl::StrCat(picture.path, " did not arrive completely from the server; try again"));
+    const bool again = ++share.misfits[state.index()] < kMaxFetches;
+    return absl::Status(
+        again ? absl::StatusCode::kUnavailable : absl::StatusCode::kDataLoss,
+        absl::StrCat(picture.path, " does not have the bytes that the server announced; ",
+                     again ? "try again" : "look at the server's log"));
   }
   const v1::RenderJobInput& input = about.input();
   const pipeline::InputFile read = InputOf(server_.Address(), picture.server_storm, input.file());
@@ -236,7 +255,7 @@ absl::Status JobRun::Fetch(const JobShare& share, const PictureState& state,
   const View& view = run_.Options().views[picture.view];
   pipeline::ManifestEntry entry = EntryOf(picture.key, view);
   entry.device = input.device();
-  entry.milliseconds = state.milliseconds();
+  entry.milliseconds = AsCost(state.milliseconds());
   if (about.picture().has_accuracy()) {
     entry.estimated_error = about.picture().accuracy().estimated_error();
   }
@@ -256,7 +275,7 @@ absl::Status JobRun::Take(JobShare& share, const PictureState& state, const std:
       break;
     case PictureState::STATE_FAILED:
     case PictureState::STATE_DROPPED:
-      picture.outcome = StatusOf(state.problem());
+      picture.outcome = FailureOf(state.problem(), picture.path);
       break;
     case PictureState::STATE_CANCELLED:
       picture.outcome = absl::AbortedError("its render job was cancelled; try again");
@@ -265,7 +284,7 @@ absl::Status JobRun::Take(JobShare& share, const PictureState& state, const std:
       return absl::OkStatus();
   }
   if (picture.outcome.ok()) {
-    progress_.Drawn(picture.path, state.milliseconds());
+    progress_.Drawn(picture.path, AsCost(state.milliseconds()));
   } else if (stop.stop_requested() || MayComeBack(picture.outcome) ||
              absl::IsFailedPrecondition(picture.outcome)) {
     return picture.outcome;
@@ -276,7 +295,8 @@ absl::Status JobRun::Take(JobShare& share, const PictureState& state, const std:
   return absl::OkStatus();
 }
 
-absl::Status JobRun::Watch(JobShare& share, const std::stop_token& stop) {
+absl::Status JobRun::Watch(JobShare& share, ServerOutage& outage, const std::stop_token& stop) {
+  const base::Stopwatch stopwatch;
   grpc::ClientContext context;
   server_.Prepare(context);
   const std::stop_callback cancel(stop, [&context] { context.TryCancel(); });
@@ -286,6 +306,11 @@ absl::Status JobRun::Watch(JobShare& share, const std::stop_token& stop) {
   v1::WatchRenderJobResponse news;
   absl::Status taken;
   while (taken.ok() && reader->Read(&news)) {
+    // Each message has the job. A server that sends others could send them for ever.
+    if (!news.has_job() && news.pictures().empty()) {
+      taken = absl::UnavailableError(absl::StrCat("the server at ", server_.Address(),
+                                                  " sends empty news of a job; try again"));
+    }
     for (const PictureState& state : news.pictures()) {
       taken = Take(share, state, stop);
       if (!taken.ok()) break;
@@ -294,7 +319,11 @@ absl::Status JobRun::Watch(JobShare& share, const std::stop_token& stop) {
   if (!taken.ok()) context.TryCancel();
   const grpc::Status end = reader->Finish();
   if (stop.stop_requested()) return RunInterrupted();
-  return taken.ok() ? server_.StatusOf(end) : taken;
+  if (!taken.ok()) return taken;
+  if (stopwatch.ElapsedMs() >= std::chrono::milliseconds(ServerOutage::kPatience).count()) {
+    outage.End();
+  }
+  return server_.StatusOf(end);
 }
 
 absl::Status JobRun::Make(JobShare& share, const std::stop_token& stop) {
@@ -302,7 +331,7 @@ absl::Status JobRun::Make(JobShare& share, const std::stop_token& stop) {
   while (true) {
     const std::size_t left = share.pictures.size();
     absl::Status status = share.job_id.empty() ? Create(share) : absl::OkStatus();
-    if (status.ok()) status = Watch(share, stop);
+    if (status.ok()) status = Watch(share, outage, stop);
     if (stop.stop_requested()) return RunInterrupted();
     if (share.pictures.size() < left) outage.End();
     if (status.ok() || share.pictures.empty()) break;
@@ -325,7 +354,8 @@ absl::StatusOr<v1::StormDescription> DescribeStorm(ServerLink& server, const std
   v1::DescribeStormResponse response;
   THUNDERHEAD_RETURN_IF_ERROR(server.Call(
       server.Service(), &v1::ThunderheadService::Stub::DescribeStorm, request, &response));
-  return response.storm();
+  THUNDERHEAD_RETURN_IF_ERROR(CheckDescription(response.storm(), id));
+  return std::move(*response.mutable_storm());
 }
 
 absl::StatusOr<std::vector<PlannedPicture>> PlanOfServer(

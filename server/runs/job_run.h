@@ -17,7 +17,8 @@
 
 namespace thunderhead::runs {
 
-// Returns the storm with that id. The error for an unknown id lists the available storms.
+// Returns the storm with that id. The error for an unknown id lists the available storms. Returns
+// INTERNAL if the server's answer is unusable (CheckDescription).
 absl::StatusOr<v1::StormDescription> DescribeStorm(ServerLink& server, const std::string& id);
 
 // Returns a plan for a storm of the server, as PlanOf does for a local storm. `number` is the index

@@ -7,6 +7,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "base/utf8.h"
 #include "nlohmann/json.hpp"
 #include "runs/tell_user.h"
 
@@ -72,7 +73,7 @@ void RunProgress::Tell(const std::string& event, const std::string& path, const 
     bar_->Set(planned_ == 0 ? 0.0 : static_cast<double>(done) / planned_);
     bar_->Note(absl::StrCat(done, " of ", planned_));
   } else if (style_ == ProgressStyle::kLines) {
-    std::cout << text << std::endl;
+    std::cout << base::Printable(text, {.max_bytes = base::kMaxLineBytes}) << std::endl;
   } else if (style_ == ProgressStyle::kJson) {
     nlohmann::ordered_json json = {{"event", event}, {"file", path}};
     if (event == "drawn") json["milliseconds"] = milliseconds;

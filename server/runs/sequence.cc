@@ -1,7 +1,6 @@
 #include "runs/sequence.h"
 
 #include <algorithm>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <string>
@@ -16,6 +15,7 @@
 #include "runs/job_run.h"
 #include "runs/local_service.h"
 #include "runs/picture_run.h"
+#include "runs/tell_user.h"
 #include "sandbox/confined_files.h"
 #include "storm_files/storm_format.h"
 #include "storm_store/storm_catalogue.h"
@@ -258,7 +258,7 @@ absl::Status RunSequence(SequenceOptions options, ServerLink* server, const std:
   const absl::Status movies = MakeMovies(options.movie, pictures, *run, progress, stop);
   if (missing.ok() || movies.ok()) return missing.ok() ? movies : missing;
   const bool movies_first = RankOf(movies) > RankOf(missing);
-  std::cerr << "thunderhead: " << (movies_first ? missing : movies).message() << std::endl;
+  TellUser(std::string((movies_first ? missing : movies).message()));
   return movies_first ? movies : missing;
 }
 

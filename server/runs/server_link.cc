@@ -18,6 +18,10 @@ std::shared_ptr<grpc::Channel> ChannelTo(const ServerPlace& place) {
   grpc::ChannelArguments arguments;
   arguments.SetMaxReceiveMessageSize(kMaxResponseBytes);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, kMaxReconnectBackoffMs);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, static_cast<int>(place.ping_interval.count()));
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, static_cast<int>(place.ping_timeout.count()));
+  // A call that waits for news sends no data. By default, gRPC would stop after two pings.
+  arguments.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
   const auto credentials = place.tls_roots.empty()
                                ? grpc::InsecureChannelCredentials()
                                : grpc::SslCredentials({place.tls_roots, "", ""});

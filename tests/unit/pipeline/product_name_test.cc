@@ -57,6 +57,20 @@ TEST(ProductName, WhatIsWrongIsNamed) {
   EXPECT_EQ(NameOf("{storm}.png", unknown), "supercell.png");
 }
 
+TEST(ProductName, ATextChoosesNoFolderAndForgesNoLine) {
+  ProductKey key = Key();
+  for (const char* text : {"../other", "/root", "a/b", "..", ".", "a\nb", "a\x1b[31mb", "\x7f"}) {
+    key.storm = text;
+    EXPECT_THAT(NameOf("out/{storm}/{view}.png", key), HasSubstr("cannot be part of a file name"));
+    EXPECT_EQ(NameOf("out/{view}.png", key), "out/west.png");
+  }
+  key.view = "../west";
+  EXPECT_THAT(NameOf("../out/{view}.png", key), HasSubstr("{view} is '../west'"));
+  key.view = "..west";
+  key.storm = "Unwetter Köln";
+  EXPECT_EQ(NameOf("../out/{storm}{view}.png", key), "../out/Unwetter Köln..west.png");
+}
+
 TEST(ProductName, FolderIsTheDeepestThatAllShare) {
   EXPECT_EQ(ProductName::Parse("--product", "a/b/c_{view}.png")->Folder(), "a/b");
   EXPECT_EQ(ProductName::Parse("--product", "a/{storm}/{view}.png")->Folder(), "a");
