@@ -47,9 +47,14 @@ void Caller::ReportRefusal(std::string_view act, const absl::Status& outcome) co
   }
 }
 
-absl::StatusOr<std::shared_ptr<const void>> Caller::TakeAnswer() const {
+absl::StatusOr<std::shared_ptr<const void>> Caller::TakeAnswer(std::size_t bytes) const {
   if (quotas_ == nullptr) return std::shared_ptr<const void>();
-  return quotas_->TakeAnswer(identity_.name);
+  return quotas_->TakeAnswer(identity_.name, bytes);
+}
+
+absl::StatusOr<std::shared_ptr<const void>> Caller::TakeUnread(std::size_t bytes) const {
+  if (quotas_ == nullptr) return std::shared_ptr<const void>();
+  return quotas_->TakeUnread(identity_.name, bytes);
 }
 
 absl::Status Caller::StillKnown(std::optional<std::chrono::steady_clock::time_point> at) const {

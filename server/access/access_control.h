@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -34,10 +35,12 @@ class Caller {
   // act is the name of the rpc.
   void ReportRefusal(const absl::Status& outcome) const { ReportRefusal(method_, outcome); }
   void ReportRefusal(std::string_view act, const absl::Status& outcome) const;
-  // Reserves a place for a finished response that waits for this caller to receive it. The place is
-  // released when the last copy of the result is destroyed. Returns null if the caller is this
-  // process itself.
-  absl::StatusOr<std::shared_ptr<const void>> TakeAnswer() const;
+  // Reserves a place and memory for a finished response of `bytes` bytes that waits for this caller
+  // to receive it. Both are released when the last copy of the result is destroyed. Returns null if
+  // the caller is this process itself.
+  absl::StatusOr<std::shared_ptr<const void>> TakeAnswer(std::size_t bytes) const;
+  // Reserves memory for a stream's next message in the same way.
+  absl::StatusOr<std::shared_ptr<const void>> TakeUnread(std::size_t bytes) const;
   // Checks the caller's token again, at most once a second. Returns UNAUTHENTICATED, and writes
   // this to the audit log, if the token has expired, was removed, or now has another name or role.
   absl::Status StillKnown(

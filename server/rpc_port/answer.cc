@@ -6,9 +6,13 @@
 
 namespace thunderhead::rpc_port {
 
+std::size_t UnreadBytes(const google::protobuf::Message& message) {
+  return message.SpaceUsedLong() + message.ByteSizeLong();
+}
+
 void Answer::Give(absl::Status status) {
   if (status.ok()) {
-    auto place = caller_->TakeAnswer();
+    auto place = caller_->TakeAnswer(UnreadBytes(response_));
     status = place.status();
     if (place.ok()) place_ = *std::move(place);
     delivery_.Begin(response_.ByteSizeLong());

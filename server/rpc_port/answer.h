@@ -6,6 +6,7 @@
 #include <grpcpp/server_context.h>
 #include <grpcpp/support/server_callback.h>
 
+#include <cstddef>
 #include <memory>
 
 #include "absl/status/status.h"
@@ -14,6 +15,10 @@
 #include "rpc_port/port_limits.h"
 
 namespace thunderhead::rpc_port {
+
+// Returns the memory in bytes that a message occupies until its client has received it. It includes
+// the message's copy in the wire format, which gRPC sends.
+std::size_t UnreadBytes(const google::protobuf::Message& message);
 
 // The reactor that sends a response. It deletes itself when gRPC calls OnDone.
 class Answer final : public grpc::ServerUnaryReactor {

@@ -21,9 +21,11 @@ struct PortLimits {
   // as many; 0 means no limit. Beyond it all connections of the address are closed.
   double max_calls_per_address = 2000.0;
   // A client must receive a finished picture, or each part of it, within delivery_time plus the
-  // time that its bytes take at min_bytes_per_second. After that the call is cancelled.
+  // time that its bytes take at min_bytes_per_second, but at most within max_delivery_time. After
+  // that the call is cancelled.
   std::chrono::milliseconds delivery_time = std::chrono::minutes(2);
   double min_bytes_per_second = 8192.0;
+  std::chrono::milliseconds max_delivery_time = std::chrono::hours(1);
   // Timeout of a connection to gRPC's port that has no admitted call, even if its client has begun
   // calls that were not admitted. The connection is then closed. Slightly earlier, gRPC itself
   // gracefully closes a connection without any call.

@@ -44,8 +44,9 @@ class RecordReader {
   virtual absl::StatusOr<VerticalGrid> ReadVerticalGrid(std::size_t record) const = 0;
 };
 
-// Maximum number of times in a file.
-inline constexpr std::size_t kMaxTimes = 1'000'000;
+// Maximum number of times in a file and in a storm. DescribeStorm lists all times of a storm, with
+// about 70 bytes each, so its answer has at most about 7 MB.
+inline constexpr std::size_t kMaxTimes = 100'000;
 
 // Returns INVALID_ARGUMENT, naming the file `path`, if `records` exceeds kMaxTimes. A format calls
 // this function before it reads the file's times.

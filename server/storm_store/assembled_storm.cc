@@ -1,7 +1,9 @@
 #include "storm_store/assembled_storm.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <tuple>
@@ -19,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Maximum number of notes about one storm, and of its times whose own map projection is checked. A
-// file may have a million times.
+// file may have 100 000 times.
 constexpr std::size_t kMostNotes = 100;
 constexpr std::size_t kMostProjections = 10'000;
 
@@ -80,6 +82,17 @@ std::string NoteOfDouble(const std::vector<storm_files::StormFile>& files, absl:
   return absl::StrCat(FormatValidTime(time), " is in ", files[other.file].path, " and in ",
                       file.path, "; the latter is used, ",
                       newer ? "because it was written later" : "because its name is later");
+}
+
+// Leaves out the earliest times of a series that has more than a storm may have, and adds a note.
+void LeaveOutEarliest(const std::string& name, std::map<absl::Time, TimeSource>& sources,
+                      std::vector<std::string>& notes) {
+  if (sources.size() <= storm_files::kMaxTimes) return;
+  const std::size_t left_out = sources.size() - storm_files::kMaxTimes;
+  sources.erase(sources.begin(), std::next(sources.begin(), static_cast<std::ptrdiff_t>(left_out)));
+  notes.push_back(absl::StrCat(name, ": its earliest ", left_out,
+                               " times are left out, because a storm has at most ",
+                               storm_files::kMaxTimes, " times"));
 }
 
 // Returns the fields that any of the files has, and adds a note for each field that some lack.
@@ -206,6 +219,7 @@ CataloguedStorm AssembleStorm(const std::string& name, std::vector<storm_files::
     storm.notes.push_back(
         absl::StrCat(name, ": ", more_doubles, " more of its times are there several times"));
   }
+  LeaveOutEarliest(name, sources, storm.notes);
   StormInfo& info = storm.info;
   storm.stem = IdFrom(name);
   info.id = storm.stem;

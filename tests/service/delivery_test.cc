@@ -220,5 +220,45 @@ TEST(AnswersDelivery, ThoseThatNobodyTakesHaveALimit) {
   EXPECT_TRUE(WaitFor(lists));
 }
 
+TEST(AnswersDelivery, ThoseThatNobodyTakesAreLimitedInBytes) {
+  const TemporaryFolder folder;
+  service::ServerOptions options = Patient();
+  options.address = "127.0.0.1:0";
+  access::QuotaLimits limits;
+  limits.max_unread_bytes_per_identity = 1;  // the first large answer reaches it
+  options.access_control = std::make_shared<access::AccessControl>(
+      access::TrustEverybody(), std::make_shared<access::Audit>([](const std::string&) {}), limits);
+  auto file = store::StateFile::Open(folder.File("state.db"));
+  ASSERT_TRUE(file.ok()) << file.status();
+  options.jobs.store = *store::SqliteJobStore::In(*file);
+  options.jobs.folder = folder.File("jobs");
+  FakeService fake(options);
+  // The description of a job of 1000 pictures exceeds the size that is always allowed.
+  v1::CreateRenderJobRequest create;
+  for (int i = 0; i < 1000; ++i) {
+    auto& picture = *create.add_pictures();
+    *picture.mutable_scene() = SmallScene();
+    picture.mutable_scene()->set_storm_id("none");
+    picture.set_name(absl::StrCat(std::string(100, 'n'), i));
+  }
+  const auto stub = v1::RenderJobService::NewStub(fake.server().LocalChannel());
+  v1::CreateRenderJobResponse created;
+  grpc::ClientContext creating;
+  const grpc::Status status = stub->CreateRenderJob(&creating, create, &created);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  v1::GetRenderJobRequest get;
+  get.set_job_id(created.job().id());
+  v1::WatchRenderJobRequest watch;
+  watch.set_job_id(created.job().id());
+  UntakingClient client(fake.server().Port());
+  client.Call("thunderhead.v1.RenderJobService/GetRenderJob", get.SerializeAsString());
+  ASSERT_TRUE(WaitFor([&] { return client.IsAnswered(); }));
+  EXPECT_EQ(client.Refused(), 0) << "one answer is always possible";
+  client.Call("thunderhead.v1.RenderJobService/GetRenderJob", get.SerializeAsString());
+  EXPECT_TRUE(WaitFor([&] { return client.Refused() == 1; }));
+  client.Call("thunderhead.v1.RenderJobService/WatchRenderJob", watch.SerializeAsString());
+  EXPECT_TRUE(WaitFor([&] { return client.Refused() == 2; })) << "streams share the memory";
+}
+
 }  // namespace
 }  // namespace thunderhead::testing

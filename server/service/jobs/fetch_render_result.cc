@@ -181,6 +181,9 @@ class ResultStream final : public ResultReactor {
     reading_.threads.Submit(caller_->identity().name, [this](const absl::Status& status) {
       const absl::Status read = status.ok() ? base::Guarded([this] { return Read(); }) : status;
       if (!read.ok()) return End(rpc_port::ToGrpcStatus(read));
+      auto memory = caller_->TakeUnread(rpc_port::UnreadBytes(response_));
+      if (!memory.ok()) return End(rpc_port::ToGrpcStatus(memory.status()));
+      memory_ = *std::move(memory);
       delivery_.Begin(response_.chunk().size());
       StartWrite(&response_);
     });
@@ -188,6 +191,7 @@ class ResultStream final : public ResultReactor {
 
   void OnWriteDone(bool ok) override {
     delivery_.Taken();
+    memory_.reset();
     if (!ok) return End(grpc::Status(grpc::StatusCode::CANCELLED, "the client disconnected"));
     if (const absl::Status known = caller_->StillKnown(); !known.ok()) {
       return End(rpc_port::ToGrpcStatus(known));
@@ -222,6 +226,7 @@ class ResultStream final : public ResultReactor {
   const jobs::PicturePlace picture_;
   const std::shared_ptr<ResultFile> file_;
   v1::FetchRenderResultResponse response_;  // gRPC reads it during the write
+  std::shared_ptr<const void> memory_;      // that of the response, while it is being written
   rpc_port::DeliveryDeadline delivery_;
 };
 

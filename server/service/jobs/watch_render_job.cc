@@ -70,6 +70,7 @@ class JobStream final : public JobReactor,
     {
       const std::lock_guard lock(mutex_);
       writing_ = false;
+      memory_.reset();
       disconnected_ = disconnected_ || !ok;
       known_ = std::move(known);
     }
@@ -108,6 +109,9 @@ class JobStream final : public JobReactor,
     for (const jobs::PictureView& picture : (*news)->pictures) {
       ToMessage(picture, *response_.add_pictures());
     }
+    auto memory = caller_->TakeUnread(rpc_port::UnreadBytes(response_));
+    if (!memory.ok()) return rpc_port::ToGrpcStatus(memory.status());
+    memory_ = *std::move(memory);
     return std::nullopt;
   }
 
@@ -116,6 +120,7 @@ class JobStream final : public JobReactor,
   const std::string id_;
   std::shared_ptr<JobStream> held_by_grpc_;
   v1::WatchRenderJobResponse response_;  // gRPC reads it while `writing_` is set
+  std::shared_ptr<const void> memory_;   // that of the response, while it is being written
   std::mutex mutex_;
   std::uint64_t sent_version_ = 0;
   bool has_news_ = false;

@@ -492,6 +492,33 @@ TEST(QuotasTest, StreamsAreGivenBack) {
   EXPECT_TRUE(quotas.TakeStream("carl").ok());
 }
 
+TEST(QuotasTest, UnreadAnswersAreLimitedInBytes) {
+  constexpr std::size_t kMiB = std::size_t{1} << 20;
+  Quotas quotas({.max_unread_bytes = 10 * kMiB, .max_unread_bytes_per_identity = 4 * kMiB});
+  auto one = quotas.TakeAnswer("anna", 3 * kMiB);
+  ASSERT_TRUE(one.ok());
+  const absl::Status refused = quotas.TakeAnswer("anna", 2 * kMiB).status();
+  EXPECT_TRUE(absl::IsResourceExhausted(refused));
+  EXPECT_EQ(base::DetailsOf(refused).reason, "ANSWERS_NOT_TAKEN");
+  EXPECT_TRUE(base::DetailsOf(refused).retry_after.has_value());
+  EXPECT_FALSE(quotas.TakeUnread("anna", 2 * kMiB).ok()) << "streams share the memory";
+  EXPECT_TRUE(quotas.TakeAnswer("anna", Quotas::kSmallMessage_bytes).ok());
+  one->reset();
+  EXPECT_TRUE(quotas.TakeAnswer("anna", 2 * kMiB).ok()) << "the memory is given back";
+}
+
+TEST(QuotasTest, OneLargeAnswerIsAlwaysPossible) {
+  constexpr std::size_t kMiB = std::size_t{1} << 20;
+  Quotas quotas({.max_unread_bytes = 10 * kMiB, .max_unread_bytes_per_identity = 4 * kMiB});
+  auto small = quotas.TakeAnswer("anna", kMiB);
+  auto large = quotas.TakeAnswer("ben", 20 * kMiB);
+  ASSERT_TRUE(large.ok());
+  EXPECT_FALSE(quotas.TakeAnswer("carl", kMiB).ok()) << "the total is reached";
+  EXPECT_TRUE(quotas.TakeAnswer("carl", Quotas::kSmallMessage_bytes).ok());
+  large->reset();
+  EXPECT_TRUE(quotas.TakeAnswer("carl", kMiB).ok());
+}
+
 TEST(AuditTest, ALineCannotBeForged) {
   std::vector<std::string> lines;
   Audit audit([&](const std::string& line) { lines.push_back(line); });

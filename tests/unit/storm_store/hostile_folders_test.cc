@@ -12,6 +12,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "storm_store/assembled_storm.h"
 #include "storm_store/catalogue_scan.h"
 #include "storm_store/fair_folders.h"
 #include "storm_store/folder_walk.h"
@@ -322,6 +323,21 @@ TEST_F(HostileFolders, AStormHasFewNotesHoweverManyTimesAreDouble) {
   EXPECT_EQ(storm.notes.size(), 101U);
   EXPECT_EQ(storm.notes.back(), "storm: 99899 more of its times are there several times");
   EXPECT_THAT(storm.info.times, SizeIs(1));
+}
+
+TEST_F(HostileFolders, ASeriesKeepsTheLatestOfTooManyTimes) {
+  StormFile early = Described("/d/storm_1");
+  early.times = {absl::UnixEpoch(), absl::UnixEpoch() + absl::Seconds(1)};
+  StormFile late = Described("/d/storm_2");
+  late.times.clear();
+  for (std::size_t i = 1; i < storm_files::kMaxTimes; ++i) {
+    late.times.push_back(absl::UnixEpoch() + absl::Seconds(static_cast<std::int64_t>(i + 1)));
+  }
+  const CataloguedStorm storm = AssembleStorm("storm", {early, late});
+  EXPECT_THAT(storm.info.times, SizeIs(storm_files::kMaxTimes));
+  EXPECT_EQ(storm.info.times.front().valid_time, "1970-01-01T00:00:01Z");
+  EXPECT_EQ(storm.info.times.front().elapsed_s, 0.0);
+  EXPECT_THAT(storm.notes, Contains(HasSubstr("its earliest 1 times")));
 }
 
 // The store is locked while it takes the result of a search. The work is proportional to the number
