@@ -22,8 +22,8 @@ struct QuotaLimits {
   // The maximum memory of messages that wait for clients to read them, in total and for one
   // identity. An identity without such a message may always have one, however large, while the
   // total is below its maximum.
-  std::size_t max_unread_bytes = std::size_t{256} << 20;
-  std::size_t max_unread_bytes_per_identity = std::size_t{64} << 20;
+  std::size_t max_unread_bytes = std::size_t{1024} << 20;
+  std::size_t max_unread_bytes_per_identity = std::size_t{256} << 20;
   // The maximum mean rate of requests for one identity. After a pause, the requests of two seconds
   // are allowed at once. 0 means no limit.
   double requests_per_second = 500.0;
