@@ -105,7 +105,7 @@ class Network {
          client = accept(listening_, nullptr, nullptr)) {
       const int server = socket(AF_INET, SOCK_STREAM, 0);
       const sockaddr_in address = Loopback(to_);
-      connect(server, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+      EXPECT_EQ(connect(server, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
       connections.insert(connections.end(), {client, server});
       pumps.emplace_back([this, client, server] { Pump(client, server); });
       pumps.emplace_back([this, client, server] { Pump(server, client); });
